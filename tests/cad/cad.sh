@@ -11,7 +11,7 @@ for part in parts/*.step; do
   expect 0 'in millimetres' "$BIN/mesh-prepare" "$part" -o "$name.ply" --report r.json
   grep -q 'hole' err.txt && fail "$name is open: $(cat err.txt)"
   expect 0 'is inside, too: the exact faces' "$BIN/mesh-prepare" "$part" -o "$name-wrap.ply" --prepare wrap --epsilon 2%
-  "$PARTS" check "$part" "$name-wrap.ply" 100000 2% >out.txt || fail "$name: $(cat out.txt)"
+  "$PARTS" check "$part" "$name-wrap.ply" 20000 2% >out.txt || fail "$name: $(cat out.txt)"
 done
 # The tessellation alone does not hold the exact faces: the check can fail.
 "$PARTS" check parts/sphere.step sphere.ply 1000 2% >/dev/null && fail "the sphere's triangles hold the sphere"
@@ -20,7 +20,7 @@ for f in flange box; do expect 0 'in millimetres' "$BIN/mesh-prepare" parts/$f.i
 # Bodies cover the exact faces; an .obj of bodies reads as one mesh whose winding number counts them.
 for part in flange sphere vase; do
   expect 0 'is inside, too: the exact faces' "$BIN/bcd-decompose" parts/$part.step -o $part.obj --epsilon 2% --effort fast --no-cache
-  "$PARTS" check parts/$part.step $part.obj 100000 2% >out.txt || fail "bodies of $part: $(cat out.txt)"
+  "$PARTS" check parts/$part.step $part.obj 20000 2% >out.txt || fail "bodies of $part: $(cat out.txt)"
 done
 expect 0 '' "$BIN/bcd-decompose" parts/sphere.step -o strict.obj --prepare strict --epsilon 2% --effort fast --no-cache
 grep -q 'is inside, too' err.txt && fail "the triangles' bodies are said to hold the exact faces"
@@ -65,7 +65,7 @@ END
 fi
 # Every program that reads a mesh reads these, too.
 expect 0 'the exact faces' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 2% --effort fast
-"$PARTS" check parts/vase.step simple.ply 100000 2.5% >out.txt || fail "decimated: $(cat out.txt)"
+"$PARTS" check parts/vase.step simple.ply 20000 2.5% >out.txt || fail "decimated: $(cat out.txt)"
 shows 0 'exact points: verified' "$BIN/bound-verify" mesh --outer parts/vase.step simple.ply
 expect 0 'what is said is about the triangles' "$BIN/bmesh-decimate" parts/vase.step -o simple.ply --epsilon 0.05% --prepare strict --effort fast
 shows 1 'exact points: refuted' "$BIN/bound-verify" mesh --outer parts/vase.step simple.ply --epsilon 3%
@@ -115,7 +115,7 @@ done
 # (The check measures reach at triangles of OpenCASCADE's own, which miss the rib: 10 %.)
 for width in 0.3 0.01; do
   expect 0 'is inside, too: the exact faces' "$BIN/bcd-decompose" more/rib-$width.step -o rib.obj --epsilon 2% --effort fast --no-cache
-  "$PARTS" check more/rib-$width.step rib.obj 100000 10% >out.txt || fail "bodies of a rib: $(cat out.txt)"
+  "$PARTS" check more/rib-$width.step rib.obj 20000 10% >out.txt || fail "bodies of a rib: $(cat out.txt)"
 done
 # An edge with a rib that OpenCASCADE loses where it projects the edge onto its face.
 expect 3 'edge .* beside face' "$BIN/mesh-prepare" more/projected.step -o none.ply
