@@ -193,7 +193,7 @@ class IgesCensus {
   /// "D7 (type 186)", as in the file's directory.
   std::string name(int i) const {
     const auto e = at(i);
-    const std::string place = "D" + std::to_string(2 * i - 1);
+    std::string place = "D" + std::to_string(2 * i - 1);
     if (e.IsNull()) return place;
     return place + " (type " + std::to_string(e->TypeNumber()) +
            (e->FormNumber() != 0 ? ", form " + std::to_string(e->FormNumber()) : std::string()) +

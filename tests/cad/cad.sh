@@ -98,6 +98,8 @@ for wrong in 1.E400:'beyond 1e100' -1.E101:'beyond 1e100' abc:'is no number' 1.5
 done
 sed '0,/25[.]980762114,/s//1.E400,      /' parts/flange.iges >wrong.iges
 expect 3 'beyond 1e100' "$BIN/mesh-prepare" wrong.iges -o none.ply
+sed "s/LENGTH_UNIT() *NAMED_UNIT(\*) *SI_UNIT(.MILLI.,.METRE.)/LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.PICO.,.METRE.)/" parts/box.step >tiny.step
+expect 3 'mm large.*is its unit right' "$BIN/mesh-prepare" tiny.step -o none.ply
 # What carries no shape may be wrong, in both readings of the file; what may carry some may not.
 for extra in "COLOUR_RGB('',0.1,0.2)" "STYLED_ITEM('',(#1),#1)" "(COLOUR() COLOUR_RGB('',0.1))" "DATE_AND_TIME(#1)"; do
   sed "0,/^#1 *=/s//#90001 = $extra;\n#1 =/" parts/box.step >extra.step
