@@ -2,6 +2,7 @@
 //
 // Entities that nothing refers to are shown, with what their groups, subfigures and solids hold.
 
+#include <IGESBasic_SingularSubfigure.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_UndefinedEntity.hxx>
 #include <IGESGeom_Boundary.hxx>
@@ -9,12 +10,16 @@
 #include <IGESGeom_CompositeCurve.hxx>
 #include <IGESGeom_CurveOnSurface.hxx>
 #include <IGESGeom_Line.hxx>
+#include <IGESGeom_TransformationMatrix.hxx>
 #include <IGESGeom_TrimmedSurface.hxx>
 #include <IGESSolid_Face.hxx>
 #include <IGESSolid_Loop.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
+#include <gp_GTrsf.hxx>
+#include <gp_Mat.hxx>
 #include <gp_Pnt.hxx>
+#include <gp_XYZ.hxx>
 
 #include <algorithm>
 #include <charconv>
@@ -28,6 +33,8 @@
 
 namespace kaboum::io {
 namespace {
+
+constexpr double kRigid = 1e-6;  ///< that a matrix may be off from a rotation, or a mirror
 
 enum class IgesKind { Unknown, Face, Surface, Container, Part, Harmless };
 
@@ -165,8 +172,7 @@ class IgesCensus {
           e->IsKind(STANDARD_TYPE(IGESData_UndefinedEntity)))
         if (kind(i) != IgesKind::Harmless)
           refuse(name(i) + " cannot be understood: its form or its parameters are not known");
-      if (e->HasTransf() && e->TypeNumber() == 308)
-        refuse(name(i) + " is moved, which is not read");
+      check_matrix(i);
     }
     for (int i = 1; i <= count; ++i)
       if (kind(i) != IgesKind::Part && kind(i) != IgesKind::Harmless && !is_referred(i)) add(i, 0);
@@ -182,6 +188,55 @@ class IgesCensus {
 
  private:
   [[noreturn]] static void refuse(const std::string& what) { throw std::runtime_error(what); }
+
+  /// OpenCASCADE forgets the matrices of solids, shells, faces, loops, points and more.
+  void check_matrix(int i) const {
+    const auto e = at(i);
+    if (const auto m = Handle(IGESGeom_TransformationMatrix)::DownCast(e); !m.IsNull()) {
+      double off = 0;
+      for (int j = 1; j <= 3; ++j)
+        for (int k = 1; k <= 3; ++k) {
+          double dot = j == k ? -1 : 0;
+          for (int n = 1; n <= 3; ++n) dot += m->Data(j, n) * m->Data(k, n);
+          off = std::max(off, std::abs(dot));
+        }
+      if (!(off <= kRigid)) refuse(name(i) + " is not rigid, which is not read");
+    }
+    if (!e->HasTransf() || kind(i) == IgesKind::Harmless) return;
+    switch (e->TypeNumber()) {
+      case 100:  // curves
+      case 102:
+      case 104:
+      case 106:
+      case 110:
+      case 112:
+      case 126:
+      case 130:
+      case 108:  // surfaces
+      case 114:
+      case 118:
+      case 120:
+      case 122:
+      case 128:
+      case 140:
+      case 144:  // trimmed surface
+      case 402:  // group
+        return;
+      case 408: {  // instance: only where it does not matter which of both comes first
+        const auto instance = Handle(IGESBasic_SingularSubfigure)::DownCast(e);
+        const bool stays = !instance.IsNull() && instance->Translation().Modulus() == 0;
+        const gp_Mat turn = e->Location().VectorialPart();
+        double most = 0;
+        for (int j = 1; j <= 3; ++j)
+          for (int k = 1; k <= 3; ++k)
+            most = std::max(most, std::abs(turn.Value(j, k) - (j == k ? 1 : 0)));
+        if (stays || most == 0) return;
+        refuse(name(i) + " is both moved and turned, which is not read");
+      }
+      default:
+        refuse(name(i) + " is moved by a matrix, which is not read");
+    }
+  }
 
   Handle(IGESData_IGESEntity) at(int i) const {
     return Handle(IGESData_IGESEntity)::DownCast(model_->Value(i));
