@@ -167,9 +167,17 @@ int conclude(const Options& o, double diagonal, double deviations,
                                             ? "the Hausdorff distance exceeds "
                                             : "it is not certain that the Hausdorff distance is "
                                               "at most ") +
-                            tools::formatted(limit));
+                            tools::formatted(limit) +
+                            (deviations > 0 ? ": the deviation of exact faces, " +
+                                                  tools::formatted(deviations) + ", is added to " +
+                                                  tools::formatted(result.upper())
+                                            : ""));
       return tools::kNo;
     }
+    if (deviations > 0)
+      tools::log(o.common.quiet,
+                 "note: --at-most holds of the triangles, and from the exact faces to the other "
+                 "surface; from there to the exact faces nothing is certain");
   }
   if (!result.a_to_b.max.within_gap || !result.b_to_a.max.within_gap) {
     tools::log(false,

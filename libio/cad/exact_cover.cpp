@@ -51,6 +51,7 @@ constexpr double kRounding = 1e-11;  ///< of all evaluations, as a share of the 
 constexpr double kSlack = 1.25;      ///< a bound may be this many times a distance that is there
 constexpr double kHelpful = 0.1;     ///< share of the wish that a side has to bend, to be halved
 constexpr int kAreaParts = 4;        ///< of a triangle's sides, where areas are bounded
+constexpr double kBeyond = 1e-3;     ///< share of a surface's parameters by which borders overrun
 constexpr double kGap = 0.25;        ///< share of the wish that edges may be beside their faces
 /// Pieces that are halved, for each triangle and on top of that; then bounds stay as they are.
 constexpr std::size_t kPiecesPerTriangle = 40, kMorePieces = 400'000;
@@ -934,10 +935,27 @@ class Cover {
                                            bound_gap(curve, flat, s, middle, b, aim, depth + 1)));
   }
 
+  /// Whether it cannot be said that a piece of the border's curve is in the box.
+  static bool leaves(const Box2& box, const ExactCurve<2>& curve, double a, double b, int depth) {
+    Piece hull;
+    curve.add_hull(a, b, hull);
+    if (box.contains(box_of(hull))) return false;
+    const double middle = 0.5 * (a + b);
+    if (depth > kHalvings || !box.contains(curve.value(middle))) return true;
+    return leaves(box, curve, a, middle, depth + 1) || leaves(box, curve, middle, b, depth + 1);
+  }
+
   void bound_gaps() {
     for (const FaceMesh& f : faces_)
       for (const Border& b : f.borders) {
         const Line& line = lines_[b.edge];
+        const Box2& domain = f.surface->domain();
+        const Vec2 slack = kBeyond * domain.sizes();
+        for (std::size_t i = 0; i + 1 < line.t.size(); ++i)
+          if (leaves({domain.min() - slack, domain.max() + slack}, b.curve, line.t[i],
+                     line.t[i + 1], 0))
+            throw std::runtime_error(line.name + " leaves the surface of " + f.name +
+                                     ", which ends before");
         if (!line.curve) continue;
         for (std::size_t i = 0; i + 1 < line.t.size(); ++i)
           worse(bound_gap(*line.curve, b.curve, *f.surface, line.t[i], line.t[i + 1], kGap * wish_,

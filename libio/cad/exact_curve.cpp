@@ -296,6 +296,24 @@ std::pair<double, double> ExactCurve<N>::domain() const {
   return {spline_.knots[spline_.first()], spline_.knots[spline_.last() + 1]};
 }
 
+std::vector<std::pair<double, double>> fold(double first, double last, double period, double a,
+                                            double b) {
+  if (!(period > 0)) return {{a, b}};
+  if (b - a >= period) return {{first, last}};
+  const double shift = std::floor((a - first) / period) * period;
+  const auto within = [&](double t) { return std::clamp(t, first, last); };
+  std::vector<std::pair<double, double>> out{{within(a - shift), within(b - shift)}};
+  if (b - shift >= last) out.emplace_back(first, within(b - shift - period));
+  if (a - shift <= first) out.emplace_back(last, last);  // where rounding ends on the other side
+  return out;
+}
+
+template <int N>
+std::vector<std::pair<double, double>> ExactCurve<N>::folded(double a, double b) const {
+  const auto [first, last] = domain();
+  return fold(first, last, period_, a, b);
+}
+
 namespace {
 
 /// The basis without its trimming, and without a period.
@@ -343,6 +361,7 @@ std::optional<ExactCurve<N>> ExactCurve<N>::make(const Handles& given) {
     out.spline_ = spline_of<N>(*bezier, bezier->Degree(), knots);
   } else if (auto spline = Handle(typename T::BSpline)::DownCast(curve); !spline.IsNull()) {
     if (spline->IsPeriodic()) {
+      out.period_ = spline->Period();
       spline = Handle(typename T::BSpline)::DownCast(spline->Copy());
       spline->SetNotPeriodic();
     }

@@ -44,6 +44,10 @@ struct Cells {
   [[nodiscard]] std::pair<std::size_t, std::size_t> range(double a, double b) const;
 };
 
+/// Parts of [first, last] that [a, b] stands for, where what is there repeats with a period.
+std::vector<std::pair<double, double>> fold(double first, double last, double period, double a,
+                                            double b);
+
 /// Bounds of the absolute values of first and second derivatives, by coordinate.
 template <int N>
 struct CurveDerivatives {
@@ -66,6 +70,10 @@ class ExactCurve {
   [[nodiscard]] bool is_line() const { return kind_ == Kind::Line; }
   /// Parameters that it is defined between; infinite for lines and the like.
   [[nodiscard]] std::pair<double, double> domain() const;
+  /// Of what it was made of: with this period that repeats beyond the domain; 0: it does not.
+  [[nodiscard]] double period() const { return period_; }
+  /// Parts of the domain that [a, b] stands for where the curve repeats.
+  [[nodiscard]] std::vector<std::pair<double, double>> folded(double a, double b) const;
 
   /// Nothing where the kind of curve cannot be bounded (offset curves).
   static std::optional<ExactCurve<3>> of(const Handle(Geom_Curve) & curve);
@@ -81,6 +89,7 @@ class ExactCurve {
   void prepare();
 
   Kind kind_ = Kind::Line;
+  double period_ = 0;
   Point origin_ = Point::Zero(), x_ = Point::Zero(), y_ = Point::Zero();
   Spline<N> spline_;
   Cells cells_;                              ///< of the spline

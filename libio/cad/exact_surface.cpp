@@ -84,19 +84,27 @@ class Elementary : public ExactSurface {
   double angle_;
 };
 
+/// Wherever the curve repeats.
+CurveDerivatives<3> derivatives_of(const ExactCurve<3>& curve, double low, double high) {
+  CurveDerivatives<3> out;
+  for (const auto& [a, b] : curve.folded(low, high)) {
+    const auto d = curve.derivatives(a, b);
+    out.first = out.first.cwiseMax(d.first);
+    out.second = out.second.cwiseMax(d.second);
+  }
+  return out;
+}
+
 /// A curve moved along a line.
 class Extrusion : public ExactSurface {
  public:
   Extrusion(const Handle(Geom_Surface) & surface, ExactCurve<3> curve)
       : at_(surface), curve_(std::move(curve)) {
-    const auto [low, high] = curve_.domain();
-    domain_.min().x() = low;
-    domain_.max().x() = high;
-    for (auto t = curve_.kink(low, high); t; t = curve_.kink(*t, high)) kinks_[0].push_back(*t);
+    take_curve(curve_, 0);
   }
   Vec3 value(const Vec2& at) const override { return vector_of(at_.Value(at.x(), at.y()).XYZ()); }
   SurfaceDerivatives derivatives(const Box2& box) const override {
-    const auto d = curve_.derivatives(box.min().x(), box.max().x());
+    const auto d = derivatives_of(curve_, box.min().x(), box.max().x());
     return {d.first.norm(), 1, d.second.norm(), 0, 0};
   }
 
@@ -113,16 +121,14 @@ class Revolution : public ExactSurface {
         curve_(std::move(curve)),
         origin_(vector_of(axis.Location().XYZ())),
         axis_(vector_of(axis.Direction().XYZ())) {
-    const auto [low, high] = curve_.domain();
-    domain_.min().y() = low;
-    domain_.max().y() = high;
-    for (auto t = curve_.kink(low, high); t; t = curve_.kink(*t, high)) kinks_[1].push_back(*t);
+    take_curve(curve_, 1);
   }
   Vec3 value(const Vec2& at) const override { return vector_of(at_.Value(at.x(), at.y()).XYZ()); }
   SurfaceDerivatives derivatives(const Box2& box) const override {
-    const auto d = curve_.derivatives(box.min().y(), box.max().y());
+    const auto d = derivatives_of(curve_, box.min().y(), box.max().y());
     std::vector<Vec3> hull;
-    curve_.add_hull(box.min().y(), box.max().y(), hull);
+    for (const auto& [a, b] : curve_.folded(box.min().y(), box.max().y()))
+      curve_.add_hull(a, b, hull);
     double radius = 0;
     for (const Vec3& p : hull) radius = std::max(radius, axis_.cross(p - origin_).norm());
     // Only what the curve moves away from the axis turns with it.
@@ -216,20 +222,8 @@ class SplineSurface : public ExactSurface {
     const auto add = [&](double low, double high) {
       for (auto [k, last] = s.range(low, high); k <= last; ++k) out.push_back(k);
     };
-    const double period = period_[direction];
-    if (!(period > 0)) {
-      add(a, b);
-      return;
-    }
-    const double first = s.begin.front(), last = s.begin.back();
-    if (b - a >= period) {
-      add(first, last);
-      return;
-    }
-    const double shift = std::floor((a - first) / period) * period;
-    add(std::clamp(a - shift, first, last), std::clamp(b - shift, first, last));
-    if (b - shift >= last) add(first, std::clamp(b - shift - period, first, last));
-    if (a - shift <= first) add(last, last);  // where rounding ends on the other side
+    for (const auto& [low, high] : fold(s.begin.front(), s.begin.back(), period_[direction], a, b))
+      add(low, high);
   }
 
   const SurfaceDerivatives& of_cells(std::size_t i, std::size_t j) const {
@@ -382,6 +376,18 @@ std::unique_ptr<ExactSurface> elementary(const Handle(Geom_Surface) & surface,
 }
 
 }  // namespace
+
+void ExactSurface::take_curve(const ExactCurve<3>& curve, int direction) {
+  const auto [low, high] = curve.domain();
+  for (auto t = curve.kink(low, high); t; t = curve.kink(*t, high)) kinks_[direction].push_back(*t);
+  period_[direction] = curve.period();
+  if (curve.period() > 0) {
+    kinks_[direction].push_back(low);  // where it starts; derivatives are bounded up to there
+  } else {
+    domain_.min()[direction] = low;
+    domain_.max()[direction] = high;
+  }
+}
 
 std::optional<double> ExactSurface::kink(int direction, double a, double b) const {
   const double period = period_[direction];

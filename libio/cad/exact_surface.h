@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "exact_curve.h"
+
 /// Surfaces of CAD files, with bounds of their derivatives over boxes of parameters.
 /// docs/algorithms/cad.md
 namespace kaboum::io {
@@ -37,7 +39,7 @@ class ExactSurface {
   /// A value of u (direction 0) or v (1) strictly between two others where first derivatives may
   /// jump.
   [[nodiscard]] std::optional<double> kink(int direction, double a, double b) const;
-  /// The parameters that it is defined for; infinite where all are.
+  /// The parameters that it is defined for; infinite where all are, or where it repeats.
   [[nodiscard]] const Box2& domain() const { return domain_; }
   [[nodiscard]] virtual bool is_plane() const { return false; }
 
@@ -45,6 +47,9 @@ class ExactSurface {
   static std::unique_ptr<ExactSurface> of(const Handle(Geom_Surface) & surface, std::string& kind);
 
  protected:
+  /// Of a surface that is a curve in this direction.
+  void take_curve(const ExactCurve<3>& curve, int direction);
+
   std::array<std::vector<double>, 2> kinks_;  ///< in one period
   std::array<double, 2> period_{0, 0};        ///< 0: none
   Box2 domain_{Vec2::Constant(-std::numeric_limits<double>::infinity()),

@@ -263,8 +263,41 @@ class StepCensus {
     return sum;
   }
 
+  /// Surfaces that are faces by themselves: those in geometric sets, those trimmed in no other's
+  /// use, and bounded ones that a representation holds.
+  void require_surfaces() const {
+    std::vector<bool> used(count(), false);  // a face's, another surface's, a curve's
+    for (std::size_t i = 0; i < count(); ++i) {
+      const bool set = record_of(entity(i), "GEOMETRIC_SET") != nullptr;
+      for (const std::size_t part : refers_[i]) {
+        if (kind_[part] != StepKind::Surface || uses_[part] > 0) continue;
+        if (set || (kind_[i] == StepKind::Shape && is_bounded(part)))
+          refuse(name(part) + " in " + name(i) + " is a surface that no product and no shape " +
+                 "reaches");
+        used[part] = true;
+      }
+    }
+    for (std::size_t i = 0; i < count(); ++i)
+      if (is_trimmed(i) && !used[i] && uses_[i] == 0)
+        refuse(name(i) + " is a surface that no product and no shape reaches");
+  }
+
+  [[nodiscard]] bool is_trimmed(std::size_t i) const {
+    return record_of(entity(i), "RECTANGULAR_TRIMMED_SURFACE") != nullptr ||
+           record_of(entity(i), "CURVE_BOUNDED_SURFACE") != nullptr;
+  }
+  [[nodiscard]] bool is_bounded(std::size_t i) const {
+    const auto& records = entity(i).records;
+    return is_trimmed(i) || std::any_of(records.begin(), records.end(), [](const StepRecord& r) {
+             return r.name == "BOUNDED_SURFACE" || r.name == "BEZIER_SURFACE" ||
+                    r.name == "QUASI_UNIFORM_SURFACE" || r.name == "UNIFORM_SURFACE" ||
+                    r.name == "B_SPLINE_SURFACE" || r.name == "B_SPLINE_SURFACE_WITH_KNOTS";
+           });
+  }
+
   Census result() const {
     Census out;
+    require_surfaces();
     for (std::size_t i = 0; i < count(); ++i) {
       if (kind_[i] == StepKind::Face && uses_[i] == 0)
         refuse(name(i) + " is a face that no product and no shape reaches");

@@ -10,7 +10,8 @@
 namespace kaboum::io {
 namespace {
 
-constexpr double kLargest = 1e100;  ///< of numbers; OpenCASCADE takes larger ones for infinite
+constexpr double kLargest = 1e100;     ///< of numbers; OpenCASCADE takes larger ones for infinite
+constexpr std::size_t kDeepest = 100;  ///< brackets in brackets; OpenCASCADE's memory ends at some
 
 bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -108,14 +109,20 @@ class Parser {
     }
   }
   void skip_statement() {
+    std::size_t depth = 0;
     for (char c = peek(); c != ';'; c = peek()) {
       if (c == '\'' || c == '"') {
         skip_quoted(c);
-      } else {
-        ++at_;
+        continue;
       }
+      if (c == '(') check_depth(++depth);
+      if (c == ')' && depth > 0) --depth;
+      ++at_;
     }
     ++at_;
+  }
+  void check_depth(std::size_t depth) const {
+    if (depth > kDeepest) fail("more than " + std::to_string(kDeepest) + " brackets in each other");
   }
   void skip_quoted(char quote) {
     const std::size_t end = text_.find(quote, at_ + 1);
@@ -186,7 +193,7 @@ class Parser {
     do {
       const char c = peek();
       if (c == '(') {
-        ++depth;
+        check_depth(++depth);
         tokens_.push_back({StepToken::Open});
         ++at_;
       } else if (c == ')') {

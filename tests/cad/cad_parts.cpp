@@ -44,14 +44,18 @@
 #include <Geom2d_Ellipse.hxx>
 #include <Geom2d_TrimmedCurve.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
+#include <GeomConvert_CompCurveToBSplineCurve.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
+#include <Geom_SurfaceOfLinearExtrusion.hxx>
+#include <Geom_SurfaceOfRevolution.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
+#include <ShapeFix_Shape.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array1OfPnt.hxx>
@@ -328,7 +332,87 @@ void write_tessellated(const std::string& name) {
   write_text(name, text);
 }
 
+/// A closed spline round (30, 0, 0) in the plane y = 0, 5 in radius, with a spike at its least z
+/// that is 2 high; it starts at the angle `start`.
+Handle(Geom_BSplineCurve) spiked_ring(double start) {
+  constexpr double radius = 5, width = 0.1, at = 1.5 * M_PI, whole = 2 * M_PI;
+  const double spike = std::fmod(at - start + whole, whole);
+  std::vector<double> angles;  // of the poles, from the start
+  for (int i = 0; i <= 40; ++i)
+    if (std::abs(whole * i / 40 - spike) > 0.3) angles.push_back(whole * i / 40);
+  for (int i = -3; i <= 3; ++i) angles.push_back(spike + i * width / radius);
+  std::sort(angles.begin(), angles.end());
+  const int count = static_cast<int>(angles.size()), degree = 3, last = count - degree + 1;
+  TColgp_Array1OfPnt poles(1, count);
+  const double step = angles[1];
+  for (int i = 0; i < count; ++i) {
+    const bool beside = i == 1 || i == count - 2;  // on the tangent where both ends meet
+    const double a = beside || i == count - 1 ? start : start + angles[i];
+    const double along = beside ? radius * (i == 1 ? step : -step) : 0;
+    const double r = angles[i] == spike ? 1.5 * radius : radius;
+    poles(i + 1) = gp_Pnt(30 + r * std::cos(a) - along * std::sin(a), 0,
+                          r * std::sin(a) + along * std::cos(a));
+  }
+  TColStd_Array1OfReal knots(1, last);
+  TColStd_Array1OfInteger times(1, last);
+  for (int i = 1; i <= last; ++i) {
+    times(i) = i == 1 || i == last ? degree + 1 : 1;
+    knots(i) = (angles[i - 1] + angles[i] + angles[i + 1]) / 3;
+  }
+  knots(1) = 0;
+  knots(last) = whole;
+  return new Geom_BSplineCurve(poles, knots, times, degree);
+}
+
+/// Half of such a ring's lower side, turned by a half circle round the z-axis or moved along y. The
+/// spline starts inside the face: at the angle 1.4 pi, or outside it, at 0.5 pi.
+TopoDS_Shape ring_sheet(bool turned, bool starts_inside) {
+  const double start = starts_inside ? 1.4 * M_PI : 0.5 * M_PI;
+  const Handle(Geom_BSplineCurve) ring = spiked_ring(start);
+  // From the angle 1.25 pi to 1.75 pi; beyond its end it goes on at its start.
+  const auto piece = [&](double from, double to) {
+    const Handle(Geom_BSplineCurve) out = Handle(Geom_BSplineCurve)::DownCast(ring->Copy());
+    out->Segment(from, to);
+    return out;
+  };
+  Handle(Geom_BSplineCurve) border = piece(0.75 * M_PI, 1.25 * M_PI);
+  if (starts_inside) {
+    GeomConvert_CompCurveToBSplineCurve both(piece(1.85 * M_PI, 2 * M_PI));
+    both.Add(piece(0, 0.35 * M_PI), 1e-9, true);
+    border = both.BSplineCurve();
+  }
+  gp_Trsf by;
+  if (turned)
+    by.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), M_PI);
+  else
+    by.SetTranslation(gp_Vec(0, 20, 0));
+  const auto other = Handle(Geom_Curve)::DownCast(border->Transformed(by));
+  const auto side = [&](const gp_Pnt& p) -> TopoDS_Edge {
+    if (!turned) return BRepBuilderAPI_MakeEdge(p, p.Transformed(by));
+    const gp_Circ circle(gp_Ax2(gp_Pnt(0, 0, p.Z()), gp_Dir(0, 0, 1)), p.X());
+    return BRepBuilderAPI_MakeEdge(circle, 0, M_PI);
+  };
+  BRepBuilderAPI_MakeWire wire;
+  wire.Add(BRepBuilderAPI_MakeEdge(border).Edge());
+  wire.Add(side(border->EndPoint()));
+  wire.Add(BRepBuilderAPI_MakeEdge(other).Edge());
+  wire.Add(side(border->StartPoint()));
+  ring->SetPeriodic();
+  Handle(Geom_Surface) surface = new Geom_SurfaceOfLinearExtrusion(ring, gp_Dir(0, 1, 0));
+  if (turned)
+    surface = new Geom_SurfaceOfRevolution(ring, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)));
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, wire.Wire(), true).Face();
+  ShapeFix_Shape fix(face);
+  fix.Perform();
+  return fix.Shape();
+}
+
 int make_more(const std::string& folder) {
+  for (const bool turned : {false, true})
+    for (const bool inside : {false, true})
+      if (!write_step(ring_sheet(turned, inside), folder + "/" + (turned ? "turned" : "moved") +
+                                                      (inside ? "-inside" : "-outside") + ".step"))
+        return 1;
   for (const double width : {0.3, 0.2, 0.05, 0.01, 0.002}) {
     std::ostringstream name;
     name << folder << "/rib-" << width << ".step";
@@ -498,10 +582,14 @@ int check(const char* part, const char* result, std::size_t count, const char* a
 }
 
 /// The ends of intervals between which an edge or a surface is a polynomial or the like.
-std::vector<double> breaks(const TColStd_Array1OfReal& knots, double from, double to) {
+/// @param period  with that the knots repeat; 0: they do not
+std::vector<double> breaks(const TColStd_Array1OfReal& knots, double from, double to,
+                           double period = 0) {
   std::vector<double> out{from, to};
   for (int i = knots.Lower(); i <= knots.Upper(); ++i)
-    if (knots(i) > from && knots(i) < to) out.push_back(knots(i));
+    for (int k = -2; k <= 2; ++k)
+      if (const double t = knots(i) + k * period; (k == 0 || period > 0) && t > from && t < to)
+        out.push_back(t);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -550,7 +638,12 @@ int within(const char* part) {
       vs = breaks(surface.BSpline()->VKnots(), v0, v1);
     } else if (surface.GetType() == GeomAbs_SurfaceOfExtrusion &&
                surface.BasisCurve()->GetType() == GeomAbs_BSplineCurve) {
-      us = breaks(surface.BasisCurve()->BSpline()->Knots(), u0, u1);
+      const auto basis = surface.BasisCurve()->BSpline();
+      us = breaks(basis->Knots(), u0, u1, basis->IsPeriodic() ? basis->Period() : 0);
+    } else if (surface.GetType() == GeomAbs_SurfaceOfRevolution &&
+               surface.BasisCurve()->GetType() == GeomAbs_BSplineCurve) {
+      const auto basis = surface.BasisCurve()->BSpline();
+      vs = breaks(basis->Knots(), v0, v1, basis->IsPeriodic() ? basis->Period() : 0);
     }
     for (const double u : dense(us, us.size() > 2 ? 8 : 60))
       for (const double v : dense(vs, vs.size() > 2 ? 8 : 60)) {

@@ -16,13 +16,22 @@
 #include <IGESGeom_TrimmedSurface.hxx>
 #include <IGESSolid_Face.hxx>
 #include <Interface_CheckIterator.hxx>
+#include <Interface_EntityIterator.hxx>
+#include <Interface_Graph.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Precision.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_UndefinedEntity.hxx>
+#include <StepGeom_BoundedSurface.hxx>
+#include <StepGeom_CurveBoundedSurface.hxx>
+#include <StepGeom_RectangularTrimmedSurface.hxx>
+#include <StepGeom_Surface.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_GeometricSet.hxx>
+#include <StepShape_GeometricSetSelect.hxx>
+#include <StepShape_ShapeRepresentation.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
@@ -229,6 +238,47 @@ bool is_face(const Handle(Standard_Transient) & entity) {
          entity->IsKind(STANDARD_TYPE(IGESGeom_BoundedSurface));
 }
 
+/// @param shape  that was made of a face
+void require_in(const std::set<const void*>& part, const TopoDS_Shape& shape,
+                const std::string& label) {
+  bool found = false;
+  if (!shape.IsNull())
+    for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
+      found = found || part.contains(at.Current().TShape().get());
+  if (!found) refuse(label + " is a face that no part of the file has");
+}
+
+/// Surfaces that are faces by themselves: those of geometric sets.
+std::vector<Handle(Standard_Transient)> surfaces_of(const Handle(Standard_Transient) & entity) {
+  std::vector<Handle(Standard_Transient)> out;
+  const auto set = Handle(StepShape_GeometricSet)::DownCast(entity);
+  for (int i = 1; !set.IsNull() && i <= set->NbElements(); ++i) {
+    const Handle(Standard_Transient) element = set->ElementsValue(i).Value();
+    if (!element.IsNull() && element->IsKind(STANDARD_TYPE(StepGeom_Surface)))
+      out.push_back(element);
+  }
+  return out;
+}
+
+/// Bounded surfaces that a representation holds, and trimmed ones that nothing holds, are no face
+/// of a part.
+void require_no_loose_surfaces(const Handle(Interface_InterfaceModel) & model) {
+  const Interface_Graph graph(model);
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    if (!entity->IsKind(STANDARD_TYPE(StepGeom_BoundedSurface))) continue;
+    bool loose = false, held = false;
+    for (Interface_EntityIterator at = graph.Sharings(entity); at.More(); at.Next()) {
+      held = true;
+      loose = loose || at.Value()->IsKind(STANDARD_TYPE(StepShape_ShapeRepresentation));
+    }
+    const bool trimmed = entity->IsKind(STANDARD_TYPE(StepGeom_RectangularTrimmedSurface)) ||
+                         entity->IsKind(STANDARD_TYPE(StepGeom_CurveBoundedSurface));
+    if (loose || (trimmed && !held))
+      refuse(name_of(model, i) + " is a surface that no part of the file has");
+  }
+}
+
 /// Every face that the file has is one of the part's, wherever it is placed.
 void require_faces_of(XSControl_Reader& reader, const TopoDS_Shape& part) {
   std::set<const void*> in_part;
@@ -244,14 +294,12 @@ void require_faces_of(XSControl_Reader& reader, const TopoDS_Shape& part) {
         Handle(StepData_UndefinedEntity)::DownCast(entity);
     if (!unknown.IsNull() && may_have_faces(unknown->StepType()))
       refuse(label + " is of a type that cannot be read, " + unknown->StepType());
-    if (!is_face(entity)) continue;
-    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
-    if (shape.IsNull()) refuse(label + " is a face that no part of the file has");
-    bool found = false;
-    for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
-      found = found || in_part.contains(at.Current().TShape().get());
-    if (!found) refuse(label + " is a face that no part of the file has");
+    for (const Handle(Standard_Transient) & surface : surfaces_of(entity))
+      require_in(in_part, TransferBRep::ShapeResult(process, surface),
+                 name_of(model, model->Number(surface)));
+    if (is_face(entity)) require_in(in_part, TransferBRep::ShapeResult(process, entity), label);
   }
+  require_no_loose_surfaces(model);
 }
 
 void list(XSControl_Reader& reader, const char* path, bool iges, std::size_t density,
