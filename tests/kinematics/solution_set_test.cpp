@@ -116,14 +116,27 @@ bool put_on_axis(const ClosedForm& form, std::vector<double>& q) {
   return true;
 }
 
+/// Turns joints 2 and 4 of five so that the wrist is on axis 1 and axis 5 along it.
+bool put_upright_on_axis(const ClosedForm& form, std::vector<double>& q, bool flip) {
+  if (std::abs(form.lateral) > 1e-12) return false;
+  const double sum = flip ? kPi : 0, elbow = angle_of(form, q, 2);
+  const std::complex<double> end = form.a2 + std::polar(form.a3, elbow);
+  const double cosine = (-form.a1 - form.a4 * std::cos(sum)) / std::abs(end);
+  if (!(std::abs(cosine) <= 1)) return false;
+  const double shoulder = std::acos(cosine) - std::arg(end);
+  set_angle(form, q, 1, shoulder);
+  set_angle(form, q, 3, sum - shoulder - elbow);
+  return true;
+}
+
 /// Makes a configuration singular, but for `off()`. @return false: the arm has none of that kind.
 template <class Off>
 bool make_singular(const ClosedForm& form, std::vector<double>& q, unsigned kinds, bool flip,
                    const Off& off) {
   const bool five = form.family == Family::FiveAxes;
   if ((kinds & kAligned) != 0) {
-    if (five) return false;
-    set_angle(form, q, 4, (flip ? kPi : 0) + off());
+    if (five && (kinds & kOnAxis) == 0) return false;
+    if (!five) set_angle(form, q, 4, (flip ? kPi : 0) + off());
   }
   const double bend = form.family == Family::SphericalWrist ? form.bend : 0;
   const double second = form.family == Family::SphericalWrist ? form.forearm : form.a3;
@@ -133,7 +146,8 @@ bool make_singular(const ClosedForm& form, std::vector<double>& q, unsigned kind
     set_angle(form, q, 2, kPi - bend + off());
   }
   if ((kinds & kOnAxis) != 0) {
-    if (!put_on_axis(form, q)) return false;
+    const bool upright = five && (kinds & kAligned) != 0;
+    if (!(upright ? put_upright_on_axis(form, q, flip) : put_on_axis(form, q))) return false;
     q[1] += off();
   }
   return true;
@@ -160,10 +174,13 @@ bool reaches(const DhArm& dh, const Solution& s, const Transform& target, std::s
 /// How well a configuration that is made of numbers is known besides. [rad]
 constexpr double kKnown = 1e-9;
 
+/// A complete answer's solutions are known at least so well.
+double known_to(const Solution& s) { return std::max(kKnown, std::min(s.accuracy, 1e-5)); }
+
 /// Whether q is among the isolated solutions, or in the families' ranges.
 bool holds(const SolutionSet& set, const std::vector<double>& q) {
   for (const Solution& s : set.isolated)
-    if (turn_distance(s.q.data(), q) <= std::max(kKnown, s.accuracy)) return true;
+    if (turn_distance(s.q.data(), q) <= known_to(s)) return true;
   for (const SolutionFamily& family : set.families) {
     bool in = true;
     for (std::size_t k = 0; k < family.free.size() && in; ++k) {
@@ -186,7 +203,7 @@ bool holds(const SolutionSet& set, const std::vector<double>& q) {
 /// Whether q itself is returned, where its own values are what free joints keep.
 bool returns(const SolutionSet& set, const std::vector<double>& q) {
   for (const Solution& s : set.isolated)
-    if (turn_distance(s.q.data(), q) <= std::max(kKnown, s.accuracy)) return true;
+    if (turn_distance(s.q.data(), q) <= known_to(s)) return true;
   for (const SolutionFamily& family : set.families)
     for (const Solution& s : family.representatives)
       if (turn_distance(s.q.data(), q) < 1e-5) return true;

@@ -745,6 +745,34 @@ TEST(Handles, CheckReplaysOnceWhatFunctionsDoNotTellApart) {
   EXPECT_LT(r.states, 200U);  // 4,096 ways that sensing may turn out
 }
 
+/// An object that is out of reach is known after one call; subsets of the others are not looked at.
+TEST(Handles, ObjectsThatDoNotMatterMultiplyNothing) {
+  for (const Algorithm a : {Algorithm::DepthFirst, Algorithm::BreadthFirst, Algorithm::Greedy}) {
+    int calls = 0;
+    ExternalBindings b = geometry(calls);
+    b["reach"] = [](const Question& q) {
+      // Of the object's pose alone: the first argument but one.
+      return q.arguments[0] == "o1" ? Answer::impossible("out of reach")
+                                    : Answer::found("at " + q.arguments[0]);
+    };
+    const Solution s = with(bound(force_sensing(16, "home"), b), a);
+    EXPECT_EQ(s.outcome, Outcome::Unsolvable) << static_cast<int>(a);
+    expect_says(s.refused, "reach(o1, home, p1): out of reach");
+    EXPECT_LT(s.statistics.expanded, 50'000U) << static_cast<int>(a);
+    // Within reach once it has been moved, which takes another object.
+    b["reach"] = [](const Question& q) {
+      return q.arguments[0] == "o1" && q.arguments[2] == "p1"
+                 ? Answer::impossible("out of reach")
+                 : Answer::found("at " + q.arguments[0]);
+    };
+    std::string text = force_sensing(7, "home");
+    text.insert(text.find("action grasp("),
+                "action push preconds: K(isRemoved(o7)) & let ?p = extern(held(o1, home))"
+                " effects: add(Kf, pose(o1) = ?p)\n");
+    EXPECT_EQ(with(bound(text, b), a).outcome, Outcome::Solved) << static_cast<int>(a);
+  }
+}
+
 /// A run looks once at what only differs in what was sensed of objects that are done with.
 TEST(Handles, RunsThatDifferInNothingThatIsReadAreOne) {
   int calls = 0;

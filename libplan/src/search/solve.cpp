@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "search/contingent.h"
+#include "search/fact_table.h"
+#include "search/reachability.h"
 #include "search/search.h"
 #include "task/exactness.h"
 #include "task/knowledge_view.h"
@@ -34,6 +36,40 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
   throw Error(ErrorCode::InvalidArgument, "unknown search algorithm");
 }
 
+/// Steps of a search after which it is first looked whether what was refused leaves a plan
+/// possible, and how many times as many there are before the next look.
+constexpr std::uint64_t kFirstLook = 2'000, kLaterLook = 8;
+
+/// Whether no state that the delete relaxation reaches meets the goal, if calls that were
+/// impossible are so wherever what they read has not changed. Objects that do not matter then
+/// multiply nothing.
+bool is_refuted(Task& task, Limits& limits) {
+  const FactTable facts(task.model(), task.layout());
+  return !Reachability(task, limits, facts, Reachability::Answers::AsGiven)
+              .possible(task.goal(), true);
+}
+
+/// A search, stopped now and then to look whether it can succeed at all. What it asks external
+/// functions the second time is known by then.
+Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& assumptions,
+                    Limits& limits, Solution& solution) {
+  std::uint64_t steps = kFirstLook;
+  const bool looks =
+      std::ranges::any_of(task.model().external_functions, &ExternalFunction::reads_state);
+  while (true) {
+    if (looks) limits.pause_after(steps);
+    ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
+                              solution.statistics);
+    const Outcome out = planner.run();
+    const bool paused = out == Outcome::Limit && limits.paused();
+    limits.never_pause();
+    if (out == Outcome::Solved) solution.plan = planner.plan();
+    if (!paused) return out;
+    if (!task.calls().refused().empty() && is_refuted(task, limits)) return Outcome::Unsolvable;
+    steps *= kLaterLook;
+  }
+}
+
 /// Searches, and again with more samples while that fails and some call found nothing.
 void search(Task& task, const SolveOptions& options, unsigned choice, Limits& limits,
             Solution& solution) {
@@ -41,11 +77,8 @@ void search(Task& task, const SolveOptions& options, unsigned choice, Limits& li
   calls.seed(options.seed, choice);
   const Assumptions assumptions(task, options.assumed);
   while (true) {
-    ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
-                              solution.statistics);
-    solution.outcome = planner.run();
+    solution.outcome = run_planner(task, options, assumptions, limits, solution);
     if (solution.outcome == Outcome::Solved) {
-      solution.plan = planner.plan();
       const auto& functions = task.model().external_functions;
       if (std::any_of(functions.begin(), functions.end(),
                       [](const auto& f) { return f.takes_seed; })) {

@@ -42,6 +42,10 @@ class ExternalCalls {
   ///         itself; LimitExceeded.
   Reply evaluate(Index call, const Word* state);
 
+  /// What is known of a call's answers: a node of `answers()`.
+  [[nodiscard]] Index answers_of(Index call) const { return calls_[call].answers.node; }
+  [[nodiscard]] const AnswerTree& answers() const { return answers_; }
+
   /// Fluents that the answer in this state rests on are added to `fluents`.
   void footprint(Index call, const Word* state, std::vector<Index>& fluents);
   /// Whether the answer can differ between states.
