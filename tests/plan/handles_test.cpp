@@ -863,13 +863,13 @@ TEST(Handles, AdditionsComeInTheOrderOfTheText) {
       {"isAway", [](const Question& q) { return Answer::holds(q.arguments[0] == "away"); }}};
   const auto outcome = [&](const std::string& effects, const std::string& wanted) {
     const Model m = bound(
-        "types: conf handle\nconstants: conf home, away\npredicates: warm, done\n"
+        "types: conf handle\nconstants: conf home, away, start\npredicates: warm, done\n"
         "functions: robot : conf; other : conf; never : conf\n"
         "externals: there(conf) : conf; isHome(conf); isThere(conf); isAway(conf)\n"
         "action go preconds: let ?q = extern(there(other)) effects: " +
             effects + "\naction stop preconds: extern(" + wanted +
             "(robot)) effects: add(Kf, done)\n"
-            "init: K(robot = away), K(other = home), K(warm) goal: K(done)",
+            "init: K(robot = start), K(other = home), K(warm) goal: K(done)",
         bindings);
     // Checked in every order of the two actions.
     std::optional<Outcome> all;
