@@ -1,5 +1,6 @@
 // Whether the meshes that a result has in a frame of a link hold what the original has there.
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/distance.h>
 #include <kaboum/verify/held_shape.h>
 
 #include <algorithm>
@@ -79,13 +80,17 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
 HeldDistance Holders::distance(const std::vector<geom::Mesh>& meshes, double bound,
                                const InclusionOptions& limits) const {
   HeldDistance out;
-  if (!all_convex() || set_.bodies.size() < given_) return out;
+  if (set_.bodies.empty() || set_.bodies.size() < given_) return out;
   geom::ConvexSet all;
   for (const geom::Mesh& mesh : meshes) {
     all.bodies.push_back({"", mesh});
     out.to_solid = out.to_solid && closed(mesh);
   }
-  out.claim = verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
+  out.of_surface = !all_convex();
+  DistanceClaimOptions options;
+  options.to_solid = out.to_solid;
+  out.claim = out.of_surface ? verify_distance(sum_, sum_of(all), bound, options)
+                             : verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
   return out;
 }
 
