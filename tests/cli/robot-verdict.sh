@@ -202,11 +202,12 @@ expect 1 "link 'broken': NOT enclosed, .*damaged.stl.*it is NOT swept" sweep-app
   --report r.json
 grep -q '"verdict": "kept"' r.json || fail "the report does not tell: $(cat r.json)"
 shows 0 'verified' bound-verify sweep "$R/bad.urdf" path.csv swept.glb --links base,sheet
-expect 3 'damaged.stl' sweep-approx "$R/worst.urdf" --path path.csv -o none.glb
+expect 3 'damaged.stl' sweep-approx "$R/bad.urdf" --links broken --path path.csv -o none.glb
 absent none.glb
 printf '0,0\n0.1,0.1\n' >few.csv
 expect 0 'A wrap takes the place of the mesh' sweep-approx "$R/few.urdf" --path few.csv -o wrapped.glb --epsilon 0.1 --effort fast
 shows 0 'verified' bound-verify sweep "$R/few.urdf" few.csv wrapped.glb
+expect 0 'sheet.off: judged as it is, for it cannot be prepared' bound-verify sweep "$R/few.urdf" few.csv wrapped.glb --prepare
 
 # strict and off do as they are told: what they cannot hold stays, and is named.
 made 1 "link 'sheet': NOT enclosed" bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare strict

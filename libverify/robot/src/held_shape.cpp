@@ -51,7 +51,7 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
     out.reason = why;
     return out;
   };
-  if (!has_area(mesh)) return undecided("none of its triangles has an area");
+  if (mesh.triangles.empty()) return undecided("it has no triangles");
   if (set_.bodies.empty()) {
     const bool any = claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
     undecided("the result's link has no closed mesh of its pose and scale");
