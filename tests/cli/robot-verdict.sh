@@ -76,7 +76,8 @@ odd = ["sheet", "plate", "inverted", "crossed", "open", "fold", "fin"]
 robot("odd", [("base", [mesh("good.off"), '<box size="0.2 0.2 0.1"/>'])] +
       [(name, [mesh(name + ".off")]) for name in odd] +
       [("scaled", [mesh("sheet.off", "0.5 -0.5 1"), mesh("good.off")])])
-robot("zero", [("base", [mesh("good.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
+off("line", [(0, 0, 0), (2, 0, 0), (1, 0, 0)], [(0, 1, 2)])
+robot("zero", [("base", [mesh("good.off")]), ("line", [mesh("line.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
 robot("bad", [("base", [mesh("good.off")]), ("broken", [mesh("damaged.stl"), mesh("good.off")]),
               ("nothing", [mesh("empty.off")]), ("sheet", [mesh("sheet.off")])])
 robot("worst", [("base", [mesh("damaged.stl")])])
@@ -157,8 +158,8 @@ made 0 'every triangle of 2 links is inside' bmesh-decimate "$R/few.urdf" -o out
 # What was left out on request is said, and not called inside.
 made 0 'but the 2 of sheets that were dropped on request' bcd-decompose "$R/few.urdf" -o out --links tool --drop-sheets --effort fast
 # Nothing is verified about nothing, and a shape of size 0 is no obstacle.
-made 0 'every triangle of 3 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
-made 0 'every triangle of 3 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05
+made 0 'every triangle of 4 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
+made 0 'every triangle of 4 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05
 # One bad mesh does not refuse the robot: it stays where it was, is named, and the exit code says so.
 for program in 'bcd-decompose --effort fast' bmesh-decimate; do
   # shellcheck disable=SC2086

@@ -86,6 +86,10 @@ TEST(HeldShape, SegmentsAreJudgedAsTheyAre) {
   };
   EXPECT_EQ(holders.hold(segment(1), Claims::All).answer, Answer::Verified);
   EXPECT_EQ(holders.hold(segment(5), Claims::All).answer, Answer::Refuted);
+  geom::Mesh closed = segment(1);
+  closed.triangles.push_back({2, 1, 0});
+  EXPECT_EQ(holders.hold(closed, Claims::All).answer, Answer::Verified);
+  EXPECT_EQ(holders.hold(closed, Claims::Solid).answer, Answer::Undefined);
   EXPECT_EQ(holders.hold({}, Claims::All).answer, Answer::Undecided);
 }
 

@@ -59,7 +59,8 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
     return out;
   }
   const Inclusion& in = out.inclusion.emplace(verify_inclusion(mesh, sum_, limits));
-  out.solid = claims != Claims::Surface && in.inner_closed;
+  // Segments and points bound nothing; whether they stick out is the surface claim.
+  out.solid = claims != Claims::Surface && in.inner_closed && has_area(mesh);
   out.surface = claims != Claims::Solid;
   for (const auto& [claim, counts] :
        {std::pair{&in.solid, out.solid}, std::pair{&in.surface, out.surface}})
