@@ -70,6 +70,8 @@ class Prepared:
     @property
     def turned_triangles(self) -> int: ...
     @property
+    def guessed(self) -> bool: ...
+    @property
     def notes(self) -> list[str]: ...
 
 class BoundingMesh:
@@ -198,6 +200,8 @@ class Robot:
 class CertifiedRobot:
     @property
     def links(self) -> dict[str, ConvexSet]: ...
+    @property
+    def verdicts(self) -> list[tuple[str, str, str]]: ...
     @property
     def distance(self) -> float: ...
 
@@ -432,6 +436,7 @@ def certify_robot(
     package_path: _Path | Sequence[_Path] = (),
     unit: str = "m",
     drop_sheets: bool = False,
+    partial: bool = False,
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,

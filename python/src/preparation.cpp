@@ -64,6 +64,8 @@ expected; `decimate` does not prepare it again.)")
       .def_property_readonly("turned_triangles",
                              number(&geom::PreparationReport::reversed_triangles),
                              "Number of triangles whose orientation was reversed.")
+      .def_property_readonly("guessed", number(&geom::PreparationReport::guessed),
+                             "Whether which solid is meant is a guess, which notes explain.")
       .def_property_readonly("notes", number(&geom::PreparationReport::notes),
                              "What was changed, one sentence each.");
   module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,
