@@ -1,5 +1,4 @@
-// The cells that triangles are said to meet, and tetrahedra that are said to be clear of them,
-// against points of both.
+// Tetrahedra that are said to be clear of triangles, against points of both.
 #include <gtest/gtest.h>
 #include <kaboum/base/random.h>
 
@@ -8,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "cells.h"
 #include "obstacle.h"
 
 namespace kaboum::wrap {
@@ -20,49 +18,6 @@ Vec3 random_point(Random& random, double size) {
   const double x = random.between(-size, size), y = random.between(-size, size),
                z = random.between(-size, size);
   return {x, y, z};
-}
-
-TEST(Cells, EveryPointOfATriangleLiesInAMarkedCell) {
-  Random random(3);
-  for (int i = 0; i < 60; ++i) {
-    geom::Mesh mesh;
-    const Vec3 far = random_point(random, i % 3 == 0 ? 1000 : 1);
-    for (int k = 0; k < 3; ++k)
-      mesh.vertices.emplace_back(far + random_point(random, i % 2 == 0 ? 1 : 0.1));
-    if (i % 5 == 0) mesh.vertices[2] = mesh.vertices[0];
-    mesh.triangles.push_back({0, 1, 2});
-    const Lattice lattice =
-        lattice_round(geom::bounding_box(mesh), side_above(0.11), 1, false, 1e9);
-    const BitGrid cells = occupied_cells(lattice, mesh);
-    for (int n = 0; n < 300; ++n) {
-      double u = random.between(0, 1), v = random.between(0, 1);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      const Vec3 p = mesh.vertices[0] + u * (mesh.vertices[1] - mesh.vertices[0]) +
-                     v * (mesh.vertices[2] - mesh.vertices[0]);
-      const auto [x, y, z] = lattice.cell_of(p);
-      ASSERT_TRUE(cells.get(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)));
-    }
-  }
-}
-
-TEST(Cells, TouchedCellsAreMarkedOnBothSides) {
-  geom::Mesh mesh;  // in a plane between cells
-  mesh.vertices = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  mesh.triangles = {{0, 1, 2}};
-  const Lattice lattice = lattice_round(geom::bounding_box(mesh), 0.25, 1, true, 1e9);
-  const BitGrid cells = occupied_cells(lattice, mesh);
-  for (const double z : {0.9, 1.1}) {
-    const auto [i, j, k] = lattice.cell_of({0.3, 0.3, z});
-    EXPECT_TRUE(cells.get(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)));
-  }
-}
-
-TEST(Cells, SidesAreShortNumbers) {
-  for (const double least : {1.0, 0.3, 7.9, 8.0, 1e-9, 123456.7}) {
-    const double side = side_above(least);
-    EXPECT_GE(side, least);
-    EXPECT_LE(side, 1.25 * least);
-  }
 }
 
 /// Where a tetrahedron is clear of a triangle, no convex combinations of both coincide: tried by
