@@ -101,6 +101,8 @@ class Carver {
   [[nodiscard]] Groups groups_round(std::uint32_t v) const;
   [[nodiscard]] std::vector<std::uint32_t> bridge(std::uint32_t v, const Groups& groups) const;
   [[nodiscard]] std::vector<std::uint32_t> filling(std::uint32_t v) const;
+  bool cut_off(std::uint32_t v, const std::vector<std::uint32_t>& cells);
+  bool split(std::uint32_t from, std::uint32_t to, double distance);
 
   static geom::Box3 box_round(const geom::Mesh& input, const CarvingOptions& o) {
     geom::Box3 box = geom::bounding_box(input);
@@ -267,6 +269,7 @@ class Carver {
   std::vector<Info> info_;
   std::priority_queue<Gate> queue_;
   std::uint32_t stamps_ = 0, pushed_ = 0;
+  std::size_t splits_ = 0;
 };
 
 /// The groups of the tetrahedra round a vertex.
@@ -356,12 +359,61 @@ std::vector<std::uint32_t> Carver::filling(std::uint32_t v) const {
   return fill;
 }
 
+/// Splits edges at the vertex so that tetrahedra there reach no farther than half the ball's radius:
+/// those that are to be taken inside are cut off from what is beyond.
+/// @return whether any was
+bool Carver::cut_off(std::uint32_t v, const std::vector<std::uint32_t>& cells) {
+  const double most = 0.5 * options_.radius;
+  std::vector<std::uint32_t> far;
+  for (const std::uint32_t c : cells)
+    for (const std::uint32_t w : delaunay_.cell(c).vertex)
+      if (w != v && (delaunay_.point(w) - delaunay_.point(v)).norm() > 1.1 * most &&
+          std::find(far.begin(), far.end(), w) == far.end())
+        far.push_back(w);
+  bool any = false;
+  for (const std::uint32_t w : far) any |= split(v, w, most);
+  return any;
+}
+
+/// Puts a vertex onto an edge, so far from its first end.
+bool Carver::split(std::uint32_t from, std::uint32_t to, double distance) {
+  const Vec3 &a = delaunay_.point(from), &b = delaunay_.point(to);
+  Vec3 p = a + distance / (b - a).norm() * (b - a);
+  if (options_.float32) p = geom::to_float32(p);
+  std::vector<std::uint32_t> ring, made;
+  delaunay_.cells_round(from, ring);
+  std::erase_if(ring, [&](std::uint32_t c) { return !delaunay_.cell(c).has(to); });
+  // Outside stays clear though the new vertex is not exactly on the edge.
+  std::vector<Tetrahedron> changed;
+  for (const std::uint32_t c : ring) {
+    if (!info_[c].outside) continue;
+    for (const std::uint32_t end : {from, to}) {
+      Tetrahedron t{p, p, p, p};
+      std::size_t k = 0;
+      for (const std::uint32_t w : delaunay_.cell(c).vertex)
+        if (w != end && k < 3) t[k++] = delaunay_.point(w);
+      changed.push_back(t);
+    }
+  }
+  if (!obstacle_.clear(changed)) return false;
+  if (delaunay_.split(from, to, p, ring, made) == kNone) return false;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    if (made[k] >= info_.size()) info_.resize(std::size_t{2} * made[k] + 1);
+    info_[made[k]] = {};
+    info_[made[k]].outside = info_[ring[k]].outside;
+  }
+  ++splits_;
+  return true;
+}
+
 /// Where the tetrahedra outside, or those inside, form several groups round a vertex, connected
 /// through facets at it, some that are outside are taken inside.
 void Carver::make_manifold() {
+  const std::size_t carved = delaunay_.point_count();
   std::vector<std::uint32_t> waiting;
   std::vector<char> waits(delaunay_.point_count(), 0);
   const auto wait = [&](std::uint32_t v) {
+    if (v >= waits.size()) waits.resize(2 * v, 0);
     if (waits[v] == 0) waiting.push_back(v);
     waits[v] = 1;
   };
@@ -378,6 +430,7 @@ void Carver::make_manifold() {
     waits[v] = 0;
     if (v < 8) continue;  // corners of the box
     for (auto fill = filling(v); !fill.empty(); fill = filling(v)) {
+      if (v < carved && splits_ < 4 * carved && cut_off(v, fill)) continue;
       for (const std::uint32_t c : fill) {
         info_[c].outside = false;
         for (const std::uint32_t w : delaunay_.cell(c).vertex)

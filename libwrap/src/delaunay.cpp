@@ -177,6 +177,53 @@ void Delaunay::join_made() {
   }
 }
 
+std::uint32_t Delaunay::split(std::uint32_t from, std::uint32_t to, const Vec3& p,
+                              std::span<const std::uint32_t> ring,
+                              std::vector<std::uint32_t>& made) {
+  const auto place = [&](std::uint32_t c, std::uint32_t v) {
+    const auto& corners = cells_[c].vertex;
+    return static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+  };
+  for (const std::uint32_t c : ring) {
+    for (const std::uint32_t end : {from, to}) {
+      std::array<Vec3, 4> q;
+      for (std::size_t k = 0; k < 4; ++k)
+        q[k] = cells_[c].vertex[k] == end ? p : points_[cells_[c].vertex[k]];
+      if (geom::orient3d(q[0], q[1], q[2], q[3]) != Sign::Positive) return kNone;
+    }
+  }
+  const auto v = static_cast<std::uint32_t>(points_.size());
+  points_.push_back(p);
+  at_.push_back(ring.front());
+  made.clear();
+  for (std::size_t k = 0; k < ring.size(); ++k) made.push_back(new_cell());
+  const auto other_of = [&](std::uint32_t c) {
+    if (c == kNone) return kNone;
+    return made[static_cast<std::size_t>(std::find(ring.begin(), ring.end(), c) - ring.begin())];
+  };
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const std::uint32_t c = ring[k], d = made[k];
+    const std::size_t at_from = place(c, from), at_to = place(c, to);
+    cells_[d] = cells_[c];
+    cells_[d].vertex[at_from] = v;
+    cells_[c].vertex[at_to] = v;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (i != at_from && i != at_to) cells_[d].next[i] = other_of(cells_[c].next[i]);
+    const std::uint32_t beyond = cells_[c].next[at_from];  // across the facet opposite `from`
+    if (beyond != kNone) {
+      auto& next = cells_[beyond].next;
+      *std::find(next.begin(), next.end(), c) = d;
+    }
+    cells_[d].next[at_to] = c;
+    cells_[c].next[at_from] = d;
+  }
+  at_[from] = ring.front();
+  at_[to] = made.front();
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    for (std::size_t i = 0; i < 4; ++i) at_[cells_[made[k]].vertex[i]] = made[k];
+  return v;
+}
+
 void Delaunay::cells_round(std::uint32_t v, std::vector<std::uint32_t>& cells) const {
   cells.assign(1, at_[v]);
   for (std::size_t k = 0; k < cells.size(); ++k) {
