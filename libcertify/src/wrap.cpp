@@ -27,8 +27,8 @@ std::string number(double x) {
   return {text.data(), end};
 }
 
-/// The widest gap whose closing keeps the wrap within `farthest` of the input. A ball leaves what is
-/// within the offset and its radius; a twentieth is for what it is measured with.
+/// The widest gap whose closing keeps the wrap within `farthest` of the input. A ball leaves what
+/// is within the offset and its radius; a twentieth is for what it is measured with.
 double seal_within(double farthest, double offset) {
   return std::max(2 * (0.95 * farthest - offset), 0.5 * farthest);
 }

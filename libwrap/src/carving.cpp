@@ -359,8 +359,8 @@ std::vector<std::uint32_t> Carver::filling(std::uint32_t v) const {
   return fill;
 }
 
-/// Splits edges at the vertex so that tetrahedra there reach no farther than half the ball's radius:
-/// those that are to be taken inside are cut off from what is beyond.
+/// Splits edges at the vertex so that tetrahedra there reach no farther than half the ball's
+/// radius: those that are to be taken inside are cut off from what is beyond.
 /// @return whether any was
 bool Carver::cut_off(std::uint32_t v, const std::vector<std::uint32_t>& cells) {
   const double most = 0.5 * options_.radius;

@@ -134,7 +134,8 @@ bool Cones::apart_at_corners(const Cone& cone, const Relative& triangle, Along&&
   for (const Vec3* x : {&a, &b, &c}) {
     for (const Vec3* y : {&p, &q, &r, &last})
       if (along(*x - *y)) return true;
-    for (const auto& [y, z] : {Edge{&p, &last}, {&q, &last}, {&r, &last}, {&p, &q}, {&q, &r}, {&r, &p}})
+    for (const auto& [y, z] :
+         {Edge{&p, &last}, {&q, &last}, {&r, &last}, {&p, &q}, {&q, &r}, {&r, &p}})
       if (along(from_edge(*x, *y, *z))) return true;
   }
   for (const Vec3* x : {&p, &q, &r, &last})

@@ -56,9 +56,9 @@ class Delaunay {
   /// @return the new vertex; kNone where the point is nearer than `apart` to another vertex, or
   ///   not inside the box: then nothing is changed
   std::uint32_t insert(const Vec3& p, std::uint32_t near, double apart);
-  /// Puts a point between two vertices that share an edge: each tetrahedron at the edge becomes two,
-  /// the one with `from` keeps its place. They need not be Delaunay ones any more, so that no point
-  /// may be inserted afterwards.
+  /// Puts a point between two vertices that share an edge: each tetrahedron at the edge becomes
+  /// two, the one with `from` keeps its place. They need not be Delaunay ones any more, so that no
+  /// point may be inserted afterwards.
   /// @param ring  the tetrahedra at the edge
   /// @param made  the others of the two, in the same order
   /// @return the new vertex; kNone where some tetrahedron would be turned over: then nothing is

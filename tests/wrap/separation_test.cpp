@@ -188,5 +188,41 @@ TEST(Obstacle, TheClearanceIsKeptExactly) {
   }
 }
 
+/// Where a corner is what is nearest, to a corner or an edge, a gap of little more than the
+/// clearance is told, and one of less is not enough.
+TEST(Obstacle, TheClearanceIsKeptExactlyAtCorners) {
+  Random random(37);
+  for (int i = 0; i < 2000; ++i) {
+    const double clearance = i % 2 == 0 ? 0.1 : 1e-4;
+    const Vec3 n = random_point(random, 1).normalized();
+    const auto behind = [&](double sign) {  // strictly on one side of the plane across n
+      const Vec3 d = random_point(random, 0.5);
+      return Vec3(d + (sign * (std::abs(d.dot(n)) + 0.1) - d.dot(n)) * n);
+    };
+    const Vec3 foot = random_point(random, 1);
+    Vec3 along = random_point(random, 0.5);
+    along -= along.dot(n) * n;
+    const int kind = i % 3;  // corner and corner; an edge of the triangle; one of the tetrahedron
+    Mesh mesh;
+    mesh.vertices = {foot, foot + behind(-1), foot + behind(-1)};
+    if (kind == 1) {
+      mesh.vertices[0] = foot + along;
+      mesh.vertices[1] = foot - along;
+    }
+    mesh.triangles = {{0, 1, 2}};
+    const Obstacle obstacle(mesh, clearance);
+    for (const double gap : {0.9, 1 - 1e-9, 1 + 1e-6, 1.01}) {
+      const Vec3 near = foot + gap * clearance * n;
+      Tetrahedron t{near, near + behind(1), near + behind(1), near + behind(1)};
+      if (kind == 2) {
+        t[0] = near + along;
+        t[1] = near - along;
+      }
+      std::swap(t[0], t[static_cast<std::size_t>(i / 3 % 4)]);
+      ASSERT_EQ(obstacle.clear(std::span(&t, 1)), gap > 1) << i << ' ' << gap;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::wrap

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "independent_check.h"
 #include "support/families.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
@@ -58,6 +59,7 @@ Wrap wrapped(const Mesh& mesh, double offset, double seal) {
 
 void expect_clean(const Mesh& wrap, const std::string& name) {
   EXPECT_TRUE(geom::self_intersections(wrap).none()) << name;
+  EXPECT_FALSE(meets_itself_by_cgal(wrap)) << name;
   const geom::TopologyReport topology = geom::analyse(wrap);
   EXPECT_TRUE(topology.closed() && topology.manifold()) << name;
   EXPECT_EQ(topology.vertices, geom::analyse(geom::weld(wrap)).vertices) << name;
@@ -108,6 +110,63 @@ TEST(Wrap, HoldsSoups) {
   one.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   one.triangles = {{0, 1, 2}};
   expect_inside(one, wrapped(one, 0.01, 0.1).mesh, "one triangle");
+}
+
+/// A ring of rectangular section: a plate with one round hole.
+Mesh ring(double inner, double outer, double height, int segments) {
+  Mesh mesh;
+  for (int i = 0; i < segments; ++i) {
+    const double a = 2 * std::numbers::pi * i / segments, x = std::cos(a), y = std::sin(a);
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {Vec3(outer * x, outer * y, 0), Vec3(outer * x, outer * y, height),
+                          Vec3(inner * x, inner * y, height), Vec3(inner * x, inner * y, 0)});
+  }
+  const auto vertex = [&](int i, int k) {
+    return static_cast<std::uint32_t>(4 * (i % segments) + k % 4);
+  };
+  for (int i = 0; i < segments; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      mesh.triangles.push_back({vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1)});
+      mesh.triangles.push_back({vertex(i, k), vertex(i + 1, k + 1), vertex(i, k + 1)});
+    }
+  }
+  return mesh;
+}
+
+double farthest(const Mesh& mesh, const Mesh& around) {
+  const geom::DistanceQuery query(mesh);
+  return geom::directed_distance(around, query, {.relative_gap = 0.01}).max_upper /
+         geom::bounding_box(mesh).diagonal();
+}
+
+/// A ball that fits through a hole opens it, with a clearance as well: long tetrahedra there have
+/// corners as their nearest points to the hole's edges.
+TEST(Wrap, OpensHolesWithAClearance) {
+  for (const double inner : {0.5, 1.0}) {
+    const Mesh plate = ring(inner, 1.5, 0.4, 64);
+    EXPECT_GT(geom::signed_volume(plate), 0);
+    const double diagonal = geom::bounding_box(plate).diagonal();
+    WrapOptions options;
+    options.offset = 0.005 * diagonal;
+    options.seal = 0.03 * diagonal;
+    options.clearance = 0.0005 * diagonal;
+    const Mesh around = wrap(plate, options).mesh;
+    expect_inside(plate, around, "ring");
+    EXPECT_LT(farthest(plate, around), 0.005 + 0.015);
+    EXPECT_LT(geom::signed_volume(around), 1.2 * geom::signed_volume(plate));
+  }
+}
+
+/// Where outside and a hollow meet in a vertex, only what is near it is filled.
+TEST(Wrap, StaysNearWhereHolesAreAsWideAsTheBall) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    const Mesh shell =
+        test::without(test::icosphere(4), [&](const Vec3&) { return random.between(0, 1) < 0.12; });
+    const Mesh around = wrapped(shell, 0.003, 0.03).mesh;
+    expect_inside(shell, around, "shell");
+    EXPECT_LT(farthest(shell, around), 1.1 * (0.003 + 0.015));
+  }
 }
 
 /// Plates with square holes, of which the surfaces on both sides of a wall are near each other.
