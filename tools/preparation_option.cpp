@@ -54,10 +54,11 @@ void add_preparation_options(CLI::App& app, PreparationOption& option, const std
   add_length(app, "--offset", option.offset,
              "With --prepare wrap: how far the wrap may be from the triangles where it can get "
              "near them; a length or a percentage of the diagonal [a quarter of epsilon, or 0.1%]");
-  add_length(app, "--seal", option.seal,
-             "With --prepare wrap: hollows behind gaps narrower than this are filled (those up to "
-             "2.5 times as wide may be); also the scale of the search, whose time and memory grow "
-             "with its inverse [what epsilon allows, or 1%]");
+  add_length(
+      app, "--seal", option.seal,
+      "With --prepare wrap: hollows behind gaps narrower than this are filled; also the scale "
+      "of the search, whose time and memory grow with the square of its inverse [what "
+      "epsilon allows, or 1%]");
 }
 
 void require_meaning(const CLI::App& app, const PreparationOption& option) {

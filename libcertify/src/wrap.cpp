@@ -27,6 +27,12 @@ std::string number(double x) {
   return {text.data(), end};
 }
 
+/// The widest gap whose closing keeps the wrap within `farthest` of the input. A ball leaves what
+/// is within the offset and its radius; a twentieth is for what it is measured with.
+double seal_within(double farthest, double offset) {
+  return std::max(2 * (0.95 * farthest - offset), 0.5 * farthest);
+}
+
 void measure(const geom::Mesh& wrap, const geom::DistanceQuery& input, WrapCertificate& made) {
   geom::DistanceOptions wished;
   wished.relative_gap = 0.01;
@@ -118,7 +124,7 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
                 : request.farthest ? kOffsetShare * *request.farthest
                                    : kOffset.of(made.diagonal);
   made.seal = request.seal       ? request.seal->of(made.diagonal)
-              : request.farthest ? *request.farthest
+              : request.farthest ? seal_within(*request.farthest, made.offset)
                                  : kSeal.of(made.diagonal);
   for (const auto& [length, name] : {std::pair{made.offset, "offset"},
                                      {made.seal, "seal"},

@@ -66,7 +66,7 @@ using CertifiedWrap = Certified<geom::Mesh, WrapCertificate>;
 /// @throws Error{InvalidInput} when there is nothing to wrap, coordinates are too large, or the
 /// wrap
 ///   reaches farther than it may; Error{InvalidArgument} on lengths that are not positive;
-///   Error{LimitReached} when the lattice or deciding takes too much; Error{Internal} when
+///   Error{LimitReached} when carving or deciding takes too much; Error{Internal} when
 ///   libverify refutes it.
 CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request);
 
