@@ -111,8 +111,11 @@ void write(Run& run, RobotOutput& output) {
 }
 
 RobotCheck check_of(const Run& run, const RobotOutput& output) {
-  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.preparation, run.o.prepare.drop_sheets, {}, run.verdicts);
+  certify::PreparationOptions preparation;
+  preparation.mode = run.o.preparation.mode();
+  preparation.drop_sheets = run.o.prepare.drop_sheets;
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot, preparation, {},
+                         run.verdicts);
 }
 
 /// The shapes of each link that has some.

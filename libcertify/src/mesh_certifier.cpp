@@ -22,12 +22,6 @@ constexpr double kRoom = 1e-3, kLeastBound = 1e-6;
 /// Vertices of the original that are looked at for being far from the result.
 constexpr std::size_t kOutlierSamples = 1000;
 
-/// Nothing of a wrap was turned, dropped or filled.
-bool is_as_it_was(const geom::PreparationReport& r) {
-  return r.reversed_triangles == 0 && r.collapsed_triangles == 0 && r.dropped_copies == 0 &&
-         r.cancelled_walls == 0 && r.dropped_sheets == 0 && r.holes == 0;
-}
-
 bool refuted(verify::Answer answer) { return answer == verify::Answer::Refuted; }
 
 }  // namespace

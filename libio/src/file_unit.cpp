@@ -1,5 +1,6 @@
 // Units of length that files state, and coordinates in another one.
 #include <kaboum/base/error.h>
+#include <kaboum/base/option.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 
@@ -8,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <string_view>
 
 #include "text.h"
@@ -117,20 +117,15 @@ double scaled_bound(double bound, double factor, const geom::Mesh& scaled) {
 }
 
 double recorded_scale(const std::string& record, const std::string& file) {
-  std::istringstream words(record);
-  std::string word;
-  while (words >> word) {
-    if (word != "--scale") continue;
-    if (!(words >> word)) word.clear();
-    double factor = 0;
-    const char* const end = word.data() + word.size();
-    const auto [at, error] = std::from_chars(word.data(), end, factor);
-    if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
-      throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(word) +
-                                               ", which is no factor; it is damaged, make it anew");
-    return factor;
-  }
-  return 1;
+  const std::optional<std::string> word = recorded(record, "scale");
+  if (!word) return 1;
+  double factor = 0;
+  const char* const end = word->data() + word->size();
+  const auto [at, error] = std::from_chars(word->data(), end, factor);
+  if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
+    throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(*word) +
+                                             ", which is no factor; it is damaged, make it anew");
+  return factor;
 }
 
 void require_recorded_scale(const std::string& file, const std::string& record, double factor) {
