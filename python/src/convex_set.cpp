@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <set>
 
+#include "arguments.h"
 #include "mesh.h"
 #include "request_options.h"
 #include "running.h"
