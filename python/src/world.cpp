@@ -76,7 +76,7 @@ robot::Path rows_of(const Rows& values, std::size_t variables, const char* name,
   return out;
 }
 
-py::array_t<double> array_of(const robot::Path& path) {
+py::array_t<double> rows_array(const robot::Path& path) {
   const std::size_t columns = path.empty() ? 0 : path.front().size();
   py::array_t<double> out({path.size(), columns});
   for (std::size_t i = 0; i < path.size(); ++i)
@@ -251,7 +251,7 @@ void bind_answers(py::module_& module) {
           "outcome", [](const PathValue& p) { return motion::name_of(p.answer.outcome); },
           "'found', or why there is none. Only 'found' says something of all paths.")
       .def_property_readonly(
-          "waypoints", [](const PathValue& p) { return array_of(p.answer.path); },
+          "waypoints", [](const PathValue& p) { return rows_array(p.answer.path); },
           "n x k float64: a row for each waypoint, straight in joint space between.")
       .def_property_readonly(
           "goal",
