@@ -32,6 +32,8 @@ std::optional<std::uint32_t> triangle_in_file(const MeshCase& run, std::uint32_t
 
 /// Convexity and the claims of enclosure, a line each.
 std::vector<std::string> lines_of_enclosure(const MeshCase& run);
+/// Why no points of exact faces were looked at; empty where they were, or there are no such faces.
+std::string why_no_points(const MeshCase& run);
 /// Distances and depth, a line each.
 std::vector<std::string> lines_of_distances(const MeshCase& run);
 /// "verified", and what has to be said with it.

@@ -129,6 +129,13 @@ std::optional<std::uint32_t> triangle_in_file(const MeshCase& run, std::uint32_t
   return source[triangle];
 }
 
+std::string why_no_points(const MeshCase& run) {
+  if (run.original.about_exact.empty() || run.original.exact) return {};
+  if (!run.inner()) return "only the triangles were asked about";
+  return "an inner claim is about the triangles; the exact faces may lie up to " +
+         number_up(run.original.deviation) + " inside " + inner_name(run);
+}
+
 std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
   std::vector<std::string> lines;
   const verify::MeshVerdict& v = run.verdict;
@@ -154,6 +161,8 @@ std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
                            " triangles of " + inner + " are not all within the solid of " + outer,
                        v.inclusion.surface, surface_extent(run)));
   if (v.exact_points) lines.push_back(line_of_points(*v.exact_points, run));
+  if (const std::string why = why_no_points(run); !why.empty())
+    lines.push_back("exact points: not looked at: " + why);
   return lines;
 }
 

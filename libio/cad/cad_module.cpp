@@ -13,6 +13,7 @@
 #include <IMeshData_Status.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_CheckIterator.hxx>
+#include <Precision.hxx>
 #include <STEPControl_Reader.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_Failure.hxx>
@@ -31,6 +32,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -85,10 +87,12 @@ class Reading {
       : reader_(reader), iges_(iges), result_(result) {}
 
   void run(const char* path) {
-    if (!iges_) {
-      std::ifstream file(path, std::ios::binary);
-      census_ = step_census({std::istreambuf_iterator<char>(file), {}});
-    }
+    std::ifstream file(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (iges_)
+      check_iges_numbers(text);
+    else
+      census_ = step_census(std::move(text));
     if (reader_.ReadFile(path) != IFSelect_RetDone)
       refuse("the file cannot be read; it is damaged or of another kind");
     model_ = reader_.Model();
@@ -164,6 +168,12 @@ class Reading {
   }
 
   void mesh(const TopoDS_Shape& shape, double diagonal) {
+    if (!(kChord * diagonal >= Precision::Confusion())) {
+      std::ostringstream text;
+      text << "its shape is only " << diagonal
+           << " mm large; OpenCASCADE takes points within 1e-7 mm for one; is its unit right?";
+      refuse(text.str());
+    }
     BRepMesh_IncrementalMesh meshing(shape, kChord * diagonal, false, kAngle, false);
     if ((meshing.GetStatusFlags() & IMeshData_Failure) != 0)
       refuse("a face could not be made into triangles");

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct Census {
 /// @throws std::runtime_error naming the entity: unknown types, types that are not read, references
 ///   to nothing, faces and parts that no product reaches.
 Census step_census(std::string text);
+
+/// Numbers of an IGES file's parameters, from its text: OpenCASCADE takes those beyond 1e100 for
+/// infinite.
+///
+/// @throws std::runtime_error naming the line and the number.
+void check_iges_numbers(std::string_view text);
 
 /// @throws std::runtime_error as step_census.
 Census iges_census(const Handle(Interface_InterfaceModel) & model);

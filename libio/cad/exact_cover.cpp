@@ -50,6 +50,7 @@ constexpr int kHalvingsBetween = 6;  ///< while triangles are still made finer
 constexpr double kRounding = 1e-11;  ///< of all evaluations, as a share of the largest coordinate
 constexpr double kSlack = 1.25;      ///< a bound may be this many times a distance that is there
 constexpr double kHelpful = 0.1;     ///< share of the wish that a side has to bend, to be halved
+constexpr int kAreaParts = 4;        ///< of a triangle's sides, where areas are bounded
 constexpr double kGap = 0.25;        ///< share of the wish that edges may be beside their faces
 /// Pieces that are halved, for each triangle and on top of that; then bounds stay as they are.
 constexpr std::size_t kPiecesPerTriangle = 40, kMorePieces = 400'000;
@@ -951,11 +952,76 @@ class Cover {
     which = name;
   }
 
+  // --- areas ---
+
+  /// Lemma 3: of the surface over all triangles, and over what the border has besides.
+  static AreaBounds area_of(const FaceMesh& f, const std::vector<Line>& lines) {
+    AreaBounds out;
+    for (const auto& n : f.triangles)
+      add_area(*f.surface, {f.uv[n[0]], f.uv[n[1]], f.uv[n[2]]}, out);
+    for (const Border& b : f.borders) {
+      const std::vector<double>& t = lines[b.edge].t;
+      for (std::size_t i = 0; i + 1 < b.nodes.size() && !b.inner; ++i)
+        out.error += sliver_area(*f.surface, b.curve, t[i], t[i + 1], f.uv[b.nodes[i]],
+                                 f.uv[b.nodes[i + 1]]);
+    }
+    return out;
+  }
+
+  static void add_area(const ExactSurface& s, const std::array<Vec2, 3>& q, AreaBounds& out) {
+    const Vec2 a = q[1] - q[0], b = q[2] - q[0];
+    const double det = a.x() * b.y() - a.y() * b.x(), sign = det < 0 ? -1 : 1;
+    const Box2 box = box_of({q[0], q[1], q[2]});
+    const SurfaceDerivatives d = s.derivatives(box);
+    if (!s.domain().contains(box) || s.kink(0, box.min().x(), box.max().x()) ||
+        s.kink(1, box.min().y(), box.max().y())) {
+      const double most = std::abs(det) / 2 * d.u * d.v;
+      out.value += sign * most / 2;
+      out.error += most / 2;
+      return;
+    }
+    constexpr int k = kAreaParts;
+    std::array<std::array<Vec3, k + 1>, k + 1> at;
+    for (int i = 0; i <= k; ++i)
+      for (int j = 0; i + j <= k; ++j)
+        at[i][j] = s.value(q[0] + a * (1.0 * i / k) + b * (1.0 * j / k));
+    const double w = box.sizes().x() / k, h = box.sizes().y() / k;
+    const double turn = (d.uu * w + d.uv * h) / 2 * d.v + d.u * (d.uv * w + d.vv * h) / 2;
+    const double r = (d.uu * w * w + 2 * d.uv * w * h + d.vv * h * h) / 4;
+    const auto add = [&](const Vec3& o, const Vec3& x, const Vec3& y) {
+      const Vec3 ox = x - o, oy = y - o;
+      out.value += sign * ox.cross(oy).norm() / 2;
+      out.error += std::abs(det) / (2 * k * k) * turn + (ox.norm() * r + r * oy.norm() + r * r) / 2;
+    };
+    for (int i = 0; i < k; ++i)
+      for (int j = 0; i + j < k; ++j) {
+        add(at[i][j], at[i + 1][j], at[i][j + 1]);
+        if (i + j + 1 < k) add(at[i + 1][j + 1], at[i][j + 1], at[i + 1][j]);
+      }
+  }
+
+  /// No more lies between a piece of the border's curve and the line from node to node.
+  static double sliver_area(const ExactSurface& s, const ExactCurve<2>& curve, double a, double b,
+                            const Vec2& p, const Vec2& q) {
+    Piece hull{p, q};
+    curve.add_hull(a, b, hull);
+    const SurfaceDerivatives d = s.derivatives(box_of(hull));
+    const auto length = [&d](const Vec2& by) {
+      return d.u * std::abs(by.x()) + d.v * std::abs(by.y());
+    };
+    const auto c = curve.derivatives(a, b);
+    const double h = b - a;
+    const double ends = std::max(length(curve.value(a) - p), length(curve.value(b) - q));
+    const double bow = curve.kink(a, b) ? h * length(c.first) : h * h / 8 * length(c.second);
+    return (ends + bow) * std::max(h * length(c.first), length(q - p));
+  }
+
   // --- the result ---
 
   void deliver() {
     for (const FaceMesh& f : faces_) {
       worse(f.bound, f.name, result_.distance, result_.farthest);
+      result_.areas.push_back(area_of(f, lines_));
       for (const auto& n : f.triangles) {
         geom::Triangle t{f.point[n[0]], f.point[n[1]], f.point[n[2]]};
         if (f.reversed) std::swap(t[1], t[2]);

@@ -9,11 +9,17 @@
 
 namespace kaboum::io {
 
+/// The area of a face, between value - error and value + error.
+struct AreaBounds {
+  double value = 0, error = 0;
+};
+
 /// The triangles of an exact shape, and what is proved of them.
 struct ExactCover {
   std::vector<geom::Vec3> points;
   std::vector<geom::Triangle> triangles;
   std::vector<std::size_t> ends;  ///< of the triangles of each face, in the order of the shape's
+  std::vector<AreaBounds> areas;  ///< of the exact faces, over the parameters of the triangles
   std::size_t bare_faces = 0;     ///< that have no triangles; then nothing else is said
   double distance = 0;            ///< no point of a face or an edge is farther from the triangles
   double gap = 0;                 ///< no edge's curve is farther from its faces

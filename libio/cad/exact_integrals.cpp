@@ -66,8 +66,15 @@ class Integrals {
     for (TopExp_Explorer at(shape_, TopAbs_FACE); at.More(); at.Next(), ++face) {
       const std::size_t end = result_.ends.at(face);
       const TopoDS_Face f = TopoDS::Face(at.Current());
+      GProp_GProps exact;
+      const double error = BRepGProp::SurfaceProperties(f, exact, kAccuracy);
+      const double area = std::abs(exact.Mass()), slack = (std::abs(error) + kAccuracy) * area;
+      const std::string name = "the area of face " + std::to_string(face + 1);
+      const AreaBounds& bounds = result_.areas.at(face);
+      if (!(std::abs(area - std::abs(bounds.value)) <= bounds.error + slack))
+        refuse(name, area, std::abs(bounds.value), bounds.error + slack);
       if (untrimmed_surface(BRep_Tool::Surface(f))->IsKind(STANDARD_TYPE(Geom_Plane)))
-        check_area(f, face + 1, begin, end);
+        check_plane_area(area, slack, name, begin, end);
       begin = end;
     }
   }
@@ -111,8 +118,8 @@ class Integrals {
     return true;
   }
 
-  void check_area(const TopoDS_Face& f, std::size_t number, std::size_t begin,
-                  std::size_t end) const {
+  void check_plane_area(double area, double slack, const std::string& name, std::size_t begin,
+                        std::size_t end) const {
     Vec3 twice = Vec3::Zero();
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
     for (std::size_t i = begin; i < end; ++i) {
@@ -124,15 +131,12 @@ class Integrals {
       }
     }
     const double d = deviation_;
-    double allowed = 0;
+    double allowed = slack;
     for (const auto& [side, count] : sides)
       if (count == 1)
         allowed += 2 * d * (point(side.first) - point(side.second)).norm() + M_PI * d * d;
-    GProp_GProps exact;
-    const double error = BRepGProp::SurfaceProperties(f, exact, kAccuracy);
-    allowed += std::abs(error) * std::abs(exact.Mass());
-    if (!(std::abs(std::abs(exact.Mass()) - twice.norm() / 2) <= allowed))
-      refuse("the area of face " + std::to_string(number), exact.Mass(), twice.norm() / 2, allowed);
+    if (!(std::abs(area - twice.norm() / 2) <= allowed))
+      refuse(name, area, twice.norm() / 2, allowed);
   }
 
   const TopoDS_Shape& shape_;

@@ -2,18 +2,39 @@
 //
 // Entities that nothing refers to are shown, with what their groups, subfigures and solids hold.
 
+#include <IGESBasic_SingularSubfigure.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_UndefinedEntity.hxx>
+#include <IGESGeom_Boundary.hxx>
+#include <IGESGeom_BoundedSurface.hxx>
+#include <IGESGeom_CompositeCurve.hxx>
+#include <IGESGeom_CurveOnSurface.hxx>
+#include <IGESGeom_Line.hxx>
+#include <IGESGeom_TransformationMatrix.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_Face.hxx>
+#include <IGESSolid_Loop.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
+#include <gp_GTrsf.hxx>
+#include <gp_Mat.hxx>
+#include <gp_Pnt.hxx>
+#include <gp_XYZ.hxx>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include "census.h"
 
 namespace kaboum::io {
 namespace {
+
+constexpr double kRigid = 1e-6;  ///< that a matrix may be off from a rotation, or a mirror
 
 enum class IgesKind { Unknown, Face, Surface, Container, Part, Harmless };
 
@@ -94,6 +115,48 @@ bool is_group(int type, int form) {
   return type != 402 || form == 1 || form == 7 || form == 14 || form == 15;
 }
 
+using IgesEntity = Handle(IGESData_IGESEntity);
+
+/// Pieces of a curve that are no points.
+std::size_t count_pieces(const IgesEntity& curve, int depth = 0) {
+  if (curve.IsNull() || depth > 100) return 0;
+  if (const auto all = Handle(IGESGeom_CompositeCurve)::DownCast(curve); !all.IsNull()) {
+    std::size_t sum = 0;
+    for (int i = 1; i <= all->NbCurves(); ++i) sum += count_pieces(all->Curve(i), depth + 1);
+    return sum;
+  }
+  if (curve->TypeNumber() == 116) return 0;  // a point
+  const auto line = Handle(IGESGeom_Line)::DownCast(curve);
+  return line.IsNull() || line->StartPoint().Distance(line->EndPoint()) > 0 ? 1 : 0;
+}
+
+std::size_t count_edges(const Handle(IGESGeom_CurveOnSurface) & border) {
+  return border.IsNull() ? 0 : count_pieces(border->Curve3D());
+}
+
+/// Edges that the bounds of a face state, as curves in space. What is stated only in the plane of
+/// the surface's parameters is not counted: a piece there may be a point.
+std::size_t count_edges(const IgesEntity& face) {
+  std::size_t sum = 0;
+  if (const auto f = Handle(IGESSolid_Face)::DownCast(face); !f.IsNull()) {
+    for (int i = 1; i <= f->NbLoops(); ++i) {
+      const Handle(IGESSolid_Loop) loop = f->Loop(i);
+      for (int k = 1; !loop.IsNull() && k <= loop->NbEdges(); ++k)
+        sum += loop->EdgeType(k) == 0 ? 1 : 0;  // else a vertex
+    }
+  } else if (const auto t = Handle(IGESGeom_TrimmedSurface)::DownCast(face); !t.IsNull()) {
+    if (t->HasOuterContour()) sum += count_edges(t->OuterContour());
+    for (int i = 1; i <= t->NbInnerContours(); ++i) sum += count_edges(t->InnerContour(i));
+  } else if (const auto b = Handle(IGESGeom_BoundedSurface)::DownCast(face); !b.IsNull()) {
+    for (int i = 1; i <= b->NbBoundaries(); ++i) {
+      const Handle(IGESGeom_Boundary) border = b->Boundary(i);
+      for (int k = 1; !border.IsNull() && k <= border->NbModelSpaceCurves(); ++k)
+        sum += count_pieces(border->ModelSpaceCurve(k));
+    }
+  }
+  return sum;
+}
+
 class IgesCensus {
  public:
   explicit IgesCensus(const Handle(Interface_InterfaceModel) & model)
@@ -109,8 +172,7 @@ class IgesCensus {
           e->IsKind(STANDARD_TYPE(IGESData_UndefinedEntity)))
         if (kind(i) != IgesKind::Harmless)
           refuse(name(i) + " cannot be understood: its form or its parameters are not known");
-      if (e->HasTransf() && e->TypeNumber() == 308)
-        refuse(name(i) + " is moved, which is not read");
+      check_matrix(i);
     }
     for (int i = 1; i <= count; ++i)
       if (kind(i) != IgesKind::Part && kind(i) != IgesKind::Harmless && !is_referred(i)) add(i, 0);
@@ -119,13 +181,62 @@ class IgesCensus {
       const double uses = uses_[i];
       if (kind(i) == IgesKind::Face && uses == 0) refuse(name(i) + " is a face that nothing shows");
       if (kind(i) == IgesKind::Harmless) out.harmless.insert(i);
-      if (uses > 0) out.faces.push_back({i, name(i), uses, 0});
+      if (uses > 0) out.faces.push_back({i, name(i), uses, count_edges(at(i))});
     }
     return out;
   }
 
  private:
   [[noreturn]] static void refuse(const std::string& what) { throw std::runtime_error(what); }
+
+  /// OpenCASCADE forgets the matrices of solids, shells, faces, loops, points and more.
+  void check_matrix(int i) const {
+    const auto e = at(i);
+    if (const auto m = Handle(IGESGeom_TransformationMatrix)::DownCast(e); !m.IsNull()) {
+      double off = 0;
+      for (int j = 1; j <= 3; ++j)
+        for (int k = 1; k <= 3; ++k) {
+          double dot = j == k ? -1 : 0;
+          for (int n = 1; n <= 3; ++n) dot += m->Data(j, n) * m->Data(k, n);
+          off = std::max(off, std::abs(dot));
+        }
+      if (!(off <= kRigid)) refuse(name(i) + " is not rigid, which is not read");
+    }
+    if (!e->HasTransf() || kind(i) == IgesKind::Harmless) return;
+    switch (e->TypeNumber()) {
+      case 100:  // curves
+      case 102:
+      case 104:
+      case 106:
+      case 110:
+      case 112:
+      case 126:
+      case 130:
+      case 108:  // surfaces
+      case 114:
+      case 118:
+      case 120:
+      case 122:
+      case 128:
+      case 140:
+      case 144:  // trimmed surface
+      case 402:  // group
+        return;
+      case 408: {  // instance: only where it does not matter which of both comes first
+        const auto instance = Handle(IGESBasic_SingularSubfigure)::DownCast(e);
+        const bool stays = !instance.IsNull() && instance->Translation().Modulus() == 0;
+        const gp_Mat turn = e->Location().VectorialPart();
+        double most = 0;
+        for (int j = 1; j <= 3; ++j)
+          for (int k = 1; k <= 3; ++k)
+            most = std::max(most, std::abs(turn.Value(j, k) - (j == k ? 1 : 0)));
+        if (stays || most == 0) return;
+        refuse(name(i) + " is both moved and turned, which is not read");
+      }
+      default:
+        refuse(name(i) + " is moved by a matrix, which is not read");
+    }
+  }
 
   Handle(IGESData_IGESEntity) at(int i) const {
     return Handle(IGESData_IGESEntity)::DownCast(model_->Value(i));
@@ -137,7 +248,7 @@ class IgesCensus {
   /// "D7 (type 186)", as in the file's directory.
   std::string name(int i) const {
     const auto e = at(i);
-    const std::string place = "D" + std::to_string(2 * i - 1);
+    std::string place = "D" + std::to_string(2 * i - 1);
     if (e.IsNull()) return place;
     return place + " (type " + std::to_string(e->TypeNumber()) +
            (e->FormNumber() != 0 ? ", form " + std::to_string(e->FormNumber()) : std::string()) +
@@ -192,6 +303,35 @@ class IgesCensus {
 };
 
 }  // namespace
+
+void check_iges_numbers(std::string_view text) {
+  std::size_t sequence = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.size() < 73 || line[72] != 'P') continue;
+    ++sequence;
+    for (std::size_t at = 0; at < 64;) {
+      std::size_t next = std::min(line.find_first_of(",; ", at), std::size_t{64});
+      std::string word(line.substr(at, next - at));
+      if (const std::size_t h = word.find('H'); h != std::string::npos && h > 0 && h < 9) {
+        // A text of so many characters, as far as it is on this line.
+        next = std::max(next, std::min<std::size_t>(at + h + 1 + std::atoi(word.c_str()), 64));
+        word.clear();
+      }
+      std::replace(word.begin(), word.end(), 'D', 'E');
+      double value = 0;
+      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      const bool whole = !word.empty() && stop == word.data() + word.size();
+      const bool tiny = word.find("E-") != std::string::npos;
+      if (whole && ((error == std::errc::result_out_of_range && !tiny) || std::abs(value) > 1e100))
+        throw std::runtime_error("line P" + std::to_string(sequence) + ": the number " + word +
+                                 " is beyond 1e100");
+      at = next + 1;
+    }
+  }
+}
 
 Census iges_census(const Handle(Interface_InterfaceModel) & model) {
   return IgesCensus(model).run();

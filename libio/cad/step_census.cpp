@@ -30,6 +30,7 @@ class StepCensus {
   Census run() {
     classify();
     collect();
+    check_placements(file_);
     drop_mapped_uses();
     weigh_products();
     std::vector<double> own(count(), 0);

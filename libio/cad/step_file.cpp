@@ -3,10 +3,14 @@
 #include "step_file.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 namespace kaboum::io {
 namespace {
+
+constexpr double kLargest = 1e100;  ///< of numbers; OpenCASCADE takes larger ones for infinite
 
 bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -218,7 +222,24 @@ class Parser {
     if (at_ == begin) fail("a parameter expected");
     const bool typed = is_capital(text_[begin]);
     if (typed && peek() == '(') return;  // its value follows, as a list of one
-    tokens_.push_back({StepToken::Value});
+    check_value(text_.substr(begin, at_ - begin));
+    tokens_.push_back({StepToken::Value, static_cast<std::int64_t>(begin)});
+  }
+
+  /// An enumeration between points, or a number that is one.
+  void check_value(std::string_view word) const {
+    if (word.size() > 2 && word.front() == '.' && word.back() == '.') return;
+    const std::string_view digits = word.substr(word.front() == '+' ? 1 : 0);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool tiny =
+        error == std::errc::result_out_of_range && word.find("E-") != std::string_view::npos;  // 0
+    const bool large = error == std::errc::result_out_of_range && !tiny;
+    if (error == std::errc::invalid_argument || end != digits.data() + digits.size() ||
+        (!large && !std::isfinite(value)))
+      fail("'" + std::string(word.substr(0, 40)) + "' is no number");
+    if (large || std::abs(value) > kLargest)
+      fail("the number " + std::string(word.substr(0, 40)) + " is beyond 1e100");
   }
 
   std::string_view text_;
@@ -250,18 +271,40 @@ std::vector<std::size_t> StepFile::references(const StepEntity& entity) const {
   return out;
 }
 
-std::size_t StepFile::argument(const StepRecord& record, std::size_t i) const {
+const StepToken* StepFile::parameter(const StepRecord& record, std::size_t i) const {
   std::size_t depth = 0;
   for (std::size_t t = record.begin; t < record.end; ++t) {
     const StepToken& token = tokens_[t];
     if (token.kind == StepToken::Close) --depth;
     if (depth == 0 && token.kind != StepToken::Open) {
-      if (i == 0) return token.kind == StepToken::Reference ? find(token.id) : npos;
+      if (i == 0) return &token;
       --i;
     }
     if (token.kind == StepToken::Open) ++depth;
   }
-  return npos;
+  return nullptr;
+}
+
+std::size_t StepFile::argument(const StepRecord& record, std::size_t i) const {
+  const StepToken* token = parameter(record, i);
+  return token != nullptr && token->kind == StepToken::Reference ? find(token->id) : npos;
+}
+
+std::optional<double> StepFile::number(const StepToken& token) const {
+  if (token.kind != StepToken::Value) return std::nullopt;
+  const char* begin = text_.data() + token.id;
+  if (*begin == '+') ++begin;
+  double value = 0;
+  const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
+  if (error != std::errc{}) return std::nullopt;
+  return value;
+}
+
+std::vector<double> StepFile::numbers(const StepRecord& record) const {
+  std::vector<double> out;
+  for (std::size_t t = record.begin; t < record.end; ++t)
+    if (const auto value = number(tokens_[t])) out.push_back(*value);
+  return out;
 }
 
 const StepRecord* record_of(const StepEntity& entity, std::string_view name) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -18,7 +19,7 @@ struct StepToken {
     Derived = '*',
     Value = 'v'
   } kind;
-  std::int64_t id = 0;  ///< of a reference
+  std::int64_t id = 0;  ///< of a reference; of a value where it is in the text
 };
 
 /// A part of an entity: a type and its parameters. Most entities have one.
@@ -44,6 +45,12 @@ class StepFile {
   [[nodiscard]] std::size_t find(std::int64_t id) const;
   /// Numbers of the entities that one refers to, in order, each as often as it does.
   [[nodiscard]] std::vector<std::size_t> references(const StepEntity& entity) const;
+  /// The i-th parameter of a record, or the bracket that closes it; null where there are fewer.
+  [[nodiscard]] const StepToken* parameter(const StepRecord& record, std::size_t i) const;
+  /// Nothing where the token is no number.
+  [[nodiscard]] std::optional<double> number(const StepToken& token) const;
+  /// All numbers of a record, those of lists too.
+  [[nodiscard]] std::vector<double> numbers(const StepRecord& record) const;
   /// The entity that the i-th parameter of a record refers to, or npos.
   [[nodiscard]] std::size_t argument(const StepRecord& record, std::size_t i) const;
   [[nodiscard]] const std::vector<StepToken>& tokens() const { return tokens_; }
@@ -59,6 +66,11 @@ class StepFile {
 
 /// The record of that type, or null.
 const StepRecord* record_of(const StepEntity& entity, std::string_view name);
+/// Refuses what OpenCASCADE places elsewhere than the file says.
+///
+/// @throws std::runtime_error naming operators that mirror or scale, transformations between
+///   placements neither of which is the origin, placements that lack a direction that they need.
+void check_placements(const StepFile& file);
 /// "#12 ADVANCED_FACE".
 std::string named(const StepEntity& entity);
 

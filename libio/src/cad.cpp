@@ -155,7 +155,7 @@ ReadResult read_cad(const Source& source, Format format) {
   // The libraries alone take half a gigabyte of addresses.
   ChildLimits limits = child_limits(source.bytes.size());
   limits.memory *= 2;
-  limits.seconds *= 3;
+  limits.seconds = 30 + 20 * (source.bytes.size() >> 20U);
   return read_in_child(source, limits, [&] { return read_here(source, format); });
 }
 

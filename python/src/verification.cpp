@@ -102,6 +102,12 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
   });
   out.answer = found.answer;
   out.claims = claims_of(found);
+  if (original.exact_faces > 0 && !found.exact_points) {
+    py::dict exact;
+    exact["answer"] = verify::name_of(verify::Answer::Undefined);
+    exact["reason"] = "points of the exact faces were not looked at: this is about the triangles";
+    out.claims["exact_points"] = exact;
+  }
   return out;
 }
 

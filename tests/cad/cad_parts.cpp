@@ -6,6 +6,7 @@
 //                                       and between, are as near the triangles as is claimed
 //   cad_parts covers-box MESH           whether the box of the renamed and left out entities is in
 //                                       the mesh's solid
+//   cad_parts box MESH 'X Y Z X Y Z'    whether the mesh's box is that
 //   cad_parts check PART.step MESH N E  whether N points of the exact faces lie in the mesh's
 //   solid,
 //                                       and no one of N points of the mesh is farther than E, a
@@ -579,6 +580,20 @@ int covers_box(const char* result) {
   return outside == 0 ? 0 : 1;
 }
 
+/// Whether the mesh's box is that, up to chords: least and largest coordinates, as a text.
+int has_box(const char* file, const char* text) {
+  const auto box = kaboum::geom::bounding_box(kaboum::io::read_mesh(file).mesh);
+  std::istringstream numbers(text);
+  double off = 0;
+  for (int i = 0; i < 6; ++i) {
+    double x = 0;
+    if (!(numbers >> x)) return 2;
+    off = std::max(off, std::abs(x - (i < 3 ? box.min[i] : box.max[i - 3])));
+  }
+  std::cout << box.min.transpose() << ' ' << box.max.transpose() << '\n';
+  return off < 0.02 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -586,11 +601,11 @@ int main(int argc, char** argv) {
   if (command == "make" && argc == 3) return make(argv[2]);
   if (command == "more" && argc == 3) return make_more(argv[2]);
   if (command == "covers-box" && argc == 3) return covers_box(argv[2]);
+  if (command == "box" && argc == 4) return has_box(argv[2], argv[3]);
   if (command == "within" && argc == 3) return within(argv[2]);
   if (command == "check" && argc == 6)
     return check(argv[2], argv[3], std::strtoull(argv[4], nullptr, 10), argv[5]);
-  std::cerr << "usage: cad_parts make DIR | more DIR | within PART.step | covers-box MESH | check "
-               "PART.step MESH "
-               "POINTS EPSILON\n";
+  std::cerr << "usage: cad_parts make DIR | more DIR | within PART.step | covers-box MESH | box "
+               "MESH 'X Y Z X Y Z' | check PART.step MESH POINTS EPSILON\n";
   return 2;
 }

@@ -5,7 +5,8 @@
 //
 // BIN holds the programs; FOLDER takes the files; each of twenty files (models.h) is damaged in
 // VARIANTS ways (damage.h), by seeds FIRST, FIRST + 1, ... PART: only files of that name.
-// `bcd-decompose` runs on every variant, `mesh-prepare` on each fifth.
+// `mesh-prepare` runs on every variant, and `bcd-decompose` on each that is read as triangles that
+// no variant before was.
 //
 // What the part of a damaged file is. Where a program ends with 0, its result has to hold
 //   (a) every face that OpenCASCADE's transfer of all roots still makes of the damaged file, at
@@ -17,7 +18,8 @@
 //       that places things or states a unit was touched; then (b) says nothing, and (a) alone
 //       counts.
 // Or the program refuses: what it cannot read it has to say. Exit codes but 0 are all right, unless
-// a program is killed by a signal other than that of the limit of time.
+// a program is killed by a signal other than that of the limit of time. Variants that end at a
+// limit are counted and named.
 //
 // A result holds a point if its winding number is at least 1, or the point is within 1e-6 of the
 // diagonal of its surface, and for mesh-prepare, whose triangles stand for the faces within the
@@ -65,6 +67,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "damage.h"
@@ -188,13 +191,15 @@ int in_child(const Work& work) {
   return WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL ? kTimedOut : kKilled;
 }
 
-int run(std::vector<std::string> words) {
+int run(std::vector<std::string> words, const fs::path& log) {
   return in_child([&]() -> int {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-    for (const int fd : {0, 1, 2}) ::dup2(nothing, fd);
+    const int errors = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    for (const int fd : {0, 1}) ::dup2(nothing, fd);
+    ::dup2(errors, 2);
     ::execv(arguments[0], arguments.data());
     return 127;
   });
@@ -274,15 +279,28 @@ double stated_deviation(const fs::path& report) {
 }
 
 struct Count {
-  std::size_t variants = 0, runs = 0, done = 0, wrong = 0, killed = 0, late = 0, compared = 0;
+  std::size_t variants = 0, covered = 0, wrong = 0, refused = 0, limited = 0, broken = 0;
+  std::size_t decomposed = 0, compared = 0;
 };
+
+std::ostream& operator<<(std::ostream& out, const Count& c) {
+  return out << c.variants << " variants: " << c.covered << " end with 0 and hold the part ("
+             << c.decomposed << " decomposed, " << c.compared << " beside undamaged faces), "
+             << c.wrong << " end with 0 and do not, " << c.refused << " are refused, " << c.limited
+             << " reach a limit, " << c.broken << " break a program";
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 class Campaign {
  public:
   Campaign(fs::path programs, fs::path folder)
       : programs_(std::move(programs)), folder_(std::move(folder)) {}
 
-  void attack(const CadModel& model, std::uint64_t first, std::size_t variants) {
+  Count attack(const CadModel& model, std::uint64_t first, std::size_t variants) {
     const bool iges = model.name.ends_with(".iges");
     const fs::path whole = folder_ / ("whole-" + model.name);
     std::ofstream(whole, std::ios::binary) << model.text;
@@ -292,20 +310,17 @@ class Campaign {
       for (std::size_t i = 0; i + 2 < at.size(); i += 3)
         faces.back().points.emplace_back(at[i], at[i + 1], at[i + 2]);
     }
-    std::size_t known = 0;
-    for (const FacePoints& face : faces) known += face.entity != 0 ? 1 : 0;
-    Count before = count_;
+    count_ = {};
+    decomposed_.clear();
     for (std::uint64_t seed = first; seed < first + variants; ++seed)
       try_variant(model, iges, faces, seed);
-    std::cout << model.name << ": " << faces.size() << " faces, " << known << " known by entity; "
-              << variants << " variants, " << count_.runs - before.runs << " runs, "
-              << count_.done - before.done << " ended with 0 (" << count_.compared - before.compared
-              << " beside undamaged faces), " << count_.wrong - before.wrong << " wrong\n";
+    std::cout << model.name << ": " << count_ << '\n' << std::flush;
+    return count_;
   }
 
-  [[nodiscard]] const Count& count() const { return count_; }
-
  private:
+  enum class End { Held, NotHeld, Refused, Limited, Broken };
+
   void try_variant(const CadModel& model, bool iges, const std::vector<FacePoints>& faces,
                    std::uint64_t seed) {
     const Damage damage = kaboum::test::damaged(model.text, iges, seed);
@@ -314,35 +329,44 @@ class Campaign {
     ++count_.variants;
     const std::vector<FacePoints> left = faces_left(model, faces, damage, iges);
     const std::string result = (folder_ / "result").string();
-    const std::size_t wrong = count_.wrong + count_.killed;
-    try_program(
-        file, iges, left, damage.what, result + ".obj",
-        {(programs_ / "bcd-decompose").string(), file.string(), "-o", result + ".obj", "--epsilon",
-         "10%", "--effort", "fast", "--no-cache", "--threads", "1", "--report", result + ".json"});
-    if (seed % 5 == 0)
-      try_program(file, iges, left, damage.what, result + ".ply",
-                  {(programs_ / "mesh-prepare").string(), file.string(), "-o", result + ".ply",
-                   "--threads", "1", "--report", result + ".json"});
-    if (wrong == count_.wrong + count_.killed) fs::remove(file);  // the others can be looked at
+    End end = try_program(file, iges, left, damage.what,
+                          {(programs_ / "mesh-prepare").string(), file.string(), "-o",
+                           result + ".ply", "--threads", "1", "--report", result + ".json"});
+    // Of variants that are read as the same triangles, one is decomposed: the bodies are the same.
+    if (end == End::Held && decomposed_.insert(text_of(result + ".ply")).second) {
+      ++count_.decomposed;
+      end = try_program(file, iges, left, damage.what,
+                        {(programs_ / "bcd-decompose").string(), file.string(), "-o",
+                         result + ".obj", "--epsilon", "10%", "--effort", "fast", "--no-cache",
+                         "--threads", "1", "--report", result + ".json"});
+    }
+    if (end == End::Held && !left.empty()) ++count_.compared;
+    count_.covered += end == End::Held ? 1 : 0;
+    count_.wrong += end == End::NotHeld ? 1 : 0;
+    count_.refused += end == End::Refused ? 1 : 0;
+    count_.limited += end == End::Limited ? 1 : 0;
+    count_.broken += end == End::Broken ? 1 : 0;
+    if (end != End::NotHeld && end != End::Broken) fs::remove(file);  // the others can be looked at
   }
 
-  void try_program(const fs::path& file, bool iges, const std::vector<FacePoints>& left,
-                   const std::string& what, const fs::path& made,
-                   const std::vector<std::string>& command) {
-    ++count_.runs;
-    const fs::path report = command.back();
+  End try_program(const fs::path& file, bool iges, const std::vector<FacePoints>& left,
+                  const std::string& what, const std::vector<std::string>& command) {
+    const fs::path made = command[3], report = command.back(), log = folder_ / "log";
     fs::remove(made);
     fs::remove(report);
-    const int code = run(command);
+    const int code = run(command, log);
     const std::string name = fs::path(command[0]).filename().string() + " " + file.string();
-    if (code == kTimedOut) ++count_.late;
-    if (code == kKilled || code == 127 || code == 6) {
-      ++count_.killed;
-      std::cout << "  BROKEN (" << code << "): " << name << " (" << what << ")\n";
+    const bool limit = code == kTimedOut || code == 7 ||
+                       (code == 3 && text_of(log).find("s of CPU time") != std::string::npos);
+    if (limit) {
+      std::cout << "  limit: " << name << " (" << what << ")\n" << std::flush;
+      return End::Limited;
     }
-    if (code != 0) return;
-    ++count_.done;
-    if (!left.empty()) ++count_.compared;
+    if (code == kKilled || code == 127 || code == 6) {
+      std::cout << "  BROKEN (" << code << "): " << name << " (" << what << ")\n" << std::flush;
+      return End::Broken;
+    }
+    if (code != 0) return End::Refused;
     const int verdict = in_child([&] {
       // The bodies of a set hold the exact faces, and say so by a wrap; meshes say how far they
       // are.
@@ -351,13 +375,14 @@ class Campaign {
       const bool old = holds_all(result, left, "undamaged faces");
       return holds_all(result, faces_of(file, iges), "OpenCASCADE's faces") && old ? 0 : 1;
     });
-    if (verdict == 0) return;
-    ++count_.wrong;
-    std::cout << "  WRONG (" << verdict << "): " << name << " (" << what << ")\n";
+    if (verdict == 0) return End::Held;
+    std::cout << "  WRONG (" << verdict << "): " << name << " (" << what << ")\n" << std::flush;
+    return End::NotHeld;
   }
 
   fs::path programs_, folder_;
   Count count_;
+  std::set<std::string> decomposed_;  ///< meshes
 };
 
 int campaign(const fs::path& programs, const fs::path& folder, std::size_t variants,
@@ -365,13 +390,17 @@ int campaign(const fs::path& programs, const fs::path& folder, std::size_t varia
   Message::DefaultMessenger()->ChangePrinters().Clear();
   fs::create_directories(folder);
   Campaign all(programs, folder);
-  for (const CadModel& model : kaboum::test::cad_models())
-    if (part.empty() || model.name.starts_with(part)) all.attack(model, first, variants);
-  const Count& c = all.count();
-  std::cout << c.variants << " variants, " << c.runs << " runs, " << c.done << " ended with 0, "
-            << c.compared << " of them beside undamaged faces; " << c.wrong << " wrong, "
-            << c.killed << " broken, " << c.late << " stopped after " << kSeconds << " s\n";
-  return c.wrong + c.killed == 0 && c.variants > 0 && c.done > 0 ? 0 : 1;
+  Count sum;
+  for (const CadModel& model : kaboum::test::cad_models()) {
+    if (!part.empty() && !model.name.starts_with(part)) continue;
+    const Count c = all.attack(model, first, variants);
+    for (std::size_t Count::*const of :
+         {&Count::variants, &Count::covered, &Count::wrong, &Count::refused, &Count::limited,
+          &Count::broken, &Count::decomposed, &Count::compared})
+      sum.*of += c.*of;
+  }
+  std::cout << "all: " << sum << '\n';
+  return sum.wrong + sum.broken == 0 && sum.variants > 0 && sum.covered > 0 ? 0 : 1;
 }
 
 }  // namespace

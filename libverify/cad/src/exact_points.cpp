@@ -144,7 +144,7 @@ ExactPoints read_exact_points(std::span<const char> bytes, io::Format format,
   // The libraries alone take half a gigabyte of addresses, and points are many.
   io::ChildLimits limits = io::child_limits(bytes.size());
   limits.memory *= 4;
-  limits.seconds *= 6;
+  limits.seconds *= 3;
   ExactPoints out = points_of(
       io::bytes_of_child(name, limits, [&] { return message_of(bytes, format, name, density); }),
       name);
