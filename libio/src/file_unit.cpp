@@ -88,9 +88,18 @@ void scale(ReadResult& read, double factor, const std::string& name) {
   std::vector<geom::Triangle> kept;
   const std::vector<geom::Triangle> before = read.mesh.triangles;
   read.mesh = geom::weld(read.mesh);
+  constexpr auto kGone = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> number(before.size(), kGone);
   for (std::size_t t = 0; t < before.size(); ++t)
-    if (!has_equal_corners(read.mesh.triangles[t]) || has_equal_corners(before[t]))
+    if (!has_equal_corners(read.mesh.triangles[t]) || has_equal_corners(before[t])) {
+      number[t] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(read.mesh.triangles[t]);
+    }
+  std::vector<std::uint32_t> quads;  // both of whose triangles are left
+  for (const std::uint32_t quad : read.bent_quads)
+    if (number[quad] != kGone && number[quad + 1] != kGone) quads.push_back(number[quad]);
+  read.bent_quads = std::move(quads);
+  read.largest_bend *= factor;
   const std::size_t collapsed = before.size() - kept.size();
   read.mesh.triangles = std::move(kept);
   if (collapsed > 0) {

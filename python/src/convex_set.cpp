@@ -109,10 +109,12 @@ MeshValue scaled(MeshValue value, double factor) {
   read.mesh = *value.mesh;
   read.unit = value.unit;
   read.deviation = value.deviation;
+  read.bent_quads = value.bent_quads;
   io::scale(read, factor, value.source.empty() ? "the mesh" : value.source);
   value.mesh = std::make_shared<const geom::Mesh>(std::move(read.mesh));
   value.unit = read.unit;
   value.deviation = read.deviation;
+  value.bent_quads = std::move(read.bent_quads);
   value.notes.insert(value.notes.end(), read.notes.begin(), read.notes.end());
   return value;
 }
@@ -128,6 +130,11 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
   MeshValue value = mesh_of(mesh, "mesh");
   if (r.scale != 1) value = scaled(std::move(value), r.scale);
   if (!value.unit.empty()) r.unit = value.unit;
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  r.preparation.quads = value.bent_quads;
+  r.preparation.diagonal = r.direction == certify::SetRequest::Direction::Outer
+                               ? Diagonal::Outward
+                               : Diagonal::Inward;
   r.source = std::filesystem::path(value.source).filename().string();
   // Of STEP and IGES the exact faces are what is covered.
   if (value.deviation > 0 && r.hold_exact_faces &&
