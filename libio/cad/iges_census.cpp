@@ -3,7 +3,9 @@
 // Entities that nothing refers to are shown, with what their groups, subfigures and solids hold.
 
 #include <IGESBasic_SingularSubfigure.hxx>
+#include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
+#include <IGESData_IGESModel.hxx>
 #include <IGESData_UndefinedEntity.hxx>
 #include <IGESGeom_Boundary.hxx>
 #include <IGESGeom_BoundedSurface.hxx>
@@ -16,6 +18,7 @@
 #include <IGESSolid_Loop.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <gp_GTrsf.hxx>
 #include <gp_Mat.hxx>
 #include <gp_Pnt.hxx>
@@ -163,6 +166,7 @@ class IgesCensus {
       : model_(model), graph_(model) {}
 
   Census run() {
+    check_unit();
     const int count = model_->NbEntities();
     for (int i = 1; i <= count; ++i) {
       const Handle(IGESData_IGESEntity) e = at(i);
@@ -188,6 +192,30 @@ class IgesCensus {
 
  private:
   [[noreturn]] static void refuse(const std::string& what) { throw std::runtime_error(what); }
+
+  /// Its flag and its name say the same, and a unit is a unit: a scale of the model is not read.
+  void check_unit() const {
+    const auto model = Handle(IGESData_IGESModel)::DownCast(model_);
+    if (model.IsNull()) refuse("it has no global section");
+    const IGESData_GlobalSection& global = model->GlobalSection();
+    if (global.Scale() != 1) refuse("its model space has a scale, which is not read");
+    static const std::map<int, std::string> kNames{
+        {1, "IN INCH"}, {2, "MM"},  {3, ""},   {4, "FT"},  {5, "MI"},  {6, "M"},
+        {7, "KM"},      {8, "MIL"}, {9, "UM"}, {10, "CM"}, {11, "UIN"}};
+    const int flag = global.UnitFlag();
+    const auto known = kNames.find(flag);
+    const std::string name =
+        global.UnitName().IsNull() ? std::string() : global.UnitName()->ToCString();
+    const auto is_one_of = [&name](const std::string& names) {
+      return !name.empty() && (" " + names + " ").find(" " + name + " ") != std::string::npos;
+    };
+    const bool right = known != kNames.end() &&
+                       (flag == 3 ? std::any_of(kNames.begin(), kNames.end(),
+                                                [&](const auto& n) { return is_one_of(n.second); })
+                                  : name.empty() || is_one_of(known->second));
+    if (!right)
+      refuse("its unit (flag " + std::to_string(flag) + ", name '" + name + "') is not known");
+  }
 
   /// OpenCASCADE forgets the matrices of solids, shells, faces, loops, points and more.
   void check_matrix(int i) const {

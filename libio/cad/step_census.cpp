@@ -187,6 +187,8 @@ class StepCensus {
   void add_representation(std::size_t rep, double weight, int depth, std::size_t from) {
     if (depth > kDeepest) refuse(name(rep) + " is a part of itself");
     if (++places_ > kMostPlaces) refuse(name(rep) + ": too many places of it");
+    // Its context is one of what it refers to.
+    if (refers_[rep].size() > 1 && united_.insert(rep).second) check_units(file_, entity(rep));
     for (const std::size_t item : refers_[rep]) add_item(rep, item, weight, depth);
     const auto links = linked_.find(rep);
     if (links == linked_.end()) return;
@@ -286,6 +288,7 @@ class StepCensus {
   std::map<std::size_t, std::vector<std::size_t>> linked_;
   std::vector<std::pair<std::size_t, std::size_t>> shape_of_;  ///< representation, product
   std::set<std::size_t> has_shape_, placed_;
+  std::set<std::size_t> united_;  ///< representations whose units were looked at
   std::map<std::size_t, double> weight_;
   double total_ = 0;
   std::size_t places_ = 0;

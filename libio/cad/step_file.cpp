@@ -290,6 +290,12 @@ std::size_t StepFile::argument(const StepRecord& record, std::size_t i) const {
   return token != nullptr && token->kind == StepToken::Reference ? find(token->id) : npos;
 }
 
+std::string_view StepFile::word(const StepToken& token) const {
+  if (token.kind != StepToken::Value) return {};
+  const std::string_view rest = std::string_view(text_).substr(token.id);
+  return rest.substr(0, rest.find_first_of(" \n\r\t\f\v(),;'\"#/$*="));
+}
+
 std::optional<double> StepFile::number(const StepToken& token) const {
   if (token.kind != StepToken::Value) return std::nullopt;
   const char* begin = text_.data() + token.id;

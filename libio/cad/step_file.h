@@ -47,6 +47,8 @@ class StepFile {
   [[nodiscard]] std::vector<std::size_t> references(const StepEntity& entity) const;
   /// The i-th parameter of a record, or the bracket that closes it; null where there are fewer.
   [[nodiscard]] const StepToken* parameter(const StepRecord& record, std::size_t i) const;
+  /// A value as it is written: ".MILLI.". Empty for other tokens.
+  [[nodiscard]] std::string_view word(const StepToken& token) const;
   /// Nothing where the token is no number.
   [[nodiscard]] std::optional<double> number(const StepToken& token) const;
   /// All numbers of a record, those of lists too.
@@ -71,6 +73,10 @@ const StepRecord* record_of(const StepEntity& entity, std::string_view name);
 /// @throws std::runtime_error naming operators that mirror or scale, transformations between
 ///   placements neither of which is the origin, placements that lack a direction that they need.
 void check_placements(const StepFile& file);
+/// Refuses units of a representation's context that OpenCASCADE does not understand.
+///
+/// @throws std::runtime_error naming the context or the unit.
+void check_units(const StepFile& file, const StepEntity& representation);
 /// "#12 ADVANCED_FACE".
 std::string named(const StepEntity& entity);
 

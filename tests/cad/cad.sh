@@ -152,6 +152,29 @@ for part in placed-*.step; do
       ;;
   esac
 done
+# Units that it does not understand, where it takes millimetres.
+mm='LENGTH_UNIT() NAMED_UNIT(\*) SI_UNIT(.MILLI.,.METRE.)'
+unit() { sed "s/^\(#[0-9]*\) = ( $mm );/#9001 = ( $1 );\\n\1 = $2;\\n$3/" parts/box.step >unit.step; }
+si='LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.)'
+inch="( CONVERSION_BASED_UNIT('INCH',#9002) LENGTH_UNIT() NAMED_UNIT(#9003) )"
+zero='#9003 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);'
+unit "$si" "$inch" "#9002 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9001);$zero"
+expect 0 '' "$BIN/mesh-prepare" unit.step -o placed.ply
+"$PARTS" box placed.ply '0 0 0 762 508 254' >out.txt || fail "inches: $(cat out.txt)"
+unit "$si" "$inch" "#9002 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(12.),#9004);#9004 = ( CONVERSION_BASED_UNIT('INCH',#9005) LENGTH_UNIT() NAMED_UNIT(#9003) );#9005 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9001);$zero"
+expect 3 '#9004 .*known prefix' "$BIN/mesh-prepare" unit.step -o none.ply
+unit "$si" "$inch" "#9002 = ( LENGTH_MEASURE_WITH_UNIT() MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9001) );$zero"
+expect 3 'a measure in this form' "$BIN/mesh-prepare" unit.step -o none.ply
+unit 'LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.GRAM.)' "$inch" "#9002 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#9001);$zero"
+expect 3 'METRE' "$BIN/mesh-prepare" unit.step -o none.ply
+unit "$si" '( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.DEKA.,.METRE.) )' ''
+expect 3 'known prefix' "$BIN/mesh-prepare" unit.step -o none.ply
+sed 's/^\(GLOBAL_UNIT_ASSIGNED_CONTEXT.*\|((\|(\)\(#[0-9]*\),\(#[0-9]*,#[0-9]*)) REPRESENTATION_CONTEXT\)/\1\3/' parts/box.step >unit.step
+expect 3 'no unit of length' "$BIN/mesh-prepare" unit.step -o none.ply
+sed 's/,1[.],2,2HMM,/,.5,2,2HMM,/' parts/box.iges >wrong.iges
+expect 3 'has a scale' "$BIN/mesh-prepare" wrong.iges -o none.ply
+sed 's/,1[.],2,2HMM,/,1.,1,2HMM,/' parts/box.iges >wrong.iges
+expect 3 'its unit' "$BIN/mesh-prepare" wrong.iges -o none.ply
 # IGES: the same of matrices.
 cat >matrix.py <<'END'
 import sys
