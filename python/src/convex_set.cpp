@@ -132,9 +132,8 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
   if (!value.unit.empty()) r.unit = value.unit;
   using Diagonal = geom::PrepareOptions::Diagonal;
   r.preparation.quads = value.bent_quads;
-  r.preparation.diagonal = r.direction == certify::SetRequest::Direction::Outer
-                               ? Diagonal::Outward
-                               : Diagonal::Inward;
+  r.preparation.diagonal =
+      r.direction == certify::SetRequest::Direction::Outer ? Diagonal::Outward : Diagonal::Inward;
   r.source = std::filesystem::path(value.source).filename().string();
   // Of STEP and IGES the exact faces are what is covered.
   if (value.deviation > 0 && r.hold_exact_faces &&

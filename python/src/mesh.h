@@ -24,7 +24,7 @@ struct MeshValue {
   double deviation = 0;  ///< of exact faces from the triangles; 0: there are none [length]
   std::size_t exact_faces = 0;
   std::vector<std::uint32_t> bent_quads = {};  ///< io::ReadResult::bent_quads
-  std::optional<io::Format> format = {};  ///< of the file, where it has exact faces
+  std::optional<io::Format> format = {};       ///< of the file, where it has exact faces
 };
 
 struct PreparedValue {
