@@ -97,7 +97,7 @@ def test_every_front_end_has_every_option(function):
     ({"simplify": float("nan")}, "simplify must be a number from 0 to 1"),
     ({"epsilon": "1mm"}, "epsilon must be a positive number"),
     ({"epsilon": -1}, "epsilon must be a positive number"),
-    ({"effort": "fsat"}, "did you mean 'fast'"),
+    ({"effort": "fastt"}, "did you mean 'fast'"),
     ({"drop_sheets": 1}, "drop_sheets must be True or False"),
     ({"seal": "1%"}, "seal is for prepare wrap"),
     ({"direction": "inner", "simplify": 0.25}, "simplify needs direction outer"),
@@ -110,4 +110,4 @@ def test_wrong_values_are_named(given, says):
 
 def test_unknown_keywords_are_type_errors():
     with pytest.raises(TypeError, match="did you mean 'max_bodies'"):
-        kaboum.decompose("none.off", max_body=3)
+        kaboum.decompose("none.off", max_bodie=3)
