@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/mesh.h>
+#include <kaboum/geom/preparation_doubt.h>
 
 #include <algorithm>
 
