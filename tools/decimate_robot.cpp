@@ -118,8 +118,11 @@ RobotCheck check_of(const Run& run, const RobotOutput& output) {
     epsilon.reset();
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
     if (!mesh.flaw.empty() || mesh.made.enclosure.certificate().wrap) epsilon.reset();
-  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.preparation, run.o.prepare.drop_sheets, epsilon, run.verdicts);
+  certify::PreparationOptions preparation;
+  preparation.mode = run.o.preparation.mode();
+  preparation.drop_sheets = run.o.prepare.drop_sheets;
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot, preparation,
+                         epsilon, run.verdicts);
 }
 
 /// The shapes of each link that has some.

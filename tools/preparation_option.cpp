@@ -24,6 +24,14 @@ CLI::Option* add_length(CLI::App& app, const char* name, std::string& value, con
 
 }  // namespace
 
+certify::PreparationOptions::Mode PreparationOption::mode() const {
+  using Mode = certify::PreparationOptions::Mode;
+  return name == "strict" ? Mode::Strict
+         : name == "wrap" ? Mode::Wrap
+         : name == "off"  ? Mode::Off
+                          : Mode::Auto;
+}
+
 void PreparationOption::apply(geom::PrepareOptions& options) const {
   if (name == "strict") options.holes = geom::Holes::Refuse;
   if (name == "off") {

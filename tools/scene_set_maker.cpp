@@ -4,13 +4,13 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/inner_links.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 #include "cli.h"
 #include "robot_bodies.h"
@@ -47,35 +47,14 @@ void require_unit(const std::string& file, double scale, const std::string& need
 
 std::optional<std::string> apply_parameters(const std::string& parameters,
                                             SceneSetOptions& options) {
-  std::istringstream words(parameters);
-  std::string option, value;
-  while (words >> option) {
-    if (option == "--drop-sheets") {
-      options.sets.preparation.drop_sheets = true;
-      continue;
-    }
-    bool known = static_cast<bool>(words >> value);
-    if (option == "--epsilon") {
-      options.sets.epsilon = parse_length(value);
-      known = known && options.sets.epsilon.has_value();
-    } else if (option == "--effort") {
-      known = known && (value == "fast" || value == "normal" || value == "best");
-      options.sets.effort = value == "fast"   ? bcd::Effort::Fast
-                            : value == "best" ? bcd::Effort::Best
-                                              : bcd::Effort::Normal;
-    } else if (option == "--max-vertices-per-body") {
-      known = known && value == std::to_string(options.sets.max_vertices);
-    } else if (option == "--scale") {
-      const std::optional<Length> factor = parse_length(value);
-      known = known && factor && !factor->percent;
-      if (known) options.sets.scale = factor->value;
-    } else if (option == "--geometry") {
-      options.visual = value == "visual";
-    } else if (option != "--direction") {
-      known = false;
-    }
-    if (!known) return option;
-  }
+  certify::RobotSetOptions stated;
+  std::string unknown = read_record(certify::robot_set_options(), parameters, stated);
+  if (!unknown.empty()) return unknown;
+  stated.set.request.unit = options.sets.unit;
+  stated.set.request.frame = options.sets.frame;
+  stated.set.request.direction = options.sets.direction;
+  options.sets = certify::request_of(stated.set);
+  options.visual = stated.visual;
   return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "given_solid.h"
 #include "issuer.h"
 namespace kaboum::certify {
 namespace {
@@ -145,9 +146,11 @@ void MeshCertifier::look_at_surface(Candidate& made, double work) {
   if (!original_.solid.closed() || request_.direction == bmesh::Direction::Any) return;
   if (wrapped_ != nullptr) {
     // The wrap's solid holds them, and the result's the wrap's: decided, and certified by the
-    // steps.
-    c.surface.emplace().claim.answer = verify::Answer::Verified;
-    if (c.decided) c.surface = decided_surface(made);
+    // steps, if the solid that these started from is the wrap's.
+    if (c.decided || !is_as_it_was(original_.report))
+      c.surface = decided_surface(made);
+    else
+      c.surface.emplace().claim.answer = verify::Answer::Verified;
     ensure(!refuted(c.surface_answer()),
            "the verification refutes that the result of a wrap holds the input's triangles");
     return;

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "given_solid.h"
 #include "issuer.h"
 #include "record_count.h"
 #include "wrap_record.h"
@@ -109,13 +110,18 @@ WrapCertificate wrap_of(const nlohmann::ordered_json& record) {
   return out;
 }
 
-CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) {
+CertifiedWrap certify_wrap(const geom::Mesh& given, const WrapRequest& request) {
+  geom::PrepareOptions both;
+  both.quads = request.quads;
+  both.diagonal = geom::PrepareOptions::Diagonal::Outward;
+  const geom::Mesh other = request.quads.empty() ? geom::Mesh() : with_other_diagonals(given, both);
+  const geom::Mesh& input = request.quads.empty() ? given : other;
   if (input.triangles.empty())
     throw Error(ErrorCode::InvalidInput, "there are no triangles to wrap");
   geom::require_valid(input);
   geom::require_moderate(input);
   WrapCertificate made;
-  made.input_triangles = input.triangles.size();
+  made.input_triangles = given.triangles.size();
   made.diagonal = geom::bounding_box(input).diagonal();
   if (!(made.diagonal > 0))
     throw Error(ErrorCode::InvalidInput,

@@ -16,8 +16,11 @@ PreparedValue prepare(const py::object& mesh, bool drop_sheets, const std::strin
                                      .holes = holes_of(holes, true),
                                      .keep_orientation = keep_orientation};
   return run(0, [&] {
-    return PreparedValue{
-        std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options))};
+    auto prepared = std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options));
+    if (value.deviation > 0)
+      prepared->report.notes.emplace_back(
+          "The triangles stand for exact faces; what is certified of them is about the triangles.");
+    return PreparedValue{std::move(prepared)};
   });
 }
 
