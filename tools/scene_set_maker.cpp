@@ -88,7 +88,7 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
   certify::RobotRequest request{
       options.sets, {options.links, options.visual, options.packages}, {}, {}};
   request.tool = std::string("kaboum-scene ") + version();
-  request.set.wrap.emplace().where_needed = true;
+  if (!request.set.wrap) request.set.wrap.emplace().where_needed = true;
   request.partial = true;
   require_formats(robot::link_meshes(file, request.shapes), "");
   Notes of_meshes;
@@ -201,7 +201,9 @@ Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
   Notes of_mesh;
   certify::SetRequest request = options.sets;
   request.direction = direction;
-  if (direction == certify::SetRequest::Direction::Outer)
+  if (direction != certify::SetRequest::Direction::Outer)
+    request.wrap.reset();
+  else if (!request.wrap)
     request.wrap.emplace().where_needed = true;
   const auto note = [&](const std::string& text) { of_mesh.add(file, text); };
   const certify::CertifiedFile made =
