@@ -2,10 +2,12 @@
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "notes.h"
@@ -125,7 +127,8 @@ class RobotVerifier {
         robot::links_judged(verdict.links.size(),
                             o_.links.empty() ? original_.robot.links.size() : o_.links.size(),
                             bare_) +
-        except_sheets(dropped_in(verdict)));
+        except_sheets(dropped_in(verdict)) +
+        (verdict.answer == Answer::Verified && has_exact_faces(verdict) ? kOfTriangles : ""));
     return exit_code(verdict.answer);
   }
 
@@ -216,6 +219,18 @@ class RobotVerifier {
       throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
                                                (visual() ? "" : "; try --geometry visual"));
     require_apart({{"--report", common_.report}}, inputs);
+  }
+
+  /// Whether triangles of some mesh that was judged stand for exact faces.
+  static bool has_exact_faces(const verify::RobotVerdict& verdict) {
+    for (const verify::LinkVerdict& link : verdict.links)
+      for (const verify::ShapeVerdict& shape : link.shapes) {
+        if (shape.file == nullptr) continue;
+        const auto format =
+            io::format_from_name(std::filesystem::path(shape.file->path).extension().string());
+        if (format && io::is_cad(*format)) return true;
+      }
+    return false;
   }
 
   static DroppedSheets dropped_in(const verify::RobotVerdict& verdict) {
