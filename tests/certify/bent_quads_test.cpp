@@ -43,7 +43,8 @@ TEST(BentQuads, AWrapHoldsBothWaysOfSplitting) {
   WrapRequest request;
   request.offset = Length{0.5, true};
   request.seal = Length{2, true};
-  EXPECT_FALSE(holds(certify_wrap(given.mesh, request).artefact(), other));
+  const CertifiedWrap one_way = certify_wrap(given.mesh, request);
+  EXPECT_FALSE(holds(one_way.artefact(), other));
   request.quads = given.bent_quads;
   const CertifiedWrap wrap = certify_wrap(given.mesh, request);
   EXPECT_TRUE(holds(wrap.artefact(), other));
@@ -78,7 +79,6 @@ TEST(BentQuads, ASetOfAMeshDoesNotStandForThatOfItsFile) {
   request.epsilon = Length{1, true};
   for (int again = 0; again < 2; ++again) {
     const CertifiedFile file = certify_file(folder / "cube.obj", {}, request, &cache);
-    geom::Mesh hull;
     ASSERT_EQ(file.found.set.artefact().bodies.size(), 1U);
     EXPECT_TRUE(holds(file.found.set.artefact().bodies.front().hull, read(cube(true)).mesh));
     // As a program would that knows nothing of quads.
