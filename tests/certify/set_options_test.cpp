@@ -5,7 +5,7 @@
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/certify/set_options.h>
 
-#include "shapes.h"
+#include "support/shapes.h"
 
 namespace kaboum::certify {
 namespace {
