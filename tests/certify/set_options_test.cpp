@@ -85,9 +85,10 @@ TEST(SetOptions, EachIsRecordedReadBackAndPartOfTheKey) {
         << o.name;
     SetOptions back;
     EXPECT_EQ(read_record(set_options(), request_of(changed).parameters(), back), "") << o.name;
-    if (!o.unrecorded)
+    if (!o.unrecorded) {
       EXPECT_EQ(o.value(options_of(request_of(back))), o.value(options_of(request_of(changed))))
           << o.name;
+    }
   }
 }
 
