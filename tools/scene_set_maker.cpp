@@ -135,7 +135,8 @@ void SceneSetMaker::add_bad_links(const std::string& name, const robot::Robot& r
   for (const certify::LinkVerdict& link : verdicts) {
     if (link.outcome == Outcome::Held) continue;
     const std::string& link_name = robot.links[link.link].name;
-    std::string line = "robot '" + name + "', link '" + link_name + "': " + link.sentence;
+    std::string line = "robot '";
+    line.append(name).append("', link '").append(link_name).append("': ").append(link.sentence);
     if (link.outcome == Outcome::Kept) {
       kept_[name].push_back(link_name);
       line += "; it has no set, and the scene is refused until it has one";

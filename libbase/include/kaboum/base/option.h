@@ -219,7 +219,8 @@ std::string read_record(const std::vector<Option<Request>>& options, std::string
     if (found == nullptr) return word;
     const bool flag = found->kind == OptionDescription::Kind::Flag;
     const std::string value = flag ? "true" : option_detail::next_word(record);
-    if (!flaw_of(*found, value).empty()) return word + (value.empty() ? "" : " " + value);
+    if (!flaw_of(*found, value).empty())
+      return value.empty() ? word : word.append(" ").append(value);
     found->assign(request, value);
   }
   return {};
