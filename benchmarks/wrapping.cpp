@@ -9,6 +9,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 #include <kaboum/geom/distance.h>
+#include <kaboum/geom/self_intersection.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/wrap/wrap.h>
@@ -20,6 +22,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "common.h"
@@ -50,8 +53,9 @@ geom::Mesh alpha_wrap(const geom::Mesh& mesh, double alpha, double offset) {
 }
 
 struct Row {
-  std::size_t triangles;
-  double seconds, distance;
+  std::size_t triangles, crossing;
+  bool manifold;
+  double seconds, distance, volume;
   const char* inside;
 };
 
@@ -65,7 +69,19 @@ Row measured(const geom::Mesh& input, double diagonal, Make&& make) {
   verify::InclusionOptions options;
   options.surface_only = true;
   const auto answer = verify::verify_inclusion(input, mesh, options).surface.answer;
-  return {mesh.triangles.size(), seconds, far / diagonal, verify::name_of(answer)};
+  const geom::SelfIntersections meets = geom::self_intersections(mesh);
+  const geom::TopologyReport topology = geom::analyse(mesh);
+  return {mesh.triangles.size(),
+          meets.triangles + meets.flat,
+          topology.closed() && topology.manifold(),
+          seconds,
+          far / diagonal,
+          geom::signed_volume(mesh),
+          verify::name_of(answer)};
+}
+
+std::string clean(const Row& row) {
+  return std::to_string(row.crossing) + (row.manifold ? "" : ", not manifold");
 }
 
 void compare(const char* file, double offset_share, double seal_share) {
@@ -80,11 +96,14 @@ void compare(const char* file, double offset_share, double seal_share) {
     return wrap::wrap(input, options).mesh;
   });
   const Row theirs = measured(input, diagonal, [&] { return alpha_wrap(input, seal / 2, offset); });
-  std::printf("| %s | %zu | %zu | %zu | %.2f | %.2f | %.1f | %.2f | %.2f | %s, %s |\n",
-              std::filesystem::path(file).filename().c_str(), input.triangles.size(),
-              ours.triangles, theirs.triangles, ours.seconds, theirs.seconds,
-              theirs.seconds / ours.seconds, 100 * ours.distance, 100 * theirs.distance,
-              ours.inside, theirs.inside);
+  const auto name = std::filesystem::path(file).filename();
+  std::printf(
+      "| %s | %zu | %zu | %zu | %s | %s | %.3f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s, %s "
+      "|\n",
+      name.c_str(), input.triangles.size(), ours.triangles, theirs.triangles, clean(ours).c_str(),
+      clean(theirs).c_str(), ours.volume / theirs.volume, ours.seconds, theirs.seconds,
+      ours.seconds / theirs.seconds, 100 * ours.distance, 100 * theirs.distance,
+      ours.distance / theirs.distance, ours.inside, theirs.inside);
   std::fflush(stdout);
 }
 
@@ -96,9 +115,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::printf(
-      "| mesh | triangles | ours | CGAL's | s | CGAL's s | CPU ratio | farthest, %% | CGAL's, %% | "
-      "inside |\n");
-  std::printf("|---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
+      "| mesh | triangles | ours | CGAL's | crossing | CGAL's | volume ratio | s | CGAL's s | CPU "
+      "ratio | farthest, %% | CGAL's, %% | ratio | inside |\n");
+  std::printf("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
   std::fflush(stdout);
   for (int i = 3; i < argc; ++i) {
     if (fork() == 0) {

@@ -27,7 +27,7 @@ KABOUM_THREADS ?= 1
 # Where the programs are, with a slash; empty: on PATH.
 KABOUM_BIN ?=
 # Extensions of meshes, in the order in which they are looked for, and formats of results.
-KABOUM_INPUTS ?= stl STL obj OBJ ply off wrl dae 3mf x3d gltf glb fbx
+KABOUM_INPUTS ?= stl STL obj OBJ ply off wrl dae 3mf x3d gltf glb fbx step stp iges igs
 KABOUM_FORMATS ?= ply stl obj off glb
 # Folder of what the rules note: dependencies and options.
 KABOUM_NOTES ?= .kaboum.d

@@ -22,8 +22,8 @@ certify::CertifiedFile certify_mesh(const DecomposeOptions& o) {
       [&](const std::string& text) { log(o.common.quiet, o.input + ": " + text); }};
   const certify::SetCache cache(certify::SetCache::default_folder());
   const io::Format format = format_for(o.input, o.input_format, "--input-format");
-  return certify::certify_file(o.input, format, request_of(o), o.no_cache ? nullptr : &cache,
-                               hooks);
+  return certify::certify_file(o.input, format, certify::request_of(o.set),
+                               o.no_cache ? nullptr : &cache, hooks);
 }
 
 int decompose_mesh(const DecomposeOptions& o) {

@@ -110,9 +110,19 @@ void write(Run& run, RobotOutput& output) {
       {}, run.notes);
 }
 
+/// The command that decides it from the files alone; epsilon as well, where it is one for all links
+/// and of distances to what the files hold, not to wraps or exact faces.
 RobotCheck check_of(const Run& run, const RobotOutput& output) {
-  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.preparation, run.o.prepare.drop_sheets, {}, run.verdicts);
+  std::optional<Length> epsilon = run.request.mesh.mesh.epsilon;
+  if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
+    epsilon.reset();
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
+    if (!mesh.flaw.empty() || mesh.made.enclosure.certificate().wrap) epsilon.reset();
+  certify::PreparationOptions preparation;
+  preparation.mode = run.o.preparation.mode();
+  preparation.drop_sheets = run.o.prepare.drop_sheets;
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot, preparation,
+                         epsilon, run.verdicts);
 }
 
 /// The shapes of each link that has some.

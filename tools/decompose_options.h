@@ -1,14 +1,11 @@
 #pragma once
 
-#include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/set_options.h>
 
-#include <optional>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "cli.h"
-#include "holes_option.h"
-#include "preparation_option.h"
 #include "robot_options.h"
 
 namespace CLI {
@@ -19,17 +16,12 @@ class App;
 namespace kaboum::tools {
 
 struct DecomposeOptions {
-  std::string input, output, input_format, output_format, epsilon, direction = "outer";
-  std::string effort = "normal", method = "planes", pre_step = "auto";
-  std::string unit = "m", frame, preview, depfile;
-  std::size_t max_bodies = 0, max_vertices = 64, max_total = 0;  ///< 0: not given
-  double explode = 0.5, min_thickness = 0, scale = 1;
-  std::optional<double> simplify, max_work, improve_work;
+  certify::SetOptions set;
+  std::set<std::string> stated;  ///< names of the set's options that were stated
+  std::string input, output, input_format, output_format, preview, depfile;
+  double explode = 0.5;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   bool no_cache = false, srdf = false;
-  geom::PrepareOptions prepare;
-  HolesOption holes;
-  PreparationOption preparation;
   RobotOptions robot;
   CommonOptions common;
 };
@@ -42,8 +34,5 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& options);
 
 /// Of robots: what --for sets, where nothing else does.
 void apply_preset(const CLI::App& app, DecomposeOptions& options);
-
-/// What the options ask for.
-certify::SetRequest request_of(const DecomposeOptions& options);
 
 }  // namespace kaboum::tools

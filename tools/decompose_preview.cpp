@@ -35,10 +35,10 @@ std::string three_digits(double x) {
 /// The triangles that distances are to: of the solid as prepared; of the file where a wrap is what
 /// was covered.
 geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
-  const certify::SetRequest request = request_of(o);
+  const certify::SetRequest request = certify::request_of(o.set);
   io::ReadResult read =
       io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
-  io::scale(read, o.scale, o.input);
+  io::scale(read, request.scale, o.input);
   if (wrapped) return std::move(read.mesh);
   return naming(o.input,
                 [&] { return geom::prepare(read.mesh, request.preparation).solid.mesh(); });
@@ -103,7 +103,7 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
                           const certify::CertifiedRobot& made,
                           const std::vector<certify::LinkVerdict>& verdicts) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
-  page::Preview preview{"Bodies of " + file_name(o.input), o.unit};
+  page::Preview preview{"Bodies of " + file_name(o.input), o.set.request.unit};
   preview.meaning = "distance of the bodies from the shapes of their link";
   Layer input{"shapes", Layer::View::Shown, false};
   Layer result{"bodies", Layer::View::Transparent};
@@ -131,12 +131,11 @@ std::string page_of_robot(const DecomposeOptions& o, const robot::RobotFile& rob
     count += hulls.size();
     reach = std::max(reach, made_link.certificate().distance);
   }
-  preview.facts = {
-      {"robot", file_name(o.input) + ", at zero joint values"},
-      {"options", o.epsilon.empty() ? request_of(o).parameters() : "--epsilon " + o.epsilon},
-      {"result",
-       counted(count, "body", "bodies") + " of " + counted(made.links.size(), "link", "links")},
-      {"verdict", in_words(verdicts) + ": decided exactly"}};
+  preview.facts = {{"robot", file_name(o.input) + ", at zero joint values"},
+                   {"options", certify::request_of(o.set).parameters()},
+                   {"result", counted(count, "body", "bodies") + " of " +
+                                  counted(made.links.size(), "link", "links")},
+                   {"verdict", in_words(verdicts) + ": decided exactly"}};
   for (const certify::LinkVerdict& link : verdicts)
     if (link.outcome != certify::Outcome::Held)
       preview.facts.emplace_back("link " + robot.robot.links[link.link].name, link.sentence);

@@ -29,7 +29,7 @@ namespace {
 certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::RobotFile& robot,
                                     const robot::ShapeChoice& choice) {
   certify::RobotRequest r{
-      request_of(o), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
+      certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
   if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
   return r;
 }
@@ -162,7 +162,7 @@ RobotCheck check_of(const Run& run, const RobotOutput& output) {
   for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
     if (!mesh.held || mesh.made.found.set.certificate().wrap) epsilon.reset();
   return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.preparation, run.o.prepare.drop_sheets, epsilon, run.verdicts);
+                         run.o.set.preparation, epsilon, run.verdicts);
 }
 
 Json robot_report(const Run& run, const RobotOutput& output) {
@@ -218,7 +218,7 @@ void write_page(const Run& run, const RobotOutput& output) {
                  .source = run.o.input,
                  .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
                  .check = check_of(run, output),
-                 .unit = run.o.unit,
+                 .unit = run.request.set.unit,
                  .files = output.documents(),
                  .notes = run.notes.lines(),
                  .links = {}};
@@ -229,7 +229,7 @@ void write_page(const Run& run, const RobotOutput& output) {
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
-  if (o.direction != "outer")
+  if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
   require_robot_folder(o.output, o.output_format);

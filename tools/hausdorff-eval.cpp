@@ -2,10 +2,12 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/distance/compare.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -154,6 +156,19 @@ std::vector<char> heatmap(const Options& o, const Comparison& c, const distance:
                             result.upper(), c.diagonal(), o.width, o.height));
 }
 
+/// Segments and points of a mesh bound nothing, so that no solid is near or far because of them.
+void note_what_bounds_nothing(tools::ShapeFile& file) {
+  const geom::Mesh& mesh = file.shape.mesh;
+  const auto flat = std::ranges::count_if(mesh.triangles, [&](const geom::Triangle& t) {
+    return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  });
+  if (flat > 0)
+    file.notes.push_back(
+        std::to_string(flat) +
+        (flat == 1 ? " triangle without area bounds" : " triangles without area bound") +
+        " nothing: with --solid no distance from or to it is measured");
+}
+
 /// The exit code, said where it is not 0.
 /// @param deviations  of exact faces from the triangles that stand for them, added
 int conclude(const Options& o, double diagonal, double deviations,
@@ -202,6 +217,8 @@ int run(const Options& o) {
     return tools::read_shape(file, {as, o.input_format, unit});
   };
   std::array<tools::ShapeFile, 2> files{read(o.a, o.a_as, o.unit), read(o.b, o.b_as, {})};
+  if (o.solid)
+    for (tools::ShapeFile& file : files) note_what_bounds_nothing(file);
   io::require_same_unit(o.a, files[0].unit, o.b, files[1].unit);
   const double reading = since(start);
   const auto begin = now();

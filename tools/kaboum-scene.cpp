@@ -26,17 +26,21 @@ std::vector<tools::NamedFile> named_files(const std::vector<std::string>& texts,
   return out;
 }
 
-void say_made(const tools::SceneOptions& o, const tools::MadeScene& made, const std::string& what,
-              const char* command) {
+/// @return the exit code
+int say_made(const tools::SceneOptions& o, const tools::MadeScene& made, const std::string& what,
+             const char* command) {
   for (const std::string& line : made.notes) tools::log(o.common.quiet, line);
   for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
   tools::log(o.common.quiet, what);
+  for (const std::string& link : made.bad_links) tools::log(false, link);
   tools::write_report(o.common, "kaboum-scene",
                       {{"command", command},
                        {"scene", o.scene},
                        {"sets", made.containers.size()},
                        {"inputs", made.inputs},
+                       {"bad_links", made.bad_links},
                        {"notes", made.notes}});
+  return made.bad_links.empty() ? tools::kDone : tools::kNo;
 }
 
 int make_scene(const tools::SceneOptions& o) {
@@ -89,13 +93,12 @@ int make_scene(const tools::SceneOptions& o) {
   tools::Progress progress(o.common.quiet);
   maker.options.progress = [&](const std::string& stage) { progress.show(stage); };
   const tools::MadeScene made = tools::make_scene(maker);
-  say_made(o, made,
-           o.scene + ": " + std::to_string(made.containers.size()) + " sets" +
-               (maker.places.size() < inputs.size()
-                    ? ", what --at does not name at the origin: put things where they belong"
-                    : ""),
-           "make");
-  return tools::kDone;
+  return say_made(o, made,
+                  o.scene + ": " + std::to_string(made.containers.size()) + " sets" +
+                      (maker.places.size() < inputs.size()
+                           ? ", what --at does not name at the origin: put things where they belong"
+                           : ""),
+                  "make");
 }
 
 int update_scene(const tools::SceneOptions& o) {
@@ -107,13 +110,12 @@ int update_scene(const tools::SceneOptions& o) {
   const tools::MadeScene made =
       tools::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
                            [&](const std::string& stage) { progress.show(stage); }});
-  say_made(
+  return say_made(
       o, made,
       o.scene + ": " +
           (made.containers.empty() ? std::string("nothing is out of date")
                                    : std::to_string(made.containers.size()) + " sets made anew"),
       "update");
-  return tools::kDone;
 }
 
 }  // namespace
@@ -127,7 +129,8 @@ int main(int argc, char** argv) {
   tools::describe_pairs(app, options);
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done; 2 usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
+      "Exit codes: 0 done; 1 a link of a robot is not held as asked for (the rest is written); 2 "
+      "usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
       "7 limit.");
   return tools::run(app, argc, argv, [&] {
     if (make->parsed()) return make_scene(options);

@@ -95,6 +95,7 @@ void wrap(PrepareCase& run, bool doubles) {
     farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
   certify::WrapRequest request = o.preparation.request(farthest);
   request.clearance = run.input.deviation;
+  request.quads = run.input.bent_quads;
   request.float32 = !doubles || all_float32(run.input.mesh);
   certify::CertifiedWrap made;
   {

@@ -94,6 +94,8 @@ std::string change_by_preparing(const MeshInput& original) {
   for (const bool drop_sheets : {false, true}) {
     MeshInput prepared;
     prepared.mesh = original.mesh;
+    prepared.quads = original.quads;
+    prepared.diagonal = original.diagonal;
     try {
       prepare(prepared, drop_sheets);
     } catch (const Error&) {  // it cannot be prepared
@@ -101,6 +103,9 @@ std::string change_by_preparing(const MeshInput& original) {
     }
     std::string text = drop_sheets ? "with --drop-sheets" : "";
     for (const std::string& note : prepared.notes) text += (text.empty() ? "" : "; ") + note;
+    if (!original.quads.empty())
+      text += std::string(text.empty() ? "" : "; ") +
+              "it chooses which diagonal splits quads that are not plane";
     return text;
   }
   return {};

@@ -24,6 +24,14 @@ CLI::Option* add_length(CLI::App& app, const char* name, std::string& value, con
 
 }  // namespace
 
+certify::PreparationOptions::Mode PreparationOption::mode() const {
+  using Mode = certify::PreparationOptions::Mode;
+  return name == "strict" ? Mode::Strict
+         : name == "wrap" ? Mode::Wrap
+         : name == "off"  ? Mode::Off
+                          : Mode::Auto;
+}
+
 void PreparationOption::apply(geom::PrepareOptions& options) const {
   if (name == "strict") options.holes = geom::Holes::Refuse;
   if (name == "off") {
@@ -54,10 +62,11 @@ void add_preparation_options(CLI::App& app, PreparationOption& option, const std
   add_length(app, "--offset", option.offset,
              "With --prepare wrap: how far the wrap may be from the triangles where it can get "
              "near them; a length or a percentage of the diagonal [a quarter of epsilon, or 0.1%]");
-  add_length(app, "--seal", option.seal,
-             "With --prepare wrap: hollows behind gaps narrower than this are filled (those up to "
-             "2.5 times as wide may be); also the scale of the search, whose time and memory grow "
-             "with its inverse [what epsilon allows, or 1%]");
+  add_length(
+      app, "--seal", option.seal,
+      "With --prepare wrap: hollows behind gaps narrower than this are filled; also the scale "
+      "of the search, whose time and memory grow with the square of its inverse [what "
+      "epsilon allows, or 1%]");
 }
 
 void require_meaning(const CLI::App& app, const PreparationOption& option) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/certify/preparation_options.h>
 #include <kaboum/certify/wrap.h>
 #include <kaboum/geom/prepare.h>
 
@@ -22,6 +23,7 @@ struct PreparationOption {
   /// Whether an outer result is to hold the exact faces of a CAD file, not only the triangles that
   /// stand for them: `auto` wraps these.
   [[nodiscard]] bool holds_exact_faces() const { return wraps() || name == "auto"; }
+  [[nodiscard]] certify::PreparationOptions::Mode mode() const;
   /// Sets what `strict` and `off` mean.
   void apply(geom::PrepareOptions& options) const;
   /// @param farthest  that the wrap may be from the input [length]

@@ -46,8 +46,8 @@ std::string shell_word(const std::string& word) {
 }
 
 RobotCheck check_of(const std::string& original, const std::string& result,
-                    const RobotOptions& options, const PreparationOption& preparation,
-                    bool drop_sheets, const std::optional<Length>& epsilon,
+                    const RobotOptions& options, const certify::PreparationOptions& preparation,
+                    const std::optional<Length>& epsilon,
                     const std::vector<certify::LinkVerdict>& verdicts) {
   const auto file = [](const std::string& path) {
     return shell_word(path.starts_with('-') ? "./" + path : path);
@@ -56,12 +56,13 @@ RobotCheck check_of(const std::string& original, const std::string& result,
   out.passes = std::ranges::all_of(
       verdicts, [](const auto& link) { return link.outcome < Outcome::Undecided; });
   out.command = "bound-verify robot " + file(original) + " " + file(result);
-  if (preparation.wraps())
+  using Mode = certify::PreparationOptions::Mode;
+  if (preparation.mode == Mode::Wrap)
     out.command += " --prepare=wrap";
-  else if (preparation.name != "off")
+  else if (preparation.mode != Mode::Off)
     out.command += " --prepare";
   if (options.visual()) out.command += " --visual";
-  if (drop_sheets) out.command += " --drop-sheets";
+  if (preparation.drop_sheets) out.command += " --drop-sheets";
   if (!options.links.empty()) {
     std::string links;
     for (const std::string& link : options.links) links += (links.empty() ? "" : ",") + link;

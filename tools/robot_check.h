@@ -1,12 +1,12 @@
 #pragma once
 
 #include <kaboum/certify/link_verdict.h>
+#include <kaboum/certify/preparation_options.h>
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "preparation_option.h"
 #include "robot_options.h"
 
 /// What is said with the verdict on a robot that was made: exit code, report, and the command that
@@ -36,8 +36,8 @@ struct RobotCheck {
 /// @param original, result  URDFs
 /// @param epsilon  that is to be decided as well
 RobotCheck check_of(const std::string& original, const std::string& result,
-                    const RobotOptions& options, const PreparationOption& preparation,
-                    bool drop_sheets, const std::optional<Length>& epsilon,
+                    const RobotOptions& options, const certify::PreparationOptions& preparation,
+                    const std::optional<Length>& epsilon,
                     const std::vector<certify::LinkVerdict>& verdicts);
 
 }  // namespace kaboum::tools

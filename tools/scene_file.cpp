@@ -1,32 +1,14 @@
-// Scenes from the file system.
+// Robots and tools of a scene that options name.
 
 #include "scene_file.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
-#include <kaboum/io/mesh_io.h>
 
-#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace kaboum::tools {
-
-SceneFile read_scene(const std::string& path) {
-  SceneFile out;
-  out.inputs.push_back(path);
-  const std::vector<char> bytes = io::read_file(path);
-  out.sha256 = io::sha256(bytes);
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  world::SceneNotes notes;
-  out.world = world::parse_scene(
-      {bytes.data(), bytes.size()}, path,
-      [&](const std::string& file) {
-        out.inputs.push_back((folder / file).string());
-        return io::read_file(folder / file);
-      },
-      &notes);
-  out.notes = std::move(notes.notes);
-  return out;
-}
 
 std::size_t robot_named(const world::World& world, const std::string& name) {
   std::vector<std::string> names;

@@ -173,6 +173,7 @@ MadeScene make_scene(const SceneMaker& maker) {
   out.inputs.assign(sets.inputs.begin(), sets.inputs.end());
   out.notes = std::move(sets.notes);
   out.sizes = std::move(sets.sizes);
+  out.bad_links = std::move(sets.bad_links);
   return out;
 }
 

@@ -43,6 +43,8 @@ struct MadeScene {
   std::vector<std::filesystem::path> containers;  ///< written
   std::vector<std::string> inputs, notes;
   std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
+  /// SceneSetMaker::bad_links: empty where all robots' links are held as asked for.
+  std::vector<std::string> bad_links;
 };
 
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem

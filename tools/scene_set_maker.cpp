@@ -4,13 +4,13 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/inner_links.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 #include "cli.h"
 #include "robot_bodies.h"
@@ -47,35 +47,14 @@ void require_unit(const std::string& file, double scale, const std::string& need
 
 std::optional<std::string> apply_parameters(const std::string& parameters,
                                             SceneSetOptions& options) {
-  std::istringstream words(parameters);
-  std::string option, value;
-  while (words >> option) {
-    if (option == "--drop-sheets") {
-      options.sets.preparation.drop_sheets = true;
-      continue;
-    }
-    bool known = static_cast<bool>(words >> value);
-    if (option == "--epsilon") {
-      options.sets.epsilon = parse_length(value);
-      known = known && options.sets.epsilon.has_value();
-    } else if (option == "--effort") {
-      known = known && (value == "fast" || value == "normal" || value == "best");
-      options.sets.effort = value == "fast"   ? bcd::Effort::Fast
-                            : value == "best" ? bcd::Effort::Best
-                                              : bcd::Effort::Normal;
-    } else if (option == "--max-vertices-per-body") {
-      known = known && value == std::to_string(options.sets.max_vertices);
-    } else if (option == "--scale") {
-      const std::optional<Length> factor = parse_length(value);
-      known = known && factor && !factor->percent;
-      if (known) options.sets.scale = factor->value;
-    } else if (option == "--geometry") {
-      options.visual = value == "visual";
-    } else if (option != "--direction") {
-      known = false;
-    }
-    if (!known) return option;
-  }
+  certify::RobotSetOptions stated;
+  std::string unknown = read_record(certify::robot_set_options(), parameters, stated);
+  if (!unknown.empty()) return unknown;
+  stated.set.request.unit = options.sets.unit;
+  stated.set.request.frame = options.sets.frame;
+  stated.set.request.direction = options.sets.direction;
+  options.sets = certify::request_of(stated.set);
+  options.visual = stated.visual;
   return std::nullopt;
 }
 
@@ -109,11 +88,13 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
   certify::RobotRequest request{
       options.sets, {options.links, options.visual, options.packages}, {}, {}};
   request.tool = std::string("kaboum-scene ") + version();
+  if (!request.set.wrap) request.set.wrap.emplace().where_needed = true;
+  request.partial = true;
   require_formats(robot::link_meshes(file, request.shapes), "");
   Notes of_meshes;
   certify::RobotHooks hooks = hooks_of(of_meshes, options.progress);
   hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
-    if (!mesh.made.found.set.certificate().reached())
+    if (mesh.held && !mesh.made.found.set.certificate().reached())
       of_meshes.add(mesh.mesh.file.string(),
                     "the decomposition does not reach " + mesh.epsilon->text());
   };
@@ -123,6 +104,7 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
   for (std::string& note : robot::notes_on_flat_shapes(file, options.visual))
     notes.push_back(std::move(note));
   for (std::string& line : of_meshes.lines()) notes.push_back(std::move(line));
+  add_bad_links(name, file.robot, certify::verdicts(made));
   Json links = Json::array(), without = Json::array();
   FileNames names;
   for (const certify::CertifiedLink& link : made.links) {
@@ -145,6 +127,22 @@ Json SceneSetMaker::robot(const std::string& name, const std::string& path, cons
   if (options.visual) out["shapes"] = "visual";
   if (!without.empty()) out["links_without_set"] = std::move(without);
   return out;
+}
+
+void SceneSetMaker::add_bad_links(const std::string& name, const robot::Robot& robot,
+                                  const std::vector<certify::LinkVerdict>& verdicts) {
+  using certify::Outcome;
+  for (const certify::LinkVerdict& link : verdicts) {
+    if (link.outcome == Outcome::Held) continue;
+    const std::string& link_name = robot.links[link.link].name;
+    std::string line = "robot '";
+    line.append(name).append("', link '").append(link_name).append("': ").append(link.sentence);
+    if (link.outcome == Outcome::Kept) {
+      kept_[name].push_back(link_name);
+      line += "; it has no set, and the scene is refused until it has one";
+    }
+    bad_links.push_back(std::move(line));
+  }
 }
 
 Json SceneSetMaker::sources_of(std::uint32_t link, const std::vector<robot::LinkShape>& shapes,
@@ -204,6 +202,10 @@ Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
   Notes of_mesh;
   certify::SetRequest request = options.sets;
   request.direction = direction;
+  if (direction != certify::SetRequest::Direction::Outer)
+    request.wrap.reset();
+  else if (!request.wrap)
+    request.wrap.emplace().where_needed = true;
   const auto note = [&](const std::string& text) { of_mesh.add(file, text); };
   const certify::CertifiedFile made =
       certify::certify_file(file, format_for(file, "", "--input-format"), request, options.cache,
@@ -212,6 +214,8 @@ Json SceneSetMaker::mesh(const std::string& name, const std::string& file,
   inputs.insert(file);
   inputs.insert(made.other_files.begin(), made.other_files.end());
   if (made.found.set.artefact().bodies.empty()) return nullptr;
+  if (!made.found.set.certificate().reached())
+    notes.push_back(file + ": the decomposition does not reach " + request.epsilon->text());
   say_size(name, made.found.set.artefact(), options.sets.unit);
   Json sources = Json::array();
   add_sources(sources, file, made);
@@ -222,8 +226,12 @@ std::vector<fs::path> SceneSetMaker::write(const Json& scene) {
   const bool yaml = scene_.extension() != ".json";
   const std::string text = yaml ? to_yaml(scene) : scene.dump(2) + "\n";
   const fs::path folder = scene_.parent_path();
+  Json readable = scene;
+  for (Json& robot : readable.at("robots"))
+    if (const auto kept = kept_.find(robot.at("name")); kept != kept_.end())
+      for (const std::string& link : kept->second) robot["links_without_set"].push_back(link);
   static_cast<void>(world::parse_scene(
-      scene.dump(2), scene_.string() + " (as JSON)", [&](const std::string& file) {
+      readable.dump(2), scene_.string() + " (as JSON)", [&](const std::string& file) {
         for (const auto& [path, bytes] : files_)
           if (path.lexically_normal() == (folder / file).lexically_normal()) return bytes;
         return io::read_file(folder / file);

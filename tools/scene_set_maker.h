@@ -1,9 +1,11 @@
 #pragma once
 
+#include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot.h>
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,7 +40,9 @@ class SceneSetMaker {
   /// @param scene  files are named as seen from its folder
   explicit SceneSetMaker(std::filesystem::path scene) : scene_(std::move(scene)) {}
 
-  /// A robot of a scene with its links' sets, at the origin. @param folder  of the containers
+  /// A robot of a scene with its links' sets, at the origin. Meshes that bound no solid are
+  /// wrapped. Where a mesh cannot be held at all, its link has no set: whoever reads the scene
+  /// refuses it until the link has one. @param folder  of the containers
   Json robot(const std::string& name, const std::string& file, const std::filesystem::path& folder,
              const SceneSetOptions& options);
 
@@ -48,7 +52,8 @@ class SceneSetMaker {
             certify::SetRequest::Direction direction, const std::filesystem::path& container,
             const SceneSetOptions& options);
 
-  /// Writes the containers, then the scene, each whole or not at all, if it can be read then.
+  /// Writes the containers, then the scene, each whole or not at all, if it can be read then but
+  /// for links that could not be held, which have no set.
   /// @return the containers
   /// @throws Error{InvalidInput} where reading refuses it; nothing is written then.
   std::vector<std::filesystem::path> write(const Json& scene);
@@ -56,6 +61,8 @@ class SceneSetMaker {
   std::set<std::string> inputs;
   std::vector<std::string> notes;
   std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
+  /// Of links that are not held as asked for, each with its robot: said whatever is quiet.
+  std::vector<std::string> bad_links;
 
  private:
   [[nodiscard]] std::string seen_from_scene(const std::filesystem::path& file) const;
@@ -63,6 +70,8 @@ class SceneSetMaker {
   void add_inner_links(Json& links, const robot::RobotFile& file, certify::RobotRequest request,
                        const std::filesystem::path& folder, FileNames& names,
                        const SceneSetOptions& options);
+  void add_bad_links(const std::string& name, const robot::Robot& robot,
+                     const std::vector<certify::LinkVerdict>& verdicts);
   Json sources_of(std::uint32_t link, const std::vector<robot::LinkShape>& shapes,
                   const std::vector<certify::CertifiedLinkMesh>& meshes) const;
   Json keep(const std::filesystem::path& path, std::vector<char> bytes, const Json& made_from);
@@ -71,6 +80,7 @@ class SceneSetMaker {
   void say_size(const std::string& name, const geom::ConvexSet& set, const std::string& unit);
 
   std::filesystem::path scene_;
+  std::map<std::string, std::vector<std::string>> kept_;  ///< by robot: links without a set
   std::vector<std::pair<std::filesystem::path, std::vector<char>>> files_;
 };
 

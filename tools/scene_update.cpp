@@ -38,6 +38,7 @@ class Update {
     out.inputs.assign(sets_.inputs.begin(), sets_.inputs.end());
     out.notes = std::move(sets_.notes);
     out.sizes = std::move(sets_.sizes);
+    out.bad_links = std::move(sets_.bad_links);
     return out;
   } catch (const Json::exception&) {
     fail("a part of it is missing, or of another kind; kaboum-check says where it is wrong");

@@ -5,12 +5,14 @@
 #include <kaboum/robot/path_file.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
 #include "motion_options.h"
 #include "result_files.h"
 #include "robot_bodies.h"
+#include "robot_check.h"
 #include "scene_robot.h"
 #include "sweep_options.h"
 #include "sweep_picture.h"
@@ -29,33 +31,62 @@ struct Run {
   certify::CertifiedBodies bodies;
   robot::BareLinks bare;
   certify::SweepRequest request;
+  std::vector<certify::LinkVerdict> verdicts = {};
   certify::CertifiedSweep swept;
   double seconds = 0;                      ///< of the sweeping
   std::vector<std::string> included = {};  ///< by the robot, where they are asked for
 };
 
 certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::RobotFile& robot,
-                                     const certify::RobotRequest& request) {
+                                     Notes& notes) {
+  const certify::RobotRequest request = bodies_request(o);
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
   require_formats(robot::link_meshes(robot, request.shapes), "");
-  Notes notes;
-  certify::CertifiedBodies bodies = [&] {
-    Progress progress(o.common.quiet);
-    certify::RobotHooks hooks =
-        hooks_of(notes, [&](const std::string& stage) { progress.show(stage); });
-    hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
-      if (!mesh.made.found.set.certificate().reached())
-        notes.add(mesh.mesh.file.string(),
-                  "the decomposition does not reach " + mesh.epsilon->text());
-    };
-    return certify::certify_bodies(robot, request, o.no_cache ? nullptr : &cache, hooks);
-  }();
+  notes = {};
   for (const std::string& note :
        robot::notes_on_flat_shapes(robot, request.shapes.visual, request.shapes.links))
     log(o.common.quiet, note);
+  Progress progress(o.common.quiet);
+  certify::RobotHooks hooks =
+      hooks_of(notes, [&](const std::string& stage) { progress.show(stage); });
+  hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
+    if (mesh.held && !mesh.made.found.set.certificate().reached())
+      notes.add(mesh.mesh.file.string(),
+                "the decomposition does not reach " + mesh.epsilon->text());
+  };
+  return certify::certify_bodies(robot, request, o.no_cache ? nullptr : &cache, hooks);
+}
+
+/// Makes the bodies and the verdicts on their links. Those that are not held are not swept, as if
+/// the others alone were asked for: `o.links`. @throws Error{InvalidInput} where none is held
+void make_bodies(SweepApproxOptions& o, Run& run) {
+  Notes notes;
+  run.bodies = make_bodies(o, run.robot, notes);
+  run.verdicts = verdicts(run.bodies);
+  const auto is_kept = [](const auto& link) { return link.outcome == certify::Outcome::Kept; };
+  if (std::ranges::any_of(run.verdicts, is_kept)) {
+    o.links.clear();
+    std::string why;
+    for (const certify::LinkVerdict& link : run.verdicts) {
+      const std::string& name = run.robot.robot.links[link.link].name;
+      if (is_kept(link))
+        why += (why.empty() ? "link '" : "; link '") + name + "': " + link.sentence;
+      else
+        o.links += (o.links.empty() ? "" : ",") + name;
+    }
+    if (o.links.empty()) throw Error(ErrorCode::InvalidInput, why);
+    run.bodies = make_bodies(o, run.robot, notes);
+  }
   for (const std::string& note : notes.lines()) log(o.common.quiet, note);
-  return bodies;
+}
+
+/// Names the links that are not held as asked for.
+void say_bad_links(const Run& run) {
+  for (const certify::LinkVerdict& link : run.verdicts)
+    if (link.outcome != certify::Outcome::Held)
+      log(false, "link '" + run.robot.robot.links[link.link].name + "': " + link.sentence +
+                     (link.outcome == certify::Outcome::Kept ? "; it is NOT swept" : ""));
 }
 
 /// @return whether float32 is fine enough.
@@ -74,7 +105,9 @@ bool sweep_bodies(Run& run) {
   return true;
 }
 
-std::string summary(const certify::SweepCertificate& c, std::size_t bodies) {
+std::string summary(const Run& run) {
+  const certify::SweepCertificate& c = run.swept.certificate();
+  const std::size_t bodies = run.bodies.artefact().size();
   std::ostringstream message;
   message.precision(3);
   message << c.bodies << (c.bodies == 1 ? " body" : " bodies") << " for " << bodies
@@ -83,6 +116,12 @@ std::string summary(const certify::SweepCertificate& c, std::size_t bodies) {
           << " of its shapes";
   if (c.motion == certify::MotionClaim::None)
     message << "; NOT certified: --bound baginski is not proved";
+  std::string out;
+  for (const certify::LinkVerdict& link : run.verdicts)
+    if (link.outcome == certify::Outcome::Kept)
+      out += (out.empty() ? "; NOT swept, as they are not held: " : ", ") +
+             run.robot.robot.links[link.link].name;
+  message << out;
   return message.str();
 }
 
@@ -112,6 +151,11 @@ Json report_of(const Run& run) {
   Json of_link = Json::object();
   for (std::size_t l = 0; l < run.robot.robot.links.size(); ++l)
     if (c.of_link[l] > 0) of_link[run.robot.robot.links[l].name] = c.of_link[l];
+  Json links = Json::array();
+  for (const certify::LinkVerdict& link : run.verdicts) {
+    links.push_back({{"link", run.robot.robot.links[link.link].name}});
+    links.back().update(tools::report_of(link));
+  }
   return {{"robot", {{"file", run.o.robot}, {"sha256", run.robot.sha256}}},
           {"path", {{"file", run.o.path}, {"waypoints", run.path.size()}}},
           {"parameters", run.request.parameters},
@@ -119,6 +163,8 @@ Json report_of(const Run& run) {
           {"bodies", c.bodies},
           {"vertices", c.vertices},
           {"bodies_of_links", of_link},
+          {"links", std::move(links)},
+          {"verdict", name_of(outcome_of(run.verdicts))},
           {"bodies_at_rest", run.bodies.artefact().size()},
           {"links_without_shapes", run.bare.all()},
           {"margin", c.margin},
@@ -134,10 +180,8 @@ void write_files(const Run& run, io::SetFormat format) {
   const SweepApproxOptions& o = run.o;
   const auto preview = [&] {
     if (is_page(o.preview))
-      io::write_file(o.preview,
-                     page_of_sweep({o.robot, o.path,
-                                    summary(run.swept.certificate(), run.bodies.artefact().size())},
-                                   run.robot, run.bodies, run.path, run.swept));
+      io::write_file(o.preview, page_of_sweep({o.robot, o.path, summary(run)}, run.robot,
+                                              run.bodies, run.path, run.swept));
     else
       io::write_file(o.preview,
                      picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
@@ -188,14 +232,15 @@ int sweep_path(SweepApproxOptions o) {
                 {o.robot, o.path, o.scene});
   const ThreadLimit threads(o.common.threads);
   const io::SetFormat format = output_format(o);
-  Run run{o, std::move(robot), {}, {}, {}, sweep_request(o, base), {}};
+  Run run{o, std::move(robot), {}, {}, {}, sweep_request(o, base), {}, {}};
   if (!o.depfile.empty()) run.included = robot::included_files(run.robot);
   std::vector<std::string> notes;
   run.path = robot::read_path(o.path, run.robot.robot,
                               {!o.ignore_limits, o.degrees, fixed_joints(o.joints)}, notes);
   for (const std::string& note : notes) log(o.common.quiet, note);
   const certify::RobotRequest request = bodies_request(o);
-  run.bodies = make_bodies(o, run.robot, request);
+  make_bodies(o, run);
+  run.request = sweep_request(o, base);
   run.bare = robot::bare_links(run.robot.robot, request.shapes.visual, request.shapes.links);
   for (const std::string& note :
        robot::notes_on({{}, run.bare.other}, request.shapes.visual, ": nothing of this is swept"))
@@ -206,11 +251,12 @@ int sweep_path(SweepApproxOptions o) {
                    "larger one. Nothing is written");
     return kNo;
   }
-  log(o.common.quiet, summary(run.swept.certificate(), run.bodies.artefact().size()));
+  log(o.common.quiet, summary(run));
+  say_bad_links(run);
   if (!base.empty())
     log(o.common.quiet, "in the world's frame: bound-verify sweep needs --base-pose " + base);
   write_files(run, format);
-  return kDone;
+  return exit_code(outcome_of(run.verdicts));
 }
 
 }  // namespace

@@ -18,16 +18,28 @@ namespace {
 
 using robot::Geometry;
 
-/// A mesh of the robot as the file has it, or as prepared.
+/// A mesh of the robot as the file has it, or as prepared where that can be.
 geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, SweepShapes& out) {
   io::ReadResult read = io::read_mesh(path);
   for (const std::string& note : read.notes) out.mesh_notes.add(path, note);
-  if (!o.prepare) return std::move(read.mesh);
-  const geom::Prepared prepared =
-      naming(path, [&] { return prepare_original(read.mesh, o.drop_sheets, true); });
-  for (const std::string& note : prepared.report.notes) out.mesh_notes.add(path, note);
-  if (prepared.report.dropped_sheets > 0) out.dropped[path] = prepared.report.dropped_sheets;
-  return prepared.solid.mesh();
+  out.cad = out.cad || io::is_cad(read.format);
+  if (!o.prepare) {
+    if (const auto found = find_inside_out(read.mesh); found && found->refusal.empty())
+      out.inside_out.push_back(path + ": " + text_of(*found));
+    return std::move(read.mesh);
+  }
+  try {
+    const geom::Prepared prepared = prepare_original(read.mesh, o.drop_sheets, true);
+    for (const std::string& note : prepared.report.notes) out.mesh_notes.add(path, note);
+    if (prepared.report.dropped_sheets > 0) out.dropped[path] = prepared.report.dropped_sheets;
+    return prepared.solid.mesh();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::InvalidInput || o.drop_sheets)
+      throw Error(error.code(), path + ": " + error.what());
+    out.mesh_notes.add(path,
+                       std::string("judged as it is, for it cannot be prepared: ") + error.what());
+    return std::move(read.mesh);
+  }
 }
 
 std::vector<std::string> listed(const std::string& text) {

@@ -55,7 +55,8 @@ std::vector<std::string> lines_of(const SweepCase& run) {
   const SweepShapes& shapes = run.shapes;
   lines.push_back(std::string(name_of(run.answer)) + ": " +
                   robot::links_judged(shapes.judged, shapes.asked, shapes.bare) +
-                  except_sheets(shapes.dropped));
+                  except_sheets(shapes.dropped) +
+                  (shapes.cad && run.answer == Answer::Verified ? kOfTriangles : ""));
   return lines;
 }
 

@@ -201,7 +201,8 @@ void describe(CLI::App& app, SweepApproxOptions& o) {
       "The bodies contain the links' convex bodies, and these their meshes, at every "
       "configuration "
       "of the path (docs/algorithms/swept-volumes.md).\n"
-      "Exit codes: 0 done; 1 float32 is too coarse for epsilon (nothing is written); 2 usage; "
+      "Exit codes: 0 done; 1 a link is not held as asked for (what is held is swept), or float32 "
+      "is too coarse for epsilon (nothing is written); 2 usage; "
       "3 bad input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
 }
 
@@ -212,6 +213,8 @@ certify::RobotRequest bodies_request(const SweepApproxOptions& o) {
   r.set.max_vertices = o.max_vertices;
   r.set.effort = kEfforts.at(o.body_effort);
   r.set.preparation.drop_sheets = o.drop_sheets;
+  r.set.wrap.emplace().where_needed = true;
+  r.partial = true;
   return r;
 }
 

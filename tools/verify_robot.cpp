@@ -2,10 +2,12 @@
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "notes.h"
@@ -125,7 +127,8 @@ class RobotVerifier {
         robot::links_judged(verdict.links.size(),
                             o_.links.empty() ? original_.robot.links.size() : o_.links.size(),
                             bare_) +
-        except_sheets(dropped_in(verdict)));
+        except_sheets(dropped_in(verdict)) +
+        (verdict.answer == Answer::Verified && has_exact_faces(verdict) ? kOfTriangles : ""));
     return exit_code(verdict.answer);
   }
 
@@ -133,133 +136,144 @@ class RobotVerifier {
   [[nodiscard]] bool visual() const { return o_.geometry == "visual"; }
 
   verify::RobotQuestion question_of() {
-    verify::RobotQuestion q{
-        original_.robot, result_.robot,
-        [this](const Geometry& mesh, bool of_result) -> const auto& {return meshes_.file_of(
-                                                         mesh, of_result ? result_ : original_);
+    const auto file_of = [this](const Geometry& mesh, bool of_result) -> const verify::MeshFile& {
+      return meshes_.file_of(mesh, of_result ? result_ : original_);
+    };
+    verify::RobotQuestion q{original_.robot, result_.robot, file_of};
+    q.visual = visual();
+    q.links = o_.links;
+    q.claims = claims_of(o_.claims);
+    q.solid = o_.prepare == "auto"   ? verify::Solid::Prepared
+              : o_.prepare == "wrap" ? verify::Solid::Enclosed
+                                     : verify::Solid::AsFile;
+    q.drop_sheets = o_.drop_sheets;
+    q.epsilon = epsilon_;
+    q.limits.max_contacts = o_.max_contacts;
+    q.limits.max_work = o_.max_work;
+    q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
+    return q;
   }
-};
-q.visual = visual();
-q.links = o_.links;
-q.claims = claims_of(o_.claims);
-q.solid = o_.prepare == "auto"   ? verify::Solid::Prepared
-          : o_.prepare == "wrap" ? verify::Solid::Enclosed
-                                 : verify::Solid::AsFile;
-q.drop_sheets = o_.drop_sheets;
-q.epsilon = epsilon_;
-q.limits.max_contacts = o_.max_contacts;
-q.limits.max_work = o_.max_work;
-q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
-return q;
-}  // namespace
 
-/// Prints at once: what follows may take long.
-void say(const std::string& line) {
-  if (common_.quiet) return;
-  progress_.show("");
-  std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
-  out << line << std::endl;
-}
+  /// Prints at once: what follows may take long.
+  void say(const std::string& line) {
+    if (common_.quiet) return;
+    progress_.show("");
+    std::ostream& out = common_.report == "-" ? std::cerr : std::cout;
+    out << line << std::endl;
+  }
 
-/// What is drawn, but does not collide, is easily overlooked.
-void find_bare_links() {
-  bare_ = robot::bare_links(original_.robot, visual(), o_.links);
-  if (visual()) bare_.other.clear();  // their shapes for collisions are judged
-  for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
-    log(common_.quiet, "note: " + o_.original + ": " + note);
-  for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.links))
-    log(common_.quiet, "note: " + note);
-}
+  /// What is drawn, but does not collide, is easily overlooked.
+  void find_bare_links() {
+    bare_ = robot::bare_links(original_.robot, visual(), o_.links);
+    if (visual()) bare_.other.clear();  // their shapes for collisions are judged
+    for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
+      log(common_.quiet, "note: " + o_.original + ": " + note);
+    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.links))
+      log(common_.quiet, "note: " + note);
+  }
 
-void take_notes(const verify::RobotVerdict& verdict) {
-  for (const auto& [file, text] : verdict.notes) notes_.add(file, text);
-  if (o_.prepare.empty())
+  void take_notes(const verify::RobotVerdict& verdict) {
+    for (const auto& [file, text] : verdict.notes) notes_.add(file, text);
+    if (o_.prepare.empty())
+      for (const verify::LinkVerdict& link : verdict.links)
+        for (const verify::ShapeVerdict& shape : link.shapes)
+          if (shape.file != nullptr) note_on_unprepared(shape);
+    if (verdict.answer == Answer::Verified) return;
+    // Bodies of the other kind of shapes are easily taken.
+    if (const std::string record = meshes_.record_of_other_kind(original_, visual());
+        !record.empty())
+      notes_.add(record, std::string("these bodies were made of a ") +
+                             (visual() ? "collision" : "visual") +
+                             " mesh of the original: judge them with" +
+                             (visual() ? "out --visual" : " --visual"));
+  }
+
+  void note_on_unprepared(const verify::ShapeVerdict& shape) {
+    if (const auto found = find_inside_out(shape.file->mesh); found && found->refusal.empty())
+      notes_.add(shape.file->path, text_of(*found));
+    if (shape.answer == Answer::Verified) return;
+    try {
+      if (!prepare_original(shape.file->mesh, false, true).report.notes.empty())
+        notes_.add(shape.file->path,
+                   "bcd-decompose speaks of the mesh as prepared; --prepare judges that");
+    } catch (const Error&) {  // NOLINT(bugprone-empty-catch): then it is not prepared either
+    }
+  }
+
+  /// Before anything is written, so that no mesh is written over.
+  void read_meshes(const verify::RobotQuestion& question) {
+    std::size_t shapes = 0;
+    std::vector<std::string> inputs{o_.original, o_.result};
+    const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
+      for (const Geometry& g : of)
+        if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
+    };
+    for (const robot::Link& link : original_.robot.links) {
+      if (!question.is_asked(link)) continue;
+      shapes += question.shapes_of(link).size();
+      read_all(question.shapes_of(link), original_);
+    }
+    for (const robot::Link& link : result_.robot.links)
+      if (question.is_asked(link)) read_all(link.collision, result_);
+    if (shapes == 0)
+      throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
+                                               (visual() ? "" : "; try --geometry visual"));
+    require_apart({{"--report", common_.report}}, inputs);
+  }
+
+  /// Whether triangles of some mesh that was judged stand for exact faces.
+  static bool has_exact_faces(const verify::RobotVerdict& verdict) {
+    for (const verify::LinkVerdict& link : verdict.links)
+      for (const verify::ShapeVerdict& shape : link.shapes) {
+        if (shape.file == nullptr) continue;
+        const auto format =
+            io::format_from_name(std::filesystem::path(shape.file->path).extension().string());
+        if (format && io::is_cad(*format)) return true;
+      }
+    return false;
+  }
+
+  static DroppedSheets dropped_in(const verify::RobotVerdict& verdict) {
+    DroppedSheets out;
     for (const verify::LinkVerdict& link : verdict.links)
       for (const verify::ShapeVerdict& shape : link.shapes)
-        if (shape.file != nullptr) note_on_unprepared(shape);
-  if (verdict.answer == Answer::Verified) return;
-  // Bodies of the other kind of shapes are easily taken.
-  if (const std::string record = meshes_.record_of_other_kind(original_, visual()); !record.empty())
-    notes_.add(record, std::string("these bodies were made of a ") +
-                           (visual() ? "collision" : "visual") +
-                           " mesh of the original: judge them with" +
-                           (visual() ? "out --visual" : " --visual"));
-}
-
-void note_on_unprepared(const verify::ShapeVerdict& shape) {
-  if (const auto found = find_inside_out(shape.file->mesh); found && found->refusal.empty())
-    notes_.add(shape.file->path, text_of(*found));
-  if (shape.answer == Answer::Verified) return;
-  try {
-    if (!prepare_original(shape.file->mesh, false, true).report.notes.empty())
-      notes_.add(shape.file->path,
-                 "bcd-decompose speaks of the mesh as prepared; --prepare judges that");
-  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): then it is not prepared either
+        if (shape.dropped_sheets > 0) out[shape.name] = shape.dropped_sheets;
+    return out;
   }
-}
 
-/// Before anything is written, so that no mesh is written over.
-void read_meshes(const verify::RobotQuestion& question) {
-  std::size_t shapes = 0;
-  std::vector<std::string> inputs{o_.original, o_.result};
-  const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
-    for (const Geometry& g : of)
-      if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
-  };
-  for (const robot::Link& link : original_.robot.links) {
-    if (!question.is_asked(link)) continue;
-    shapes += question.shapes_of(link).size();
-    read_all(question.shapes_of(link), original_);
+  [[nodiscard]] Json report(const verify::RobotVerdict& verdict) const {
+    const auto file = [](const std::string& path, const robot::RobotFile& robot) {
+      return Json{{"file", path}, {"sha256", robot.sha256}};
+    };
+    Json links = Json::array();
+    for (const verify::LinkVerdict& link : verdict.links) links.push_back(link_json(link));
+    return {
+        {"relation", "robot"},
+        {"verdict", name_of(verdict.answer)},
+        {"deciding_claims", o_.claims},
+        {"geometry", o_.geometry},
+        {"prepared", !o_.prepare.empty()},
+        {"prepare", o_.prepare.empty() ? "off" : o_.prepare},
+        {"dropped_sheet_triangles", dropped_in(verdict)},
+        {"original", file(o_.original, original_)},
+        {"result", file(o_.result, result_)},
+        {"joints",
+         {{"answer", verdict.motion.empty() ? "verified" : "refuted"}, {"reason", verdict.motion}}},
+        {"links", std::move(links)},
+        {"links_without_shapes", bare_.all()},
+        {"links_with_other_shapes_only", bare_.other},
+        {"notes", notes_.lines()}};
   }
-  for (const robot::Link& link : result_.robot.links)
-    if (question.is_asked(link)) read_all(link.collision, result_);
-  if (shapes == 0)
-    throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
-                                             (visual() ? "" : "; try --geometry visual"));
-  require_apart({{"--report", common_.report}}, inputs);
-}
 
-static DroppedSheets dropped_in(const verify::RobotVerdict& verdict) {
-  DroppedSheets out;
-  for (const verify::LinkVerdict& link : verdict.links)
-    for (const verify::ShapeVerdict& shape : link.shapes)
-      if (shape.dropped_sheets > 0) out[shape.name] = shape.dropped_sheets;
-  return out;
-}
-
-[[nodiscard]] Json report(const verify::RobotVerdict& verdict) const {
-  const auto file = [](const std::string& path, const robot::RobotFile& robot) {
-    return Json{{"file", path}, {"sha256", robot.sha256}};
-  };
-  Json links = Json::array();
-  for (const verify::LinkVerdict& link : verdict.links) links.push_back(link_json(link));
-  return {
-      {"relation", "robot"},
-      {"verdict", name_of(verdict.answer)},
-      {"deciding_claims", o_.claims},
-      {"geometry", o_.geometry},
-      {"prepared", !o_.prepare.empty()},
-      {"prepare", o_.prepare.empty() ? "off" : o_.prepare},
-      {"dropped_sheet_triangles", dropped_in(verdict)},
-      {"original", file(o_.original, original_)},
-      {"result", file(o_.result, result_)},
-      {"joints",
-       {{"answer", verdict.motion.empty() ? "verified" : "refuted"}, {"reason", verdict.motion}}},
-      {"links", std::move(links)},
-      {"links_without_shapes", bare_.all()},
-      {"links_with_other_shapes_only", bare_.other},
-      {"notes", notes_.lines()}};
-}
-
-const VerifyRobotOptions& o_;
-const CommonOptions& common_;
-std::optional<Length> epsilon_;
-robot::RobotFile original_, result_;
-RobotMeshes meshes_;
-Progress progress_;
-robot::BareLinks bare_;
-Notes notes_;
-};  // namespace kaboum::tools
+  const VerifyRobotOptions& o_;
+  const CommonOptions& common_;
+  std::optional<Length> epsilon_;
+  robot::RobotFile original_, result_;
+  RobotMeshes meshes_;
+  Progress progress_;
+  robot::BareLinks bare_;
+  Notes notes_;
+};
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// What README.md shows of the library, compiled: a test looks for its lines there.
+// What README.md and docs/cpp.md show of the library, compiled: a test looks for its lines there.
 
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/certify/robot.h>

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another mesh: cached ones are then not found.
-constexpr const char* kDecimation = "distance 3";
+constexpr const char* kDecimation = "distance 4";
 
 // An entry's content is the certificate in one line, and the mesh's bytes.
 constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 2";

@@ -8,15 +8,11 @@
 #include <algorithm>
 
 namespace kaboum::certify {
-namespace {
 
-/// Nothing of it is turned, dropped or hollow.
 bool is_as_it_was(const geom::PreparationReport& r) {
   return r.reversed_triangles == 0 && r.collapsed_triangles == 0 && r.dropped_copies == 0 &&
          r.cancelled_walls == 0 && r.dropped_sheets == 0 && r.holes == 0 && !r.hollow;
 }
-
-}  // namespace
 
 geom::Mesh with_fillings(geom::Mesh mesh, const geom::SolidMesh& solid) {
   const geom::Mesh& filled = solid.mesh();

@@ -33,6 +33,10 @@ GivenSolid give_solid(const geom::Mesh& mesh, Prepare prepare, const geom::Prepa
                       const std::function<CertifiedWrap(const geom::Mesh&)>& make,
                       const std::string& because = {});
 
+/// Nothing was turned, dropped or filled, and nothing counts as hollow: the solid of what was
+/// prepared is that of the prepared mesh.
+bool is_as_it_was(const geom::PreparationReport& report);
+
 /// The triangles, and those that fill their holes: the solid that is closed so is wrapped, too.
 geom::Mesh with_fillings(geom::Mesh mesh, const geom::SolidMesh& solid);
 

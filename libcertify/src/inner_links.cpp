@@ -160,6 +160,7 @@ InnerLinks certify_inner_links(const robot::RobotFile& robot, const RobotRequest
                                const SetCache* cache, const RobotHooks& hooks) {
   RobotRequest request = asked;
   request.set.direction = SetRequest::Direction::Inner;
+  request.set.wrap.reset();  // what lies in a wrap need not lie in the shapes
   const WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons);
   InnerMeshes meshes(found, request, cache, hooks);
   InnerLinks out;

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 /// Changes whenever a reader of libio may give other triangles, notes or units for the same bytes:
 /// what is known of files is then not used.
-constexpr const char* kReaders = "3";
+constexpr const char* kReaders = "4";
 
 constexpr std::string_view kKind = "KABOUM-FILE 1";
 constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]
@@ -50,7 +50,8 @@ void store_known(const CacheFolder& cache, const std::filesystem::path& file,
                  std::optional<io::Format> format, double scale, std::size_t bytes,
                  const std::string& sha256, const std::string& mesh_hash,
                  const io::ReadResult& read) {
-  if (!read.other_files.empty() || bytes < kReadAtOnce) return;
+  // Of files with quads that are not plane more counts than what is kept here.
+  if (!read.other_files.empty() || bytes < kReadAtOnce || !read.bent_quads.empty()) return;
   const Json json = {{"mesh", mesh_hash}, {"notes", read.notes}, {"unit", read.unit}};
   cache.store(kKind, key_of_file(file, format, scale, sha256),
               json.dump(-1, ' ', false, Json::error_handler_t::replace));

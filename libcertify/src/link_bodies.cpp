@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/link_bodies.h>
+#include <kaboum/certify/set_options.h>
 
 #include <algorithm>
 #include <cmath>
@@ -131,7 +132,9 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
 }  // namespace
 
 std::string RobotRequest::parameters() const {
-  std::string out = set.parameters() + (shapes.visual ? " --geometry visual" : "");
+  RobotSetOptions options{options_of(set), shapes.visual};
+  options.set.request.epsilon = set.wanted_epsilon();
+  std::string out = record_of(robot_set_options(), options);
   for (const auto& [link, epsilon] : epsilons) out += " " + link + ": " + epsilon.text();
   return out;
 }

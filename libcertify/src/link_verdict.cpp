@@ -131,15 +131,17 @@ const char* name_of(Outcome outcome) {
   return "kept";
 }
 
-std::vector<LinkVerdict> verdicts(const CertifiedRobot& robot) {
-  const BodiesCertificate& bodies = robot.bodies.certificate();
+std::vector<LinkVerdict> verdicts(const CertifiedBodies& robot) {
+  const BodiesCertificate& bodies = robot.certificate();
   return verdicts_of(bodies.shapes, bodies.meshes, [&](std::uint32_t link) {
     const bool has_body = std::ranges::any_of(
-        robot.bodies.artefact(), [&](const robot::LinkBody& body) { return body.link == link; });
+        robot.artefact(), [&](const robot::LinkBody& body) { return body.link == link; });
     return std::string(has_body ? "its shapes are inside"
                                 : "its shapes are points, which no body covers");
   });
 }
+
+std::vector<LinkVerdict> verdicts(const CertifiedRobot& robot) { return verdicts(robot.bodies); }
 
 std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot) {
   return verdicts_of(robot.shapes, robot.meshes,

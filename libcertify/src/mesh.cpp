@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/certify/mesh.h>
+#include <kaboum/geom/preparation_doubt.h>
 
 #include <algorithm>
 
@@ -146,9 +147,19 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
       throw;
     why = error.what();
   }
-  if (why.empty()) {
+  // Where preparing had to guess what the triangles enclose, or leaves some of it out, no result
+  // round its solid is what was asked for, even if every triangle is inside.
+  const bool doubtful = why.empty() && may_wrap && !request.record_steps &&
+                        !preparation.options.drop_sheets &&
+                        !geom::doubt_about(made.original.report).empty();
+  const auto certify_as_prepared = [&] {
     if (hooks.prepared) hooks.prepared();
     made.series = certify(made.original, request, hooks, nullptr);
+  };
+  if (doubtful) {
+    why = geom::doubt_about(made.original.report);
+  } else if (why.empty()) {
+    certify_as_prepared();
     const verify::Answer answer = made.surface_answer();
     if (!may_wrap || answer == verify::Answer::Verified || answer == verify::Answer::Undefined)
       return made;
@@ -167,10 +178,12 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
         request, preparation, hooks);
     wrap.why_wrapped = why;
     // Where float32 does not do for the wrap, the result without it stands.
-    if (!wrap.series.meshes.empty() || made.series.meshes.empty()) return wrap;
+    if (!wrap.series.meshes.empty() || (made.series.meshes.empty() && !doubtful)) return wrap;
+    if (doubtful) certify_as_prepared();
     made.why_not_wrapped = "float32 is too coarse for it";
   } catch (const Error& error) {
     if (!may_help(error)) throw;
+    if (doubtful) certify_as_prepared();
     if (made.series.meshes.empty())
       throw Error(ErrorCode::InvalidInput, why + ". Nor is it wrapped: " + error.what());
     made.why_not_wrapped = error.what();

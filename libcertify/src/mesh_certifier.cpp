@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "given_solid.h"
 #include "issuer.h"
 namespace kaboum::certify {
 namespace {
@@ -21,12 +22,6 @@ constexpr std::size_t kMaxPieces = std::size_t{1} << 20;
 constexpr double kRoom = 1e-3, kLeastBound = 1e-6;
 /// Vertices of the original that are looked at for being far from the result.
 constexpr std::size_t kOutlierSamples = 1000;
-
-/// Nothing of a wrap was turned, dropped or filled.
-bool is_as_it_was(const geom::PreparationReport& r) {
-  return r.reversed_triangles == 0 && r.collapsed_triangles == 0 && r.dropped_copies == 0 &&
-         r.cancelled_walls == 0 && r.dropped_sheets == 0 && r.holes == 0;
-}
 
 bool refuted(verify::Answer answer) { return answer == verify::Answer::Refuted; }
 
@@ -151,9 +146,11 @@ void MeshCertifier::look_at_surface(Candidate& made, double work) {
   if (!original_.solid.closed() || request_.direction == bmesh::Direction::Any) return;
   if (wrapped_ != nullptr) {
     // The wrap's solid holds them, and the result's the wrap's: decided, and certified by the
-    // steps.
-    c.surface.emplace().claim.answer = verify::Answer::Verified;
-    if (c.decided) c.surface = decided_surface(made);
+    // steps, if the solid that these started from is the wrap's.
+    if (c.decided || !is_as_it_was(original_.report))
+      c.surface = decided_surface(made);
+    else
+      c.surface.emplace().claim.answer = verify::Answer::Verified;
     ensure(!refuted(c.surface_answer()),
            "the verification refutes that the result of a wrap holds the input's triangles");
     return;

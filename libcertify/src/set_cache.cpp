@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 28";
+constexpr const char* kAlgorithm = "planes 29";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";
@@ -76,9 +76,13 @@ SetCache::Key SetCache::key_of(const geom::Mesh& mesh, const std::string& sha256
 SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& sha256,
                                const SetRequest& r) {
   const double clearance = r.wrap ? r.wrap->clearance : 0;
+  std::string quads;  // that are split so as to enclose, or to be enclosed
+  if (r.preparation.diagonal != geom::PrepareOptions::Diagonal::AsGiven)
+    for (const std::uint32_t quad : r.preparation.quads) quads += ' ' + std::to_string(quad);
+  if (!quads.empty()) quads += '\n';
   const std::string text =
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
-      '\n' + r.parameters() + '\n' + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
+      '\n' + r.parameters() + '\n' + quads + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
       (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + KABOUM_VERSION + '\n' +
       kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
   return {kaboum::sha256(text), origin_of(r, sha256),

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "given_solid.h"
 #include "issuer.h"
 #include "record_count.h"
 #include "wrap_record.h"
@@ -25,6 +26,12 @@ std::string number(double x) {
   const auto end =
       std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4).ptr;
   return {text.data(), end};
+}
+
+/// The widest gap whose closing keeps the wrap within `farthest` of the input. A ball leaves what
+/// is within the offset and its radius; a twentieth is for what it is measured with.
+double seal_within(double farthest, double offset) {
+  return std::max(2 * (0.95 * farthest - offset), 0.5 * farthest);
 }
 
 void measure(const geom::Mesh& wrap, const geom::DistanceQuery& input, WrapCertificate& made) {
@@ -103,13 +110,18 @@ WrapCertificate wrap_of(const nlohmann::ordered_json& record) {
   return out;
 }
 
-CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) {
+CertifiedWrap certify_wrap(const geom::Mesh& given, const WrapRequest& request) {
+  geom::PrepareOptions both;
+  both.quads = request.quads;
+  both.diagonal = geom::PrepareOptions::Diagonal::Outward;
+  const geom::Mesh other = request.quads.empty() ? geom::Mesh() : with_other_diagonals(given, both);
+  const geom::Mesh& input = request.quads.empty() ? given : other;
   if (input.triangles.empty())
     throw Error(ErrorCode::InvalidInput, "there are no triangles to wrap");
   geom::require_valid(input);
   geom::require_moderate(input);
   WrapCertificate made;
-  made.input_triangles = input.triangles.size();
+  made.input_triangles = given.triangles.size();
   made.diagonal = geom::bounding_box(input).diagonal();
   if (!(made.diagonal > 0))
     throw Error(ErrorCode::InvalidInput,
@@ -118,7 +130,7 @@ CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request) 
                 : request.farthest ? kOffsetShare * *request.farthest
                                    : kOffset.of(made.diagonal);
   made.seal = request.seal       ? request.seal->of(made.diagonal)
-              : request.farthest ? *request.farthest
+              : request.farthest ? seal_within(*request.farthest, made.offset)
                                  : kSeal.of(made.diagonal);
   for (const auto& [length, name] : {std::pair{made.offset, "offset"},
                                      {made.seal, "seal"},

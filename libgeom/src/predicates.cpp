@@ -1,4 +1,5 @@
 // What the filters of the predicates leave open [shewchuk1997], decided in exact dyadic numbers.
+#include <kaboum/geom/in_sphere.h>
 #include <kaboum/geom/predicates.h>
 
 #include <CGAL/Exact_rational.h>
@@ -91,3 +92,33 @@ Sign orient2d_exact(double ax, double ay, double bx, double by, double cx, doubl
 }
 
 }  // namespace kaboum::geom::detail
+
+namespace kaboum::geom {
+
+Sign in_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
+  const Vec3 p = a - e, q = b - e, r = c - e, s = d - e;
+  const auto minor = [](const Vec3& u, const Vec3& v) { return u.x() * v.y() - v.x() * u.y(); };
+  const double pq = minor(p, q), qr = minor(q, r), rs = minor(r, s), sp = minor(s, p),
+               pr = minor(p, r), qs = minor(q, s);
+  const double pqr = p.z() * qr - q.z() * pr + r.z() * pq,
+               qrs = q.z() * rs - r.z() * qs + s.z() * qr,
+               rsp = r.z() * sp + s.z() * pr + p.z() * rs,
+               spq = s.z() * pq + p.z() * qs + q.z() * sp;
+  const double det = (r.squaredNorm() * spq - s.squaredNorm() * pqr) +
+                     (p.squaredNorm() * qrs - q.squaredNorm() * rsp);
+  // The rounded determinant errs by less than 1.8e-15 times its expansion with absolute values
+  // (Shewchuk 1997), which is at most 24 xyz (x² + y² + z²), x, y, z the largest |coordinates| of
+  // the differences. Within the window no underflow adds a noticeable part, and nothing overflows.
+  const Vec3 most =
+      p.cwiseAbs().cwiseMax(q.cwiseAbs()).cwiseMax(r.cwiseAbs()).cwiseMax(s.cwiseAbs());
+  if (most.minCoeff() > 1e-50 && most.maxCoeff() < 1e50) {
+    const double bound = 4.8e-14 * (most.x() * most.y() * most.z()) * most.squaredNorm();
+    if (det > bound) return Sign::Positive;
+    if (det < -bound) return Sign::Negative;
+  }
+  const auto point = [](const Vec3& x) { return detail::Exact::Point_3(x.x(), x.y(), x.z()); };
+  return detail::to_sign(
+      CGAL::side_of_oriented_sphere(point(a), point(b), point(c), point(d), point(e)));
+}
+
+}  // namespace kaboum::geom

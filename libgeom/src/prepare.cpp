@@ -67,9 +67,10 @@ class Preparation {
     edges_ = edge_uses(mesh_);
     if (!options_.keep_orientation) agree();
     cancel_pairs();
+    drop_copies(true);
     if (options_.holes == Holes::Fill) fill();
     reverse_shells();
-    drop_copies();
+    drop_copies(false);
     sort_out_pairs();
     choose_diagonals();
     number_by_first_use();
@@ -236,9 +237,8 @@ class Preparation {
     FilledHoles filled = fill_holes(mesh_);
     if (filled.holes == 0) return;
     if (const auto found = judge_rims(edges_, report_.source, agreed_))
-      report_.notes.push_back(
-          "WARNING: a hole's rim runs along a wall, where three triangles or more "
-          "meet (at input triangle " +
+      guess(
+          "a hole's rim runs along a wall, where three triangles or more meet (at input triangle " +
           std::to_string(*found) +
           "): which side of the wall is filled depends on its orientation");
     const Chains chains = find_chains(mesh_, edges_);
@@ -286,13 +286,20 @@ class Preparation {
   /// Drops copies that are closed by themselves. A copy lowers the winding number inside; that
   /// leaves the solid alone only where nothing else lowers it, so copies stay if any component is
   /// oriented inwards.
-  void drop_copies() {
+  /// @param early  before shells are judged, of which copies take long: copies stay if any
+  ///   component might be filled or turned later
+  void drop_copies(bool early) {
     const std::vector<std::uint32_t> copies = coincident().copies;
     if (copies.empty()) return;
     const Chains chains = find_chains(mesh_, edges_);
-    if (std::find(chains.sign.begin(), chains.sign.end(), -1) != chains.sign.end()) return;
+    const auto may_lower = [&](std::size_t chain) {
+      return early ? chains.closed[chain] == 0 || chains.sign[chain] != 1
+                   : chains.sign[chain] == -1;
+    };
+    for (std::size_t chain = 0; chain < chains.sign.size(); ++chain)
+      if (may_lower(chain)) return;
     const std::vector<std::uint32_t> closed = closed_copies(mesh_, copies);
-    report_.dropped_copies = closed.size();
+    report_.dropped_copies += closed.size();
     if (closed.empty()) return;
     std::vector<char> keep(mesh_.triangles.size(), 1);
     for (const std::uint32_t t : closed) keep[t] = 0;
@@ -375,9 +382,8 @@ class Preparation {
     if (!closed_ || options_.keep_orientation) return;
     const Guesses guesses = find_guesses(edges_, part_, report_.source, agreed_, opened_);
     if (guesses.ambiguous)
-      report_.notes.push_back(
-          "WARNING: the part with input triangle " + std::to_string(*guesses.ambiguous) +
-          " was open, and its triangles were turned to agree: which solid it bounds is a guess");
+      guess("the part with input triangle " + std::to_string(*guesses.ambiguous) +
+            " was open, and its triangles were turned to agree: which solid it bounds is a guess");
     const WindingNumber winding(mesh_);
     if (const auto found =
             geom::find_inverted(mesh_, winding, some_of(guesses.agreed, part_), part_))
@@ -400,6 +406,11 @@ class Preparation {
     report_.notes.push_back("WARNING: the surface crosses itself, and what it encloses " +
                             where(*found) +
                             " is inside out: that part counts as outside, and is NOT enclosed");
+  }
+
+  void guess(const std::string& what) {
+    report_.guessed = true;
+    report_.notes.push_back("WARNING: " + what);
   }
 
   [[nodiscard]] std::string where(const Hollow& found) const {

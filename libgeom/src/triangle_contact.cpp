@@ -2,62 +2,21 @@
 #include "triangle_contact.h"
 
 #include <kaboum/geom/predicates.h>
+#include <kaboum/geom/self_intersection.h>
 #include <kaboum/geom/topology.h>
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <algorithm>
-#include <vector>
 
 namespace kaboum::geom {
-namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Kernel::Point_3 point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
-}  // namespace
 
 bool meet_improperly(const Mesh& mesh, std::uint32_t t, std::uint32_t u) {
-  const Triangle &x = mesh.triangles[t], &y = mesh.triangles[u];
-  const auto at = [&](std::uint32_t v) -> const Vec3& { return mesh.vertices[v]; };
-  const auto beside = [&](const Triangle& plane, const Triangle& other) {
-    bool above = true, below = true;
-    for (const std::uint32_t v : other) {
-      const Sign s = orient3d(at(plane[0]), at(plane[1]), at(plane[2]), at(v));
-      above = above && s == Sign::Positive;
-      below = below && s == Sign::Negative;
-    }
-    return above || below;
+  const auto named = [&](std::uint32_t of) {
+    const Triangle& c = mesh.triangles[of];
+    return NamedTriangle{c, {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]}};
   };
-  if (beside(x, y) || beside(y, x)) return false;
-  if (is_degenerate(at(x[0]), at(x[1]), at(x[2])) || is_degenerate(at(y[0]), at(y[1]), at(y[2])))
-    return false;
-  std::vector<std::uint32_t> common, rest_x, rest_y;
-  for (const std::uint32_t v : x)
-    (std::find(y.begin(), y.end(), v) != y.end() ? common : rest_x).push_back(v);
-  for (const std::uint32_t v : y)
-    if (std::find(x.begin(), x.end(), v) == x.end()) rest_y.push_back(v);
-  const auto triangle = [&](const Triangle& c) {
-    return Kernel::Triangle_3(point(at(c[0])), point(at(c[1])), point(at(c[2])));
-  };
-  const auto segment = [&](const std::vector<std::uint32_t>& c) {
-    return Kernel::Segment_3(point(at(c[0])), point(at(c[1])));
-  };
-  switch (common.size()) {
-    case 0:
-      return CGAL::do_intersect(triangle(x), triangle(y));
-    case 1:
-      return CGAL::do_intersect(triangle(x), segment(rest_y)) ||
-             CGAL::do_intersect(triangle(y), segment(rest_x));
-    case 2: {
-      const auto a = point(at(common[0])), b = point(at(common[1])), c = point(at(rest_x[0])),
-                 d = point(at(rest_y[0]));
-      return CGAL::coplanar(a, b, c, d) && CGAL::coplanar_orientation(a, b, c, d) == CGAL::POSITIVE;
-    }
-    default:
-      return true;
-  }
+  const NamedTriangle a = named(t), b = named(u);
+  const auto flat = [](const NamedTriangle& c) { return is_degenerate(c.at[0], c.at[1], c.at[2]); };
+  return !flat(a) && !flat(b) && meet_improperly(a, b);
 }
 
 Crossing crossing(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {

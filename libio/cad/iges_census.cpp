@@ -25,6 +25,7 @@
 #include <gp_XYZ.hxx>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -204,17 +205,17 @@ class IgesCensus {
         {7, "KM"},      {8, "MIL"}, {9, "UM"}, {10, "CM"}, {11, "UIN"}};
     const int flag = global.UnitFlag();
     const auto known = kNames.find(flag);
-    const std::string name =
-        global.UnitName().IsNull() ? std::string() : global.UnitName()->ToCString();
-    const auto is_one_of = [&name](const std::string& names) {
-      return !name.empty() && (" " + names + " ").find(" " + name + " ") != std::string::npos;
-    };
-    const bool right = known != kNames.end() &&
-                       (flag == 3 ? std::any_of(kNames.begin(), kNames.end(),
-                                                [&](const auto& n) { return is_one_of(n.second); })
-                                  : name.empty() || is_one_of(known->second));
+    std::string name = global.UnitName().IsNull() ? "" : global.UnitName()->ToCString();
+    for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    int named = 0;
+    for (const auto& [of, names] : kNames)
+      if (!name.empty() && (" " + names + " ").find(" " + name + " ") != std::string::npos)
+        named = of;
+    const bool right =
+        known != kNames.end() && (flag == 3 ? named != 0 : named == 0 || named == flag);
     if (!right)
-      refuse("its unit (flag " + std::to_string(flag) + ", name '" + name + "') is not known");
+      refuse("its unit (flag " + std::to_string(flag) + ", name '" + name +
+             "') is none, or says two things");
   }
 
   /// OpenCASCADE forgets the matrices of solids, shells, faces, loops, points and more.

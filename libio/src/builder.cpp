@@ -207,7 +207,7 @@ void MeshBuilder::drop_collapsed(ReadResult& result) {
   for (const geom::Triangle& t : triangles_)
     if (collapsed(t)) wanted.push_back(own_edge(t));
   std::ranges::sort(wanted);
-  wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::vector<char> held(wanted.size(), 0), used(points_.size(), 0);
   const auto hold = [&](const Edge& e) {
     const auto found = std::ranges::lower_bound(wanted, e);

@@ -1,6 +1,7 @@
 // STEP and IGES: by a module that is loaded, in a child process, when such a file is read.
 #include <dlfcn.h>
 #include <kaboum/base/error.h>
+#include <kaboum/base/program_file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -23,17 +24,14 @@ namespace {
 /// system looks.
 std::vector<std::filesystem::path> places() {
   std::vector<std::filesystem::path> result;
-  Dl_info here{};
-  if (::dladdr(reinterpret_cast<const void*>(&read_cad), &here) != 0 && here.dli_fname != nullptr) {
-    std::error_code none;
-    const auto program = std::filesystem::canonical(here.dli_fname, none);
+  const std::filesystem::path program = program_file(reinterpret_cast<const void*>(&read_cad));
+  if (!program.empty()) {
     // Beside bin/, or so many folders above that of a Python module.
     const bool library = program.extension() == ".so";
     for (const int up : {2, 3, 5}) {
       auto folder = program;
       for (int i = 0; i < up; ++i) folder = folder.parent_path();
-      if (!none && (up > 2) == library)
-        result.push_back(folder / KABOUM_LIBRARY_FOLDER / kCadModule);
+      if ((up > 2) == library) result.push_back(folder / KABOUM_LIBRARY_FOLDER / kCadModule);
     }
   }
   result.emplace_back(std::filesystem::path(KABOUM_INSTALLED_LIBRARIES) / kCadModule);

@@ -96,6 +96,10 @@ class Sender {
     text(r.unit);
     value(r.deviation);
     value(r.exact_faces);
+    value(r.bent_polygons);
+    value(r.largest_bend);
+    value(r.bent_quads.size());
+    bytes(r.bent_quads.data(), r.bent_quads.size() * sizeof(std::uint32_t));
     value(r.mesh.vertices.size());
     bytes(r.mesh.vertices.data(), r.mesh.vertices.size() * sizeof(geom::Vec3));
     value(r.mesh.triangles.size());
@@ -136,12 +140,18 @@ class Receiver {
     r.deviation = value<double>();
     ok_ = ok_ && r.deviation >= 0 && r.deviation <= std::numeric_limits<double>::max();
     r.exact_faces = value<std::size_t>();
+    r.bent_polygons = value<std::size_t>();
+    r.largest_bend = value<double>();
+    ok_ = ok_ && r.largest_bend >= 0;
+    array(r.bent_quads);
     array(r.mesh.vertices);
     array(r.mesh.triangles);
     for (const geom::Vec3& p : r.mesh.vertices) ok_ = ok_ && p.allFinite();
     for (const geom::Triangle& t : r.mesh.triangles)
       for (const std::uint32_t corner : t) ok_ = ok_ && corner < r.mesh.vertices.size();
     ok_ = ok_ && !r.mesh.triangles.empty();
+    for (const std::uint32_t quad : r.bent_quads)
+      ok_ = ok_ && std::size_t{quad} + 1 < r.mesh.triangles.size();
     return r;
   }
   /// All of the message was there, and nothing more.

@@ -1,5 +1,6 @@
 // Units of length that files state, and coordinates in another one.
 #include <kaboum/base/error.h>
+#include <kaboum/base/option.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 
@@ -8,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <string_view>
 
 #include "text.h"
@@ -88,9 +88,18 @@ void scale(ReadResult& read, double factor, const std::string& name) {
   std::vector<geom::Triangle> kept;
   const std::vector<geom::Triangle> before = read.mesh.triangles;
   read.mesh = geom::weld(read.mesh);
+  constexpr auto kGone = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> number(before.size(), kGone);
   for (std::size_t t = 0; t < before.size(); ++t)
-    if (!has_equal_corners(read.mesh.triangles[t]) || has_equal_corners(before[t]))
+    if (!has_equal_corners(read.mesh.triangles[t]) || has_equal_corners(before[t])) {
+      number[t] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(read.mesh.triangles[t]);
+    }
+  std::vector<std::uint32_t> quads;  // both of whose triangles are left
+  for (const std::uint32_t quad : read.bent_quads)
+    if (number[quad] != kGone && number[quad + 1] != kGone) quads.push_back(number[quad]);
+  read.bent_quads = std::move(quads);
+  read.largest_bend *= factor;
   const std::size_t collapsed = before.size() - kept.size();
   read.mesh.triangles = std::move(kept);
   if (collapsed > 0) {
@@ -117,20 +126,15 @@ double scaled_bound(double bound, double factor, const geom::Mesh& scaled) {
 }
 
 double recorded_scale(const std::string& record, const std::string& file) {
-  std::istringstream words(record);
-  std::string word;
-  while (words >> word) {
-    if (word != "--scale") continue;
-    if (!(words >> word)) word.clear();
-    double factor = 0;
-    const char* const end = word.data() + word.size();
-    const auto [at, error] = std::from_chars(word.data(), end, factor);
-    if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
-      throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(word) +
-                                               ", which is no factor; it is damaged, make it anew");
-    return factor;
-  }
-  return 1;
+  const std::optional<std::string> word = recorded(record, "scale");
+  if (!word) return 1;
+  double factor = 0;
+  const char* const end = word->data() + word->size();
+  const auto [at, error] = std::from_chars(word->data(), end, factor);
+  if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
+    throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(*word) +
+                                             ", which is no factor; it is damaged, make it anew");
+  return factor;
 }
 
 void require_recorded_scale(const std::string& file, const std::string& record, double factor) {

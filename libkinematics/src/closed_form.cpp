@@ -33,7 +33,7 @@ ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, d
     out.angle = {std::atan2(z.y(), z.x()), std::atan2(z.y(), z.x()) + kPi};
     out.count = 2;
     out.nearly = near < kNearlySingular && level < kNearlySingular;
-    out.condition = level;
+    out.error = kRounding / level;
     return out;
   }
   out.free = on_axis && std::abs(form.lateral) <= within.length;
@@ -42,7 +42,9 @@ ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, d
   if (on_axis) return out;
   out.single = r < kNothing * form.reach;
   out.count = out.single ? 1 : 2;
-  out.condition = std::min(1.0, r / form.reach);
+  // r is a root of what is known to `near` times the rounding: near 0 it is known to its root.
+  out.error =
+      std::min(kRounding * form.reach / std::max(r, 1e-300), std::sqrt(2 * kRounding / near));
   const double d = side * form.lateral;
   for (int branch = 0; branch < out.count; ++branch) {
     const double kappa = branch == 0 ? r : -r;
@@ -50,6 +52,18 @@ ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, d
         std::atan2(kappa * t.y() - d * t.x(), kappa * t.x() + d * t.y());
   }
   return out;
+}
+
+double error_after_elbow(const ClosedForm& form, double error, double distance, double second,
+                         bool folded) {
+  const double cosine =
+                   (square(distance) - square(form.a2) - square(second)) / (2 * form.a2 * second),
+               sine = std::sqrt(std::max(0.0, 1 - square(cosine))),
+               cosine_error = kRounding + error * std::max(distance, kNearlySingular * form.reach) *
+                                              form.reach / (form.a2 * second),
+               elbow = std::min(cosine_error / std::max(sine, 1e-300), std::sqrt(2 * cosine_error));
+  if (folded) return error + elbow;
+  return error * (1 + form.reach / distance) + elbow * (1 + second / distance);
 }
 
 namespace {
@@ -82,6 +96,7 @@ class Solver {
   void spherical_wrist() {
     for_each_shoulder(1, [&] {
       const double y = -t_.z();
+      error_ = shoulder_error_;
       for_each_elbow(along_ - f_.a1, y, f_.forearm, f_.bend, [&] { spherical_wrist_of_elbow(); });
     });
   }
@@ -95,6 +110,7 @@ class Solver {
         const double sigma = branch == 0 ? 1 : -1;
         turn_[4] = turn(4, std::atan2(sigma * off, zz));
         turn_[5] = free ? kept(5) : turn(5, std::atan2(-sigma * zs, sigma * zn));
+        error_ = free ? shoulder_error_ : (kRounding + shoulder_error_) / off;
         const Vec3 z4 = -(turn_[5].s * n_ + turn_[5].c * s_);
         forearm_of(turn_[0].c * z4.x() + turn_[0].s * z4.y(), -z4.z());
       }
@@ -105,6 +121,7 @@ class Solver {
     for_each_shoulder(-1, [&] {
       const Vec3 z1(turn_[0].s, -turn_[0].c, 0);
       turn_[4] = turn(4, std::atan2(z1.dot(n_), z1.dot(s_)));
+      error_ = shoulder_error_;
       forearm_of(turn_[0].c * z_.x() + turn_[0].s * z_.y(), -z_.z());
     });
   }
@@ -132,7 +149,7 @@ class Solver {
     out_.nearly_singular |= turns.nearly;
     shoulder_ = turns.free || turns.single ? kShoulder : kRegular;
     free_shoulder_ = turns.free ? 1U : 0U;
-    shoulder_condition_ = turns.condition;
+    shoulder_error_ = turns.error;
     for (int branch = 0; branch < (turns.free ? 1 : turns.count); ++branch) {
       turn_[0] = turns.free ? kept(0) : turn(0, turns.angle[static_cast<std::size_t>(branch)]);
       along_ = turn_[0].c * t_.x() + turn_[0].s * t_.y();
@@ -146,11 +163,11 @@ class Solver {
     out_.nearly_singular |= !free && off < kNearlySingular;
     wrist_ = free ? kWrist : kRegular;
     free_wrist_ = free ? 1U << joint : 0U;
-    wrist_condition_ = free ? 1 : off;
     return free;
   }
 
-  /// Joints 2 and 3 of two links in a plane: a2 e^{iθ1} + second e^{i(θ1 + θ2 + bend)} = x + iy.
+  /// Joints 2 and 3 of two links in a plane: a2 e^{iθ1} + second e^{i(θ1 + θ2 + bend)} = x + iy,
+  /// where x and y are known to `error_` times the reach.
   template <class Next>
   void for_each_elbow(double x, double y, double second, double bend, const Next& next) {
     const double v = x * x + y * y;
@@ -163,7 +180,7 @@ class Solver {
     out_.nearly_singular |= !folded && v < square(kNearlySingular * reach_);
     elbow_ = single ? kElbow : kRegular;
     free_elbow_ = folded ? 1U << 1U : 0U;
-    elbow_condition_ = folded ? 1 : sine * std::min(1.0, std::sqrt(v) / reach_);
+    elbow_error_ = error_after_elbow(f_, error_, std::sqrt(v), second, folded);
     for (int branch = 0; branch < (single ? 1 : 2); ++branch) {
       const double epsilon = branch == 0 ? 1 : -1, k2 = epsilon * second * sine;
       turn_[1] = folded ? kept(1) : turn(1, std::atan2(k1 * y - k2 * x, k1 * x + k2 * y));
@@ -193,6 +210,7 @@ class Solver {
     const double a5 = std::atan2(turn_[3].s * n.x() - turn_[3].c * n.y(),
                                  turn_[3].s * s.x() - turn_[3].c * s.y());
     turn_[5] = turn(5, a5);
+    if (!free) elbow_error_ = (kRounding + shoulder_error_ + elbow_error_) / off;
     const double rotation = spherical_rotation_error(n, s, z);
     emit(position, rotation);
     if (free) return;
@@ -258,11 +276,7 @@ class Solver {
     out.rotation_error = rotation + model.rotation;
     out.singular = shoulder_ | elbow_ | wrist_;
     out.free = free_shoulder_ | free_elbow_ | free_wrist_;
-    // Errors of the target and the formulas, as far as singular places near it make them larger;
-    // the square root where two solutions coincide is covered by the largest.
-    constexpr double kRounding = 1e-14, kLargest = 1e-4;
-    const double condition = shoulder_condition_ * elbow_condition_ * wrist_condition_;
-    out.accuracy = std::min(kLargest, kRounding / std::max(condition, 1e-300));
+    out.accuracy = std::min(kPi, kRounding + shoulder_error_ + error_ + elbow_error_);
   }
 
   const ClosedForm& f_;
@@ -273,7 +287,9 @@ class Solver {
   double reach_ = 0, along_ = 0, c12_ = 1, s12_ = 0;
   unsigned shoulder_ = kRegular, elbow_ = kRegular, wrist_ = kRegular;
   unsigned free_shoulder_ = 0, free_elbow_ = 0, free_wrist_ = 0;
-  double shoulder_condition_ = 1, elbow_condition_ = 1, wrist_condition_ = 1;
+  double shoulder_error_ = 0;  ///< how well joint 1 is known [rad]
+  double error_ = 0;           ///< the same of what joints 2 and 3 follow from
+  double elbow_error_ = 0;     ///< of them and all after them
   std::array<Turn, 6> turn_;
 };
 

@@ -338,7 +338,13 @@ class Branches {
       add_sides(b, false, true);
       if (upright) continue;
       for (const double side : {1.0, -1.0}) {
-        if (!is_aligned(side * c12 * level - s12 * g_.z.z())) continue;
+        const double off = side * c12 * level - s12 * g_.z.z();
+        if (!is_aligned(off)) {
+          // What the elbow is not known to turns joints 4 and 6 where they are nearly one.
+          nearly_ |= error_after_elbow(f_, kRounding, std::hypot(x, y), f_.forearm, false) >
+                     kCoarse * std::abs(off);
+          continue;
+        }
         Branch c = branch(side > 0 ? towards : towards + kPi, kShoulder);
         c.elbow = elbow;
         c.wrist = -(side * s12 * level + c12 * g_.z.z()) < 0 ? 1 : -1;
@@ -651,7 +657,9 @@ SolutionSet solve_set(const ClosedForm& form, const Transform& target,
   const Goal goal{flange.linear.col(0), flange.linear.col(1), flange.linear.col(2),
                   flange.translation};
   const Branches branches(form, goal, options.solve.bound);
-  if (branches.nearly() || out.isolated.nearly_singular)
+  if (branches.nearly() || out.isolated.nearly_singular ||
+      std::any_of(out.isolated.begin(), out.isolated.end(),
+                  [](const Solution& s) { return s.accuracy > kCoarse; }))
     doubt("the pose is nearly singular: rounding decides which configurations reach it");
   if (!branches.found().empty() && off > kExactFamilies)
     doubt("a joint is free, and the arm is only nearly of its family");

@@ -18,6 +18,12 @@ inline constexpr double kBorder = 1e-6;
 /// moves it visibly: what is found then need not be all.
 inline constexpr double kNearlySingular = 1e-6;
 
+/// Errors of targets and formulas, in radians or parts of the reach, before singular places near by
+/// make them larger.
+inline constexpr double kRounding = 1e-14;
+/// Where a configuration is known no better than this, rounding decides which is found. [rad]
+inline constexpr double kCoarse = 1e-5;
+
 /// So near to where a joint is free it is: with any value of it the target is met within the bound
 /// of solutions.
 struct FreeWithin {
@@ -35,12 +41,19 @@ struct ShoulderTurns {
   bool free = false;              ///< any will do: `count` is 0
   bool single = false;            ///< two coincide
   bool nearly = false;            ///< nearly free
-  double condition = 1;           ///< errors of the target are larger by 1 / this in the angle
+  double error = kRounding;       ///< how well it is known [rad]
 };
 
 /// @param side  joint 1 is to meet side · (c0 ty − s0 tx) = lateral.
 /// @param t, z  origin of the target's last frame, direction of its last axis, in the first frame.
 ShoulderTurns shoulder_turns(const ClosedForm& form, const FreeWithin& within, double side,
                              const Vec3& t, const Vec3& z);
+
+/// How well joints 2 and 3 are known, whose links end at `distance`. [rad]
+/// @param error   of that place, in parts of the reach.
+/// @param second  length of the second link.
+/// @param folded  the end is on joint 2, which is free.
+double error_after_elbow(const ClosedForm& form, double error, double distance, double second,
+                         bool folded);
 
 }  // namespace kaboum::kinematics

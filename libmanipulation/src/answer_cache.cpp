@@ -75,8 +75,8 @@ std::optional<std::string> read_again(const Read& read, plan::StateView& view) {
 }
 
 std::string place_of_question(const std::string& function, const Question& question) {
-  std::string out =
-      function + '\n' + std::to_string(question.seed) + '\n' + std::to_string(question.attempt);
+  std::string out = function + '\n' + std::to_string(question.seed) + '\n' +
+                    std::to_string(question.attempt) + '\n' + std::to_string(question.choice);
   for (const std::string& argument : question.arguments) out += '\n' + argument;
   return out;
 }
@@ -92,6 +92,7 @@ json to_json(const std::string& place, const Entry& entry) {
           {"payload", entry.answer.payload},
           {"reason", entry.answer.reason},
           {"chosen", entry.answer.chosen},
+          {"choices", entry.answer.choices},
           {"fixed", entry.answer.fixed}};
 }
 
@@ -104,9 +105,11 @@ Entry entry_of(const json& j) {
   // `get` would convert any number.
   const auto kind = j.at("kind").get_ref<const json::number_unsigned_t&>();
   if (kind > 2) throw Error(ErrorCode::InvalidInput, "no kind of answer");
-  out.answer = {static_cast<Answer::Kind>(kind),    j.at("value").get<std::string>(),
-                j.at("payload").get<std::string>(), j.at("reason").get<std::string>(),
-                j.at("chosen").get<bool>(),         j.at("fixed").get<bool>()};
+  out.answer = {static_cast<Answer::Kind>(kind), j.at("value").get<std::string>(),
+                j.at("payload").get<std::string>(), j.at("reason").get<std::string>()};
+  out.answer.chosen = j.at("chosen").get<bool>();
+  out.answer.choices = j.at("choices").get<unsigned>();
+  out.answer.fixed = j.at("fixed").get<bool>();
   return out;
 }
 
@@ -149,7 +152,8 @@ struct AnswerCache::Kept {
     }
     Notes notes(question.state);
     Entry made;
-    made.answer = function({question.arguments, notes, question.seed, question.attempt});
+    made.answer =
+        function({question.arguments, notes, question.seed, question.attempt, question.choice});
     made.reads = std::move(notes.reads);
     Answer answer = made.answer;
     const std::size_t size = answer.payload.size() + 200 + 100 * made.reads.size();

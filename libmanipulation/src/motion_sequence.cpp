@@ -41,7 +41,9 @@ bool MotionSequence::fail(Answer::Kind kind, std::string reason) {
 }
 
 Answer MotionSequence::failure() const {
-  return {motions_.empty() ? failed_ : Answer::Kind::NotFound, "", "", reason_};
+  Answer out{motions_.empty() ? failed_ : Answer::Kind::NotFound, "", "", reason_};
+  out.choices = choices_;
+  return out;
 }
 
 Answer MotionSequence::found(std::string value) const {
@@ -55,6 +57,7 @@ Answer MotionSequence::found(std::string value) const {
   }
   Answer out = Answer::found(std::move(value), paths.dump());
   out.chosen = chosen_;
+  out.choices = choices_;
   return out;
 }
 

@@ -62,7 +62,8 @@ class MotionSequence {
   std::vector<Motion> motions_;
   plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
   std::string reason_;
-  bool chosen_ = false;  ///< something was chosen among several things that might do
+  bool chosen_ = false;   ///< something was chosen among several things that might do
+  unsigned choices_ = 0;  ///< among how many a question's choice decides
   Random random_;
   std::vector<robot::Path> last_paths_;  ///< of each robot
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 namespace kaboum::manipulation {
 namespace {
@@ -17,6 +18,13 @@ using world::Transform;
 
 /// Turns that are tried when an object is put down; more with each attempt.
 constexpr int kTurns = 8;
+
+/// All of 0 … n − 1 for the choices 1 … n, what is near in the list far apart in time.
+std::size_t spread(unsigned choice, std::size_t n) {
+  auto step = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(n)));
+  while (std::gcd(step, n) != 1) ++step;
+  return (choice - 1) * step % n;
+}
 
 }  // namespace
 
@@ -45,6 +53,37 @@ Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object) const {
   goals.listed = (fitting == 1 ? "the only grasp" : "the " + std::to_string(fitting) + " grasps") +
                  (" listed for " + thing.name);
   return goals;
+}
+
+std::optional<Goals> Sequence::preferred_goals(std::size_t robot, std::size_t object) {
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  const world::Object& thing = geometry_.world.objects[object];
+  std::vector<std::pair<const world::Grasp*, const world::ToolFrame*>> all;
+  for (const world::Grasp& grasp : thing.grasps)
+    for (const world::ToolFrame& tool : model.tools)
+      if (fits(tool, grasp)) all.emplace_back(&grasp, &tool);
+  if (all.size() < 2) return std::nullopt;
+  choices_ = std::max(choices_, static_cast<unsigned>(all.size()));
+  if (question_.choice == 0) return std::nullopt;
+  const auto [grasp, tool] = all[spread(question_.choice, all.size())];
+  Goals goals;
+  add_goals(goals, robot, tool->link,
+            pose_of_object(object) * inverse(grasp->pose) * inverse(tool->pose));
+  goals.all = false;  // there are other grasps
+  if (goals.configurations.empty()) return std::nullopt;
+  return goals;
+}
+
+std::string Sequence::name_with_grasp(std::size_t object, const world::Attachment& held) const {
+  const world::Object& thing = geometry_.world.objects[object];
+  for (const world::ToolFrame& tool : geometry_.world.robots[held.robot].tools)
+    for (const world::Grasp& grasp : thing.grasps) {
+      if (tool.link != held.link || !fits(tool, grasp)) continue;
+      const kinematics::PoseError error = kinematics::difference(tool.pose * grasp.pose, held.pose);
+      if (error.position <= kSamePose && error.rotation <= kSamePose)
+        return thing.name + ", held by its grasp '" + grasp.name + "',";
+    }
+  return thing.name;
 }
 
 std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t object) {
@@ -78,6 +117,8 @@ bool Sequence::reach(std::size_t robot, std::size_t object) {
   if (state_.attachments[object])
     return fail(Answer::Kind::Impossible,
                 geometry_.world.objects[object].name + " is held already");
+  const auto preferred = preferred_goals(robot, object);
+  if (preferred && go(robot, *preferred)) return true;
   return go(robot, *goals);
 }
 

@@ -46,6 +46,11 @@ class Sequence : public MotionSequence {
   };
 
   [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object) const;
+  /// By the one grasp that the question's choice prefers; nullopt: it prefers none.
+  std::optional<Goals> preferred_goals(std::size_t robot, std::size_t object);
+  /// "o1, held by its grasp 'side'"
+  [[nodiscard]] std::string name_with_grasp(std::size_t object,
+                                            const world::Attachment& held) const;
   /// nullopt: it is out of reach.
   std::optional<Goals> goals_in_reach(std::size_t robot, std::size_t object);
   /// Turns about the vertical, or a seat's normal, that are tried.

@@ -143,7 +143,7 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
     }
   }
   if (failed_ == Answer::Kind::NotFound)
-    reason_ = thing.name + " on " + below.name + ": " + std::to_string(points) +
+    reason_ = name_with_grasp(object, *held) + " on " + below.name + ": " + std::to_string(points) +
               (points == 1 ? " point 'top…'" : " points 'top…'") + " of the scene and " +
               std::to_string(angles.size()) + " turns were tried; the last: " + reason_;
   return false;

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "inside_out.h"
 #include "parallel.h"
 #include "rounding.h"
 #include "swept_body.h"
@@ -513,6 +514,10 @@ void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
       claim = {};
       claim.answer = Answer::Undecided;
       claim.reason = "without the surface claim it is not looked at";
+    } else if (mesh && is_inside_out(shape.mesh)) {
+      claim = {};
+      claim.answer = Answer::Undecided;
+      claim.reason = shape.name + " is inside out: nothing is known of what its surface encloses";
     } else if (mesh) {
       if (options.progress) options.progress(shape.name + ", its inside");
       claim = verify_inside(shape, path, set, bodies, options);

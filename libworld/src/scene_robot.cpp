@@ -3,6 +3,7 @@
 #include "scene_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/option.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/allowed_pairs.h>
 
@@ -130,8 +131,7 @@ void SceneRobot::note_bare_links(const RobotModel& robot, bool visual) {
 
 void SceneRobot::require_shapes(const Loaded& loaded, const Located& value, bool visual) const {
   const geom::Provenance& p = loaded.set.provenance;
-  const bool of_visual =
-      (" " + p.parameters + " ").find(" --geometry visual ") != std::string::npos;
+  const bool of_visual = recorded(p.parameters, "geometry") == "visual";
   if (of_visual && !visual)
     fail(
         need(value, "file"),

@@ -99,11 +99,13 @@ bool Cones::apart(const Cone& cone, const Relative& triangle) const {
     if (wrap::apart(range_along(axis.n, triangle.corner), axis.range,
                     axis.margin.at(triangle.most)))
       return true;
+  bool between = false;  // whether some plane is between them, at whatever distance
   const auto along = [&](const Vec3& n) {
     Range range = range_along(n, cone.corner);
     range.extend(0);
-    return wrap::apart(range_along(n, triangle.corner), range,
-                       Margin(n, clearance_).at(triangle.most));
+    const Range other = range_along(n, triangle.corner);
+    between |= wrap::apart(other, range, 0);
+    return wrap::apart(other, range, Margin(n, clearance_).at(triangle.most));
   };
   const auto& [a, b, c] = triangle.corner;
   if (along((b - a).cross(c - a))) return true;
@@ -111,6 +113,34 @@ bool Cones::apart(const Cone& cone, const Relative& triangle) const {
   for (const Vec3& e : {Vec3(b - a), Vec3(c - b), Vec3(a - c)})
     for (const Vec3& f : {p, q, r, Vec3(q - p), Vec3(r - q), Vec3(p - r)})
       if (along(e.cross(f))) return true;
+  if (!(clearance_ > 0)) return false;
+  for (const Axis& axis : cone.faces)
+    between |= wrap::apart(range_along(axis.n, triangle.corner), axis.range, 0);
+  return between && apart_at_corners(cone, triangle, along);
+}
+
+/// Where a corner of one is what is nearest to the other, the widest gap is along the way from it
+/// to a corner or an edge there.
+template <class Along>
+bool Cones::apart_at_corners(const Cone& cone, const Relative& triangle, Along&& along) {
+  const Vec3 last = Vec3::Zero();
+  const auto& [p, q, r] = cone.corner;
+  const auto& [a, b, c] = triangle.corner;
+  const auto from_edge = [](const Vec3& x, const Vec3& from, const Vec3& to) {
+    const Vec3 e = to - from, d = x - from;
+    return Vec3(d - d.dot(e) / e.squaredNorm() * e);
+  };
+  using Edge = std::pair<const Vec3*, const Vec3*>;
+  for (const Vec3* x : {&a, &b, &c}) {
+    for (const Vec3* y : {&p, &q, &r, &last})
+      if (along(*x - *y)) return true;
+    for (const auto& [y, z] :
+         {Edge{&p, &last}, {&q, &last}, {&r, &last}, {&p, &q}, {&q, &r}, {&r, &p}})
+      if (along(from_edge(*x, *y, *z))) return true;
+  }
+  for (const Vec3* x : {&p, &q, &r, &last})
+    for (const auto& [y, z] : {Edge{&a, &b}, {&b, &c}, {&c, &a}})
+      if (along(from_edge(*x, *y, *z))) return true;
   return false;
 }
 

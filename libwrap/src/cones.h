@@ -15,7 +15,8 @@ using Tetrahedron = std::array<Vec3, 4>;
 
 /// Tetrahedra with one last corner, and the planes that may part them from triangles: those along
 /// their faces, made once for all triangles, and those along the triangle, or along an edge of
-/// each, which together are all that need be tried.
+/// each, which together are all that need be tried. With a clearance, those across a shortest way
+/// between corners, and between corners and edges, are tried as well.
 class Cones {
  public:
   /// Other tetrahedra in place of those before.
@@ -48,6 +49,8 @@ class Cones {
   /// not too far from the cones.
   [[nodiscard]] bool parts(const Axis& axis, const geom::Box3& box, const geom::Box3& near) const;
   [[nodiscard]] bool apart(const Cone& cone, const Relative& triangle) const;
+  template <class Along>
+  static bool apart_at_corners(const Cone& cone, const Relative& triangle, Along&& along);
 
   double clearance_ = 0;
   Vec3 origin_ = Vec3::Zero();

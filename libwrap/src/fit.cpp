@@ -6,21 +6,6 @@
 
 namespace kaboum::wrap {
 
-bool Room::allows(const Vec3& p) const {
-  const auto [x, y, z] = lattice.cell_of(p);
-  if (x < 0 || y < 0 || z < 0 || x >= lattice.size[0] || y >= lattice.size[1] ||
-      z >= lattice.size[2])
-    return true;
-  return open.get(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
-}
-
-void Fit::approach() {
-  std::vector<std::uint32_t> far;
-  for (std::uint32_t v = 0; v < surface_.vertex_count(); ++v)
-    if (!surface_.star(v).empty() && !approach(v)) far.push_back(v);
-  for (const std::uint32_t v : far) approach(v);
-}
-
 bool Fit::approach(std::uint32_t v) {
   constexpr double kNear = 1.2;  // times the aim: not worth a step
   const Vec3 p = surface_.point(v);
@@ -67,6 +52,12 @@ void Fit::settle() {
     if (!surface_.star(v).empty()) settle(v, planes);
 }
 
+bool Fit::no_farther(const Vec3& from, const Vec3& to, std::uint32_t hint) const {
+  if (obstacle_.within(to, room_.offset, hint)) return true;
+  const Foot foot = obstacle_.foot(to, hint);
+  return foot.distance <= obstacle_.foot(from, hint).distance;
+}
+
 void Fit::settle(std::uint32_t v, const std::vector<Plane>& planes) {
   const Vec3 p = surface_.point(v);
   Quadric sum;
@@ -77,10 +68,10 @@ void Fit::settle(std::uint32_t v, const std::vector<Plane>& planes) {
   const Vec3 step = sum.minimiser(Vec3::Zero());
   const double length = step.norm();
   if (!(length > 0.1 * room_.aim())) return;
-  const double most = std::min(1.0, room_.lattice.side / length);
+  const double most = std::min(1.0, 0.5 * room_.seal / length);
   for (const double part : {1.0, 0.5, 0.25}) {
     const Vec3 q = surface_.representable(p + part * most * step);
-    if (sum.at(q - p) >= sum.c || !room_.allows(q)) continue;
+    if (sum.at(q - p) >= sum.c || !room_.allows(q) || !no_farther(p, q, hint_[v])) continue;
     if (surface_.move(v, q)) return;
   }
 }

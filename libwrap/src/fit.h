@@ -1,9 +1,10 @@
 #pragma once
 
+#include <kaboum/geom/distance.h>
+
 #include <optional>
 #include <vector>
 
-#include "cells.h"
 #include "quadric.h"
 #include "surface.h"
 
@@ -11,18 +12,24 @@ namespace kaboum::wrap {
 
 /// Where the surface is wished, and where it may go.
 struct Room {
-  const Lattice& lattice;
-  const BitGrid& open;  ///< cells outside, and those that the input meets; not the sealed ones
-  double clearance;     ///< the surface may be nowhere nearer to the input [length]
-  double offset;        ///< the surface should be nowhere farther from the input [length]
+  const geom::DistanceQuery& carved;  ///< what a ball of the diameter `seal` cannot reach
+  double seal;
+  double clearance;  ///< the surface may be nowhere nearer to the input [length]
+  double offset;     ///< the surface should be nowhere farther from the input [length]
 
   /// The distance that is aimed at, in the middle of the room.
   [[nodiscard]] double aim() const { return 0.5 * (clearance + offset); }
   /// The room on either side.
   [[nodiscard]] double slack() const { return 0.5 * (offset - clearance); }
   /// Farther away the surface stays as it is: it closes a gap.
-  [[nodiscard]] double far() const { return 1.75 * lattice.side; }
-  [[nodiscard]] bool allows(const Vec3& p) const;
+  [[nodiscard]] double far() const { return offset + 0.25 * seal; }
+  /// How far corners may go from what was carved.
+  [[nodiscard]] double depth() const { return offset + 0.25 * seal; }
+  /// The surface should be nowhere farther from the input than what a ball leaves.
+  [[nodiscard]] double farthest() const { return offset + 0.5 * seal; }
+  [[nodiscard]] bool allows(const Vec3& p) const {
+    return carved.within(p, depth()) != geom::TriangleSearch::kNone;
+  }
 };
 
 struct Plane {
@@ -36,9 +43,6 @@ class Fit {
   Fit(Surface& surface, const Obstacle& obstacle, const Room& room)
       : surface_(surface), obstacle_(obstacle), room_(room), hint_(surface.vertex_count(), 0) {}
 
-  /// Each vertex goes towards the nearest point of the input, as far as it may; those that did not
-  /// get near try once more when all have moved.
-  void approach();
   /// Each vertex goes to where the tangent planes of the input's offset near it meet: onto the
   /// edges of planes.
   void settle();
@@ -56,6 +60,8 @@ class Fit {
   /// @return whether the vertex is near now
   bool approach(std::uint32_t v);
   void settle(std::uint32_t v, const std::vector<Plane>& planes);
+  /// Whether `to` is within the offset of the input, or no farther from it than `from`.
+  [[nodiscard]] bool no_farther(const Vec3& from, const Vec3& to, std::uint32_t hint) const;
 
   Surface& surface_;
   const Obstacle& obstacle_;

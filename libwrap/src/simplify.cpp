@@ -142,7 +142,7 @@ class Simplifier {
       if (!is_near || obstacle_.within(x, allowed.value_or(room_.offset), hint_)) return;
       is_near = false;
       if (allowed) return;
-      allowed = farthest(a, b);
+      allowed = std::min(farthest(a, b), room_.farthest());
       is_near = *allowed > room_.offset && obstacle_.within(x, *allowed, hint_);
     };
     sample(p);

@@ -1,7 +1,9 @@
-// Moves, splits and contractions as sums of tetrahedra that the obstacle is clear of.
+// Moves, splits and contractions as sums of tetrahedra that the obstacle is clear of, with new
+// triangles that meet no others.
 #include "surface.h"
 
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/topology.h>
 
 #include <algorithm>
 
@@ -15,6 +17,77 @@ Surface::Surface(geom::Mesh mesh, const Obstacle& obstacle, bool float32)
       float32_(float32) {
   for (std::uint32_t t = 0; t < triangles_.size(); ++t)
     for (const std::uint32_t v : triangles_[t]) stars_[v].push_back(t);
+  build_crowd();
+}
+
+void Surface::build_crowd() {
+  std::vector<char> in_use(triangles_.size());
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) in_use[t] = gone(t) ? 0 : 1;
+  crowd_.build(points_, triangles_, in_use);
+}
+
+namespace {
+
+geom::Box3 box_of(const geom::NamedTriangle& t) {
+  geom::Box3 box;
+  for (const Vec3& p : t.at) box.extend(p);
+  return box;
+}
+
+bool overlap(const geom::Box3& a, const geom::Box3& b) {
+  bool apart = false;  // without branches
+  for (int k = 0; k < 3; ++k) apart |= (a.min[k] > b.max[k]) | (b.min[k] > a.max[k]);
+  return !apart;
+}
+
+}  // namespace
+
+bool Surface::apart(std::span<const Change> changes, std::span<const std::uint32_t> removed) {
+  ++check_;
+  mark_.resize(triangles_.size(), 0);
+  for (const std::uint32_t t : removed) mark_[t] = check_;
+  boxes_.clear();
+  geom::Box3 all;
+  for (const Change& c : changes) {
+    if (c.triangle < mark_.size()) mark_[c.triangle] = check_;
+    if (geom::is_degenerate(c.to.at[0], c.to.at[1], c.to.at[2])) return false;
+    boxes_.push_back(box_of(c.to));
+    all.extend(boxes_.back());
+  }
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    for (std::size_t k = i + 1; k < changes.size(); ++k)
+      if (geom::meet_improperly(changes[i].to, changes[k].to)) return false;
+  return crowd_.all_near(all, [&](std::uint32_t t) {
+    if (gone(t) || mark_[t] == check_) return true;
+    const geom::Triangle& c = triangles_[t];
+    const geom::NamedTriangle other{c, {points_[c[0]], points_[c[1]], points_[c[2]]}};
+    const geom::Box3 box = box_of(other);
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if (overlap(box, boxes_[i]) && geom::meet_improperly(changes[i].to, other)) return false;
+    return true;
+  });
+}
+
+void Surface::note(std::span<const Change> changes) {
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Change& c = changes[i];
+    if (c.near == c.triangle) {
+      crowd_.grow(c.triangle, boxes_[i]);
+    } else {
+      crowd_.add(c.triangle, c.near, boxes_[i]);
+    }
+  }
+  if (crowd_.stale()) build_crowd();
+}
+
+void Surface::change(std::uint32_t t, std::uint32_t from, std::uint32_t to, const Vec3& p) {
+  Change c{t, t, {triangles_[t], {}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = c.to.name[k];
+    c.to.at[k] = v == from || v == to ? p : points_[v];
+    if (v == from) c.to.name[k] = to;
+  }
+  changes_.push_back(c);
 }
 
 std::vector<std::uint32_t> Surface::neighbours(std::uint32_t v) const {
@@ -47,22 +120,32 @@ void Surface::leave(std::uint32_t v, std::uint32_t t) {
 bool Surface::move(std::uint32_t v, const Vec3& p) {
   if (!p.allFinite()) return false;
   cones_.clear();
-  for (const std::uint32_t t : stars_[v]) add_cone(t, p, cones_);
-  if (!obstacle_.clear(cones_)) return false;
+  changes_.clear();
+  for (const std::uint32_t t : stars_[v]) {
+    add_cone(t, p, cones_);
+    change(t, v, v, p);
+  }
+  if (!obstacle_.clear(cones_) || !apart(changes_, {})) return false;
   points_[v] = p;
+  note(changes_);
   return true;
 }
 
 std::uint32_t Surface::split(std::uint32_t a, std::uint32_t b, const Vec3& p) {
+  if (!p.allFinite()) return kNone;
   std::vector<std::uint32_t> at;
   cones_.clear();
-  for (const std::uint32_t t : stars_[a])
-    if (has(t, b)) {
-      at.push_back(t);
-      add_cone(t, p, cones_);
-    }
-  if (!p.allFinite() || !obstacle_.clear(cones_)) return kNone;
+  changes_.clear();
   const auto v = static_cast<std::uint32_t>(points_.size());
+  for (const std::uint32_t t : stars_[a]) {
+    if (!has(t, b)) continue;
+    add_cone(t, p, cones_);
+    change(t, b, v, p);
+    change(t, a, v, p);
+    changes_.back().triangle = static_cast<std::uint32_t>(triangles_.size() + at.size());
+    at.push_back(t);
+  }
+  if (!obstacle_.clear(cones_) || !apart(changes_, {})) return kNone;
   points_.push_back(p);
   stars_.emplace_back();
   for (const std::uint32_t t : at) {
@@ -76,6 +159,7 @@ std::uint32_t Surface::split(std::uint32_t a, std::uint32_t b, const Vec3& p) {
     for (const std::uint32_t w : other) stars_[w].push_back(u);
     stars_[v].push_back(t);
   }
+  note(changes_);
   return v;
 }
 
@@ -87,14 +171,22 @@ bool Surface::contract(std::uint32_t a, std::uint32_t b, const Vec3& p) {
     common += std::binary_search(of_b.begin(), of_b.end(), v) ? 1 : 0;
   std::vector<std::uint32_t> at;
   cones_.clear();
+  changes_.clear();
   for (const std::uint32_t t : stars_[a]) {
-    if (has(t, b)) at.push_back(t);
     add_cone(t, p, cones_);
+    if (has(t, b)) {
+      at.push_back(t);
+    } else {
+      change(t, a, a, p);
+    }
   }
   if (common != at.size() || at.size() != 2) return false;
-  for (const std::uint32_t t : stars_[b])
-    if (!has(t, a)) add_cone(t, p, cones_);
-  if (!obstacle_.clear(cones_)) return false;
+  for (const std::uint32_t t : stars_[b]) {
+    if (has(t, a)) continue;
+    add_cone(t, p, cones_);
+    change(t, b, a, p);
+  }
+  if (!obstacle_.clear(cones_) || !apart(changes_, at)) return false;
   for (const std::uint32_t t : at) {
     for (const std::uint32_t v : triangles_[t])
       if (v != b) leave(v, t);
@@ -107,6 +199,7 @@ bool Surface::contract(std::uint32_t a, std::uint32_t b, const Vec3& p) {
   }
   stars_[b].clear();
   points_[a] = p;
+  note(changes_);
   return true;
 }
 

@@ -1,11 +1,16 @@
-// An enclosing closed mesh of any triangles: cells, their boundary, steps towards the input.
+// An enclosing closed mesh of any triangles: tetrahedra carved from outside, steps towards the
+// input.
 #include <kaboum/base/error.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/self_intersection.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/wrap/wrap.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "boundary_of_cells.h"
-#include "cells.h"
+#include "carving.h"
 #include "fit.h"
 #include "obstacle.h"
 #include "simplify.h"
@@ -26,31 +31,34 @@ void require_sound(const geom::Mesh& input, const WrapOptions& o) {
   geom::require_valid(input);
 }
 
-/// The surface may go into one layer of sealed cells: half a gap deep at most.
-constexpr double kDepth = 0.5;
+/// Spacing of the numbers that the wrap's coordinates may be, where it is widest.
+double spacing_of(const geom::Box3& box, const WrapOptions& o) {
+  const double most = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) +
+                      4 * (o.seal + o.offset);
+  return o.float32 ? geom::float32_spacing(most) : std::ldexp(most, -52);
+}
 
-/// Cells outside, with those the input meets taken away, and the same with these.
-struct Cells {
-  BitGrid outside, open;
-};
+void require_fine(const geom::Box3& box, const WrapOptions& o) {
+  constexpr double kSmallest = 1e-40, kLargest = 1e40;
+  const double diagonal = box.diagonal();
+  if (diagonal > 0 && !(diagonal > kSmallest && diagonal < kLargest))
+    throw Error(
+        ErrorCode::InvalidInput,
+        "the triangles are too small or too large for a wrap: their box has a diagonal of " +
+            std::to_string(diagonal) + "; use another unit of length");
+  if (!(8 * spacing_of(box, o) <= o.seal))
+    throw Error(ErrorCode::InvalidInput,
+                o.float32 ? "the coordinates are too large for 32-bit numbers as fine as the wrap "
+                            "needs; move the mesh to the origin, or choose double precision"
+                          : "the coordinates are too large for a wrap so fine; move the mesh to "
+                            "the origin");
+}
 
-Cells cells_of(const Lattice& lattice, const geom::Mesh& input, double radius, double clearance) {
-  BitGrid occupied = occupied_cells(lattice, input);
-  if (clearance > 0) occupied = dilated(occupied, clearance / lattice.side * (1 + 1e-12) + 1e-12);
-  BitGrid outside = dilated(flooded(dilated(occupied, radius)), radius);
-  BitGrid open = dilated(outside, kDepth);
-  for (int z = 0; z < lattice.size[2]; ++z) {
-    for (int y = 0; y < lattice.size[1]; ++y) {
-      const auto met = occupied.row(y, z);
-      const auto out = outside.row(y, z);
-      const auto either = open.row(y, z);
-      for (std::size_t i = 0; i < met.size(); ++i) {
-        either[i] |= met[i];
-        out[i] &= ~met[i];
-      }
-    }
-  }
-  return {std::move(outside), std::move(open)};
+/// What is claimed of a wrap by itself, decided for the coordinates that it has.
+void decide_clean(const geom::Mesh& mesh) {
+  const geom::TopologyReport topology = geom::analyse(mesh);
+  ensure(topology.closed() && topology.manifold(), "a wrap is not a closed manifold");
+  ensure(geom::self_intersections(mesh).none(), "a wrap meets itself");
 }
 
 }  // namespace
@@ -60,32 +68,37 @@ Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   const auto say = [&](const char* stage) {
     if (options.progress) options.progress(stage);
   };
+  const geom::Box3 box = geom::bounding_box(input);
+  require_fine(box, options);
+  const double clearance = options.clearance;
+  const Obstacle obstacle(input, clearance);
+  CarvingOptions carving;
+  carving.radius = options.seal / 2;
+  // Rounded coordinates have to be outside of the clearance as well.
+  carving.offset = std::max(options.offset, 1.5 * clearance + 4 * spacing_of(box, options));
+  carving.clearance = clearance;
+  carving.float32 = options.float32;
+  carving.max_points = options.max_points;
+  say("carving");
+  Carving carved = carve(input, obstacle, carving);
   Wrap result;
-  result.cell = side_above(options.seal / 2);
-  const double radius = options.seal / 2 / result.cell;
-  const int border = reach(radius) + reach(options.clearance / result.cell + 0.1) + 1;
-  say("cells");
-  const Lattice lattice = lattice_round(geom::bounding_box(input), result.cell, border,
-                                        options.float32, options.max_cells);
-  for (const int n : lattice.size)
-    result.cells = (result.cells == 0 ? 1 : result.cells) * static_cast<std::size_t>(n);
-  const Cells cells = cells_of(lattice, input, radius, options.clearance);
-  say("boundary");
-  geom::Mesh first = boundary_of_cells(lattice, cells.outside);
-  result.first_triangles = first.triangles.size();
-  const Obstacle obstacle(input, options.clearance);
-  Surface surface(std::move(first), obstacle, options.float32);
-  const Room room{lattice, cells.open, options.clearance, options.offset};
+  result.points = carved.points;
+  result.first_triangles = carved.mesh.triangles.size();
+  const geom::DistanceQuery first(carved.mesh);
+  const Room room{first, options.seal, clearance, carving.offset};
+  Surface surface(std::move(carved.mesh), obstacle, options.float32);
   Fit fit(surface, obstacle, room);
-  say("vertices");
-  fit.approach();
   say("edges");
   simplify(surface, obstacle, room, fit);
+  say("vertices");
   fit.settle();
   fit.refine();
   fit.settle();
+  say("edges");
   simplify(surface, obstacle, room, fit);
   result.mesh = surface.mesh();
+  say("deciding");
+  decide_clean(result.mesh);
   return result;
 }
 

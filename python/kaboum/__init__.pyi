@@ -70,6 +70,8 @@ class Prepared:
     @property
     def turned_triangles(self) -> int: ...
     @property
+    def guessed(self) -> bool: ...
+    @property
     def notes(self) -> list[str]: ...
 
 class BoundingMesh:
@@ -199,6 +201,8 @@ class CertifiedRobot:
     @property
     def links(self) -> dict[str, ConvexSet]: ...
     @property
+    def verdicts(self) -> list[tuple[str, str, str]]: ...
+    @property
     def distance(self) -> float: ...
 
 class Solution:
@@ -219,6 +223,67 @@ class Solution:
     @property
     def notes(self) -> list[str]: ...
     def __bool__(self) -> bool: ...
+
+class Contacts:
+    @property
+    def pairs(self) -> list[dict[str, Any]]: ...
+    def __bool__(self) -> bool: ...
+    def __len__(self) -> int: ...
+
+class MotionCheck:
+    @property
+    def outcome(self) -> Literal["free", "contact", "undecided"]: ...
+    @property
+    def free_until(self) -> tuple[int, float]: ...
+    @property
+    def contact(self) -> dict[str, Any] | None: ...
+    def __bool__(self) -> bool: ...
+
+class Path:
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def waypoints(self) -> NDArray[np.float64]: ...
+    @property
+    def goal(self) -> int | None: ...
+    @property
+    def straight(self) -> bool: ...
+    @property
+    def contact(self) -> dict[str, Any] | None: ...
+    @property
+    def blockers(self) -> list[tuple[str, str, int]]: ...
+    def __bool__(self) -> bool: ...
+    def __len__(self) -> int: ...
+
+class World:
+    def __init__(self, path: _Path) -> None: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def robots(self) -> list[str]: ...
+    @property
+    def objects(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def variables(self, robot: str | None = None) -> list[str]: ...
+    def home(self, robot: str | None = None) -> NDArray[np.float64]: ...
+    def check(self, q: ArrayLike, *, robot: str | None = None, resting: bool = False) -> Any: ...
+    def are_free(self, q: ArrayLike, *, robot: str | None = None) -> NDArray[np.bool_]: ...
+    def check_motion(
+        self, path: ArrayLike, *, robot: str | None = None, resolution: float = 1e-5, max_intervals: int = 1000000
+    ) -> MotionCheck: ...
+    def find_path(
+        self,
+        start: ArrayLike,
+        goals: ArrayLike,
+        *,
+        robot: str | None = None,
+        seed: int = 1,
+        max_work: float = 10.0,
+        max_nodes: int = 100000,
+        shortcuts: int = 60,
+        resolution: float = 1e-5,
+    ) -> Path: ...
 
 _Set = Union[ConvexSet, CertifiedSet, SweptSet, _Path, list[Any]]
 _Robot = Union[Robot, _Path]
@@ -297,25 +362,29 @@ def decimate(
 def decompose(
     mesh: _Mesh,
     *,
+    # options of decompose
     epsilon: _Length | None = None,
     max_bodies: int | None = None,
     max_total_vertices: int | None = None,
-    max_vertices_per_body: int = 64,
-    simplify: float | None = None,
-    min_thickness: float = 0.0,
     direction: Literal["outer", "inner"] = "outer",
-    effort: _Effort = "normal",
+    min_thickness: float = 0.0,
+    max_vertices_per_body: int = 64,
+    effort: Literal["fast", "normal", "best"] = "normal",
+    simplify: float | None = None,
     max_work: float | None = None,
+    improve_work: float | None = None,
     method: Literal["planes", "clusters", "voxels"] = "planes",
     pre_step: Literal["auto", "on", "off"] = "auto",
-    unit: str = "m",
-    frame: str = "",
-    prepare: Literal["auto", "wrap"] = "auto",
-    offset: _Length | None = None,
-    seal: _Length | None = None,
+    scale: float = 1.0,
     drop_sheets: bool = False,
     holes: Literal["fill", "refuse"] = "fill",
     keep_orientation: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    unit: str = "m",
+    frame: str = "",
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
@@ -432,6 +501,7 @@ def certify_robot(
     package_path: _Path | Sequence[_Path] = (),
     unit: str = "m",
     drop_sheets: bool = False,
+    partial: bool = False,
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,

@@ -21,5 +21,7 @@ void bind_verification(py::module_& module);
 void bind_sweep_verification(py::module_& module);
 void bind_robot_verification(py::module_& module);
 void bind_planning(py::module_& module);
+void bind_worlds(py::module_& module);
+void bind_option_tables(py::module_& module);
 
 }  // namespace kaboum::python

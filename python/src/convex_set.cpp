@@ -2,16 +2,18 @@
 
 #include "convex_set.h"
 
-#include <kaboum/base/length_unit.h>
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/io/file_unit.h>
 
-#include <algorithm>
 #include <filesystem>
+#include <set>
 
+#include "arguments.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
-#include "set_options.h"
 
 namespace kaboum::python {
 namespace {
@@ -101,59 +103,52 @@ It may be given wherever a ConvexSet is expected.)")
       });
 }
 
-CertifiedSetValue decompose(
-    const py::object& mesh, const py::object& epsilon, const std::optional<std::size_t>& max_bodies,
-    const std::optional<std::size_t>& max_total_vertices, std::size_t max_vertices_per_body,
-    const std::optional<double>& simplify, double min_thickness, const std::string& direction,
-    const std::string& effort, const std::optional<double>& max_work, const std::string& method,
-    const std::string& pre_step, const std::string& unit, const std::string& frame,
-    const std::string& prepare, const py::object& offset, const py::object& seal, bool drop_sheets,
-    const std::string& holes, bool keep_orientation, bool no_cache, int threads,
-    const py::object& progress) {
-  certify::SetRequest r;
-  if (prepare == "wrap")
-    r.wrap.emplace();
-  else if (prepare != "auto")
-    refuse_name("prepare", prepare, {"auto", "wrap"});
-  if (!r.wrap && (!offset.is_none() || !seal.is_none()))
-    throw Error(ErrorCode::InvalidArgument, "offset and seal are for prepare='wrap'");
-  if (!r.wrap && direction == "outer" && holes == "fill" && !keep_orientation)
-    r.wrap.emplace().where_needed = true;
-  if (r.wrap) r.wrap->offset = length_of(offset, "offset");
-  if (r.wrap) r.wrap->seal = length_of(seal, "seal");
-  r.epsilon = length_of(epsilon, "epsilon");
-  r.max_bodies = max_bodies;
-  r.max_total_vertices = max_total_vertices;
-  r.max_vertices = max_vertices_per_body;
-  r.simplify = simplify;
-  r.min_thickness = min_thickness;
-  r.direction = value_of(kSetDirections, direction, "direction");
-  r.effort = value_of(kSetEfforts, effort, "effort");
-  r.max_work = max_work;
-  r.method = value_of(kMethods, method, "method");
-  r.pre_step = value_of(kPreSteps, pre_step, "pre_step");
-  r.preparation = {.drop_sheets = drop_sheets,
-                   .holes = holes_of(holes, false),
-                   .keep_orientation = keep_orientation};
-  if (std::find(kLengthUnits.begin(), kLengthUnits.end(), unit) == kLengthUnits.end())
-    refuse_name("unit", unit, {kLengthUnits.begin(), kLengthUnits.end()});
-  r.frame = frame;
-  const MeshValue value = mesh_of(mesh, "mesh");
-  r.unit = value.unit.empty() ? unit : value.unit;
+/// The mesh with its coordinates multiplied by a factor.
+MeshValue scaled(MeshValue value, double factor) {
+  io::ReadResult read;
+  read.mesh = *value.mesh;
+  read.unit = value.unit;
+  read.deviation = value.deviation;
+  read.bent_quads = value.bent_quads;
+  io::scale(read, factor, value.source.empty() ? "the mesh" : value.source);
+  value.mesh = std::make_shared<const geom::Mesh>(std::move(read.mesh));
+  value.unit = read.unit;
+  value.deviation = read.deviation;
+  value.bent_quads = std::move(read.bent_quads);
+  value.notes.insert(value.notes.end(), read.notes.begin(), read.notes.end());
+  return value;
+}
+
+CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
+  py::dict keywords = given;
+  certify::SetOptions options;
+  const std::set<std::string> stated = take_options(certify::set_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords);
+  require_all_taken("decompose", keywords, keywords_of(certify::set_options()));
+  require_none(certify::contradiction(options, stated));
+  certify::SetRequest r = certify::request_of(options);
+  MeshValue value = mesh_of(mesh, "mesh");
+  if (r.scale != 1) value = scaled(std::move(value), r.scale);
+  if (!value.unit.empty()) r.unit = value.unit;
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  r.preparation.quads = value.bent_quads;
+  r.preparation.diagonal =
+      r.direction == certify::SetRequest::Direction::Outer ? Diagonal::Outward : Diagonal::Inward;
   r.source = std::filesystem::path(value.source).filename().string();
   // Of STEP and IGES the exact faces are what is covered.
-  if (value.deviation > 0 && r.direction == certify::SetRequest::Direction::Outer) {
+  if (value.deviation > 0 && r.hold_exact_faces &&
+      r.direction == certify::SetRequest::Direction::Outer) {
     if (!r.wrap) r.wrap.emplace();
     r.wrap->where_needed = false;
     r.wrap->clearance = value.deviation;
   }
-  Watch watch(progress);
-  return run(threads, [&] {
+  Watch watch(running.progress);
+  return run(running.threads, [&] {
     CertifiedSetValue out;
     out.notes = value.notes;
     const certify::SetCache cache(certify::SetCache::default_folder());
     auto found = certify::find_or_certify(
-        *value.mesh, value.sha256, r, no_cache ? nullptr : &cache,
+        *value.mesh, value.sha256, r, running.no_cache ? nullptr : &cache,
         {watch.hook(), [&](const std::string& text) { out.notes.push_back(text); }});
     if (!found) throw certify::TooCoarse(value.source.empty() ? "the mesh" : value.source);
     out.made = found->set;
@@ -165,52 +160,13 @@ CertifiedSetValue decompose(
 constexpr const char* kDoc =
     R"(Decomposes a solid into few convex bodies whose union provably contains it.
 
-Options and defaults are those of bcd-decompose (docs/algorithms/convex-decomposition.md).
+Options and defaults are those of bcd-decompose (docs/algorithms/convex-decomposition.md). A mesh
+read from STEP or IGES is wrapped, so that its exact faces are covered.
 
 Parameters
 ----------
 mesh : mesh
-epsilon : float or str, optional
-    Fewest bodies with no point farther than this from the solid: a length, or a percentage of the
-    diagonal such as '0.5%'. By default '1%', unless max_bodies or max_total_vertices is given.
-max_bodies : int, optional
-    Smallest distance with at most this many bodies.
-max_total_vertices : int, optional
-    Smallest distance with at most this many vertices of all bodies together.
-max_vertices_per_body : int
-simplify : float, optional
-    Share of epsilon that leaving out vertices may take, 0 to 1.
-min_thickness : float
-    Thicken bodies that are less wide than this in some direction. [length]
-direction : str
-    'outer': bodies that cover the solid; 'inner': bodies inside it, which leave out no point deeper
-    than epsilon.
-effort : str
-    'fast', 'normal' or 'best'.
-max_work : float, optional
-    End the search after work of about so many seconds; the result does not depend on the machine.
-method : str
-    'planes', 'clusters' or 'voxels'.
-pre_step : str
-    Simplify the input first: 'auto', 'on' or 'off'.
-unit, frame : str
-    Noted in the container; a unit that the mesh's file states comes first.
-prepare : str
-    'auto', or 'wrap': what is covered is a closed mesh round all triangles, whatever they are like;
-    how far it is from them counts towards epsilon. A mesh read from STEP or IGES is wrapped in any
-    case, so that its exact faces are covered.
-offset, seal : float or str, optional
-    Of a wrap: how far it may be from the triangles where it can get near them; hollows behind gaps
-    narrower than this are filled.
-drop_sheets, holes, keep_orientation
-    As for `prepare`; holes are filled or refused.
-no_cache : bool
-    Neither use nor store results of earlier runs ($KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else
-    ~/.cache/kaboum).
-threads : int
-    0: one per core. The result is the same for any number.
-progress : callable, optional
-    Called with what is being done; what it raises ends the work, as Ctrl-C does.
+{keywords}
 
 Raises
 ------
@@ -269,16 +225,14 @@ void write_set(const geom::ConvexSet& set, const std::vector<char>& bytes, const
 void bind_convex_sets(py::module_& module) {
   bind_plain(module);
   bind_certified(module);
-  module.def(
-      "decompose", &decompose, py::arg("mesh"), py::kw_only(), py::arg("epsilon") = py::none(),
-      py::arg("max_bodies") = py::none(), py::arg("max_total_vertices") = py::none(),
-      py::arg("max_vertices_per_body") = 64, py::arg("simplify") = py::none(),
-      py::arg("min_thickness") = 0.0, py::arg("direction") = "outer", py::arg("effort") = "normal",
-      py::arg("max_work") = py::none(), py::arg("method") = "planes", py::arg("pre_step") = "auto",
-      py::arg("unit") = "m", py::arg("frame") = "", py::arg("prepare") = "auto",
-      py::arg("offset") = py::none(), py::arg("seal") = py::none(), py::arg("drop_sheets") = false,
-      py::arg("holes") = "fill", py::arg("keep_orientation") = false, py::arg("no_cache") = false,
-      py::arg("threads") = 0, py::arg("progress") = py::none(), kDoc);
+  {
+    py::options signatures;
+    signatures.disable_function_signatures();  // the table's
+    const std::string text =
+        document("decompose", "mesh: object", keywords_of(certify::set_options()),
+                 "kaboum.CertifiedSet", kDoc);
+    module.def("decompose", &decompose, py::arg("mesh"), text.c_str());
+  }
   module.def(
       "read_set",
       [](const py::object& path, const std::optional<std::string>& format) {

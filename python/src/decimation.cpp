@@ -216,6 +216,12 @@ std::vector<BoundingMesh> decimated(const py::object& mesh,
           asked.wrap == Wrap::WhereNeeded)
         asked.wrap = Wrap::Always;
       asked.wrapping.clearance = value.deviation;
+      if (request.direction != bmesh::Direction::Any) {
+        using Diagonal = geom::PrepareOptions::Diagonal;
+        asked.options.quads = value.bent_quads;
+        asked.options.diagonal =
+            request.direction == bmesh::Direction::Outer ? Diagonal::Outward : Diagonal::Inward;
+      }
       made = certify::bound_mesh(*value.mesh, request, asked, hooks);
       for (std::string& text : certify::notes_of(made)) notes.push_back(std::move(text));
     }

@@ -100,6 +100,7 @@ MeshValue read(const std::string& path, const std::optional<std::string>& format
     if (read.collapsed_triangles > 0)
       out.notes.push_back(std::to_string(read.collapsed_triangles) +
                           " triangles with repeated corners bound nothing and are left out");
+    out.bent_quads = std::move(read.bent_quads);
     if (io::is_cad(read.format)) {
       out.deviation = read.deviation;
       out.exact_faces = read.exact_faces;

@@ -23,7 +23,8 @@ struct MeshValue {
   std::vector<std::string> notes = {};   ///< of the reader
   double deviation = 0;  ///< of exact faces from the triangles; 0: there are none [length]
   std::size_t exact_faces = 0;
-  std::optional<io::Format> format = {};  ///< of the file, where it has exact faces
+  std::vector<std::uint32_t> bent_quads = {};  ///< io::ReadResult::bent_quads
+  std::optional<io::Format> format = {};       ///< of the file, where it has exact faces
 };
 
 struct PreparedValue {

@@ -20,5 +20,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_sweep_verification(module);
   bind_robot_verification(module);
   bind_planning(module);
+  bind_worlds(module);
+  bind_option_tables(module);
   module.attr("__name__") = name;
 }

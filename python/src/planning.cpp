@@ -7,8 +7,6 @@
 #include <kaboum/plan/solve.h>
 #include <kaboum/world/scene.h>
 
-#include <filesystem>
-
 #include "arguments.h"
 #include "running.h"
 
@@ -51,13 +49,9 @@ plan::Text text_of(const std::string& path) {
 }
 
 world::World world_of(const std::string& path, std::vector<std::string>& notes) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  world::SceneNotes said;
-  world::World world = world::parse_scene(
-      text_of_file(path), path,
-      [&](const std::string& file) { return io::read_file(folder / file); }, &said);
-  notes.insert(notes.end(), said.notes.begin(), said.notes.end());
-  return world;
+  world::SceneFile scene = world::read_scene(path);
+  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  return std::move(scene.world);
 }
 
 /// A domain and a problem, bound to a scene where one is given.

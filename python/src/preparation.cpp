@@ -16,8 +16,11 @@ PreparedValue prepare(const py::object& mesh, bool drop_sheets, const std::strin
                                      .holes = holes_of(holes, true),
                                      .keep_orientation = keep_orientation};
   return run(0, [&] {
-    return PreparedValue{
-        std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options))};
+    auto prepared = std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options));
+    if (value.deviation > 0)
+      prepared->report.notes.emplace_back(
+          "The triangles stand for exact faces; what is certified of them is about the triangles.");
+    return PreparedValue{std::move(prepared)};
   });
 }
 
@@ -64,6 +67,8 @@ expected; `decimate` does not prepare it again.)")
       .def_property_readonly("turned_triangles",
                              number(&geom::PreparationReport::reversed_triangles),
                              "Number of triangles whose orientation was reversed.")
+      .def_property_readonly("guessed", number(&geom::PreparationReport::guessed),
+                             "Whether which solid is meant is a guess, which notes explain.")
       .def_property_readonly("notes", number(&geom::PreparationReport::notes),
                              "What was changed, one sentence each.");
   module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,

@@ -2,6 +2,8 @@
 
 #include "robot.h"
 
+#include <kaboum/certify/link_verdict.h>
+
 #include "convex_set.h"
 #include "mesh.h"
 #include "running.h"
@@ -71,15 +73,21 @@ void bind_robot(py::module_& module) {
       });
 }
 
+/// A CertifiedRobot, and the robot that it is of.
+struct CertifiedValue {
+  certify::CertifiedRobot made;
+  std::shared_ptr<const robot::RobotFile> file;
+};
+
 void bind_certified(py::module_& module) {
-  using Value = certify::CertifiedRobot;
+  using Value = CertifiedValue;
   py::class_<Value>(module, "CertifiedRobot",
                     R"(Convex sets of a robot's links, decided exactly to hold their shapes.)")
       .def_property_readonly(
           "links",
           [](const Value& r) {
             py::dict out;
-            for (const certify::CertifiedLink& link : r.links) {
+            for (const certify::CertifiedLink& link : r.made.links) {
               auto kept = std::make_shared<certify::CertifiedLink>(link);
               const std::string name = link.artefact().provenance.frame;
               out[py::str(name)] = SetValue{{kept, &kept->artefact()}};
@@ -88,20 +96,32 @@ void bind_certified(py::module_& module) {
           },
           "By its name, the ConvexSet of each link that has shapes, in its frame. [length]")
       .def_property_readonly(
-          "distance", [](const Value& r) { return r.bodies.certificate().distance; },
+          "verdicts",
+          [](const Value& r) {
+            py::list out;
+            for (const certify::LinkVerdict& link : certify::verdicts(r.made))
+              out.append(py::make_tuple(r.file->robot.links[link.link].name, name_of(link.outcome),
+                                        link.sentence));
+            return out;
+          },
+          "(link, verdict, sentence) of each link that has shapes: is every triangle of it inside? "
+          "The verdict is 'held' if it is, as near as asked for; 'epsilon not reached' or 'work "
+          "ended' if it is farther; 'kept' if a mesh of it could not be held.")
+      .def_property_readonly(
+          "distance", [](const Value& r) { return r.made.bodies.certificate().distance; },
           "Bound of how far a body reaches beyond its shape. [length]")
       .def("__repr__", [](const Value& r) {
-        return "<kaboum.CertifiedRobot of " + std::to_string(r.links.size()) + " links>";
+        return "<kaboum.CertifiedRobot of " + std::to_string(r.made.links.size()) + " links>";
       });
 }
 
-certify::CertifiedRobot certify_robot(const py::object& robot, const py::object& epsilon,
-                                      std::optional<std::size_t> max_bodies,
-                                      std::size_t max_vertices_per_body, const std::string& effort,
-                                      const py::object& links, const std::string& geometry,
-                                      const py::object& package_path, const std::string& unit,
-                                      bool drop_sheets, bool no_cache, int threads,
-                                      const py::object& progress) {
+CertifiedValue certify_robot(const py::object& robot, const py::object& epsilon,
+                             std::optional<std::size_t> max_bodies,
+                             std::size_t max_vertices_per_body, const std::string& effort,
+                             const py::object& links, const std::string& geometry,
+                             const py::object& package_path, const std::string& unit,
+                             bool drop_sheets, bool partial, bool no_cache, int threads,
+                             const py::object& progress) {
   const RobotValue value = robot_of(robot, "robot");
   certify::RobotRequest r;
   r.set.epsilon = length_of(epsilon, "epsilon");
@@ -109,14 +129,17 @@ certify::CertifiedRobot certify_robot(const py::object& robot, const py::object&
   r.set.max_vertices = max_vertices_per_body;
   r.set.effort = value_of(kSetEfforts, effort, "effort");
   r.set.preparation.drop_sheets = drop_sheets;
+  r.set.wrap.emplace().where_needed = true;
   r.set.unit = unit;
+  r.partial = partial;
   r.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
   Watch watch(progress);
   return run(threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
     certify::RobotHooks hooks;
     hooks.progress = watch.hook();
-    return certify::certify_robot(*value.file, r, no_cache ? nullptr : &cache, hooks);
+    return CertifiedValue{
+        certify::certify_robot(*value.file, r, no_cache ? nullptr : &cache, hooks), value.file};
   });
 }
 
@@ -140,13 +163,17 @@ geometry : str
     'collision' or 'visual'.
 package_path : str or sequence of str
     Folders that package:// is looked up in.
+partial : bool
+    A mesh that cannot be held as asked for does not refuse the robot: it gets one body round a wrap
+    of it, farther than epsilon; or none, and its link has no set. `verdicts` names the links.
 unit, drop_sheets, no_cache, threads, progress
-    As for `decompose`.
+    As for `decompose`. Meshes that bound no solid are wrapped.
 
 Raises
 ------
 Error
-    'invalid_argument' naming an unknown link; 'invalid_input' naming the link or file.)";
+    'invalid_argument' naming an unknown link; 'invalid_input' naming the link or file, with
+    `partial` only where no link can be held.)";
 
 }  // namespace
 
@@ -200,8 +227,9 @@ Error
              py::arg("max_vertices_per_body") = 64, py::arg("effort") = "normal",
              py::arg("links") = py::none(), py::arg("geometry") = "collision",
              py::arg("package_path") = py::tuple(), py::arg("unit") = "m",
-             py::arg("drop_sheets") = false, py::arg("no_cache") = false, py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kDoc);
+             py::arg("drop_sheets") = false, py::arg("partial") = false,
+             py::arg("no_cache") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
+             kDoc);
 }
 
 }  // namespace kaboum::python

@@ -141,6 +141,7 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, const py::o
   bodies.set.max_vertices = max_vertices_per_body;
   bodies.set.effort = value_of(kSetEfforts, effort, "effort");
   bodies.set.preparation.drop_sheets = drop_sheets;
+  bodies.set.wrap.emplace().where_needed = true;
   Watch watch(progress);
   return run(threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());

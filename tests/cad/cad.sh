@@ -87,6 +87,8 @@ cat >arm.urdf <<'END'
 <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>
 END
 printf 'j\n0\n1\n' >path.csv
+expect 0 '' "$BIN/bcd-decompose" arm.urdf -o armed --epsilon 5% --effort fast --no-cache
+shows 0 '^verified: .*of the triangles, which stand for exact faces' "$BIN/bound-verify" robot arm.urdf armed/arm.urdf --prepare
 expect 0 '' "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.01 --no-cache
 expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --no-cache
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001

@@ -93,6 +93,10 @@ shows 0 'solid to solid' "$H" --solid full.obj hollow.obj --csv solid.csv --repo
 awk -F, 'NR==2 { bad = !($8 > 0.2499 && $8 <= 0.25 && $9 >= 0.25 && $9 < 0.2503) }
   NR==3 { bad = bad || $9 > 2e-9 } END { exit bad }' solid.csv || fail "cavity: $(cat solid.csv)"
 grep -q '"measure": "solid to solid"' solid.json || fail "the report does not say what was measured"
+# What bounds nothing is not measured, and that is said.
+printf 'OFF\n7 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n9 0 0\n8 0 0\n7 0 0\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n3 4 5 6\n' >spur.off
+printf '3 6 5 4\n' | cat spur.off - | sed '2s/5/6/' >spurs.off
+expect 0 'spurs.off: 2 triangles without area bound nothing: with --solid' "$H" --solid spurs.off spurs.off --samples 1e3
 # A solid within the other one is at distance 0 exactly, and nothing is searched.
 sed -n '/"b_to_a"/,/"cells"/p' solid.json >within.txt
 grep -q '"max_upper": 0.0,' within.txt || fail "no distance 0 of what lies within: $(cat within.txt)"

@@ -42,6 +42,8 @@ sed 's/meshes/parts/' $E >else/deep/lost.urdf
 expect 3 'the package is plain/arm, without a file parts/t.off' "$D" else/deep/lost.urdf -o x --package-path plain/arm
 sed 's,package://arm/,package://,; s,meshes/t.off,arm,' $E >else/deep/odd.urdf
 expect 3 'package://NAME/FILE' "$D" else/deep/odd.urdf -o x
+sed 's,package://arm/,package:///arm/,' $E >else/deep/slash.urdf
+expect 0 '' "$D" else/deep/slash.urdf -o out3 --epsilon 5% --effort fast --quiet --package-path plain/arm
 # A folder that hides packages; one package that is found twice.
 : >ros/stack/COLCON_IGNORE
 expect 3 'one of --package-path (ros)' decompose_from ros

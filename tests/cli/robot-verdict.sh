@@ -76,10 +76,27 @@ odd = ["sheet", "plate", "inverted", "crossed", "open", "fold", "fin"]
 robot("odd", [("base", [mesh("good.off"), '<box size="0.2 0.2 0.1"/>'])] +
       [(name, [mesh(name + ".off")]) for name in odd] +
       [("scaled", [mesh("sheet.off", "0.5 -0.5 1"), mesh("good.off")])])
-robot("zero", [("base", [mesh("good.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
+off("line", [(0, 0, 0), (2, 0, 0), (1, 0, 0)], [(0, 1, 2)])
+robot("zero", [("base", [mesh("good.off")]), ("line", [mesh("line.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
 robot("bad", [("base", [mesh("good.off")]), ("broken", [mesh("damaged.stl"), mesh("good.off")]),
               ("nothing", [mesh("empty.off")]), ("sheet", [mesh("sheet.off")])])
 robot("worst", [("base", [mesh("damaged.stl")])])
+def ring(n, inner, outer):
+    """Of rectangular section: not convex."""
+    import math
+    vertices = [(r * math.cos(2 * math.pi * i / n), r * math.sin(2 * math.pi * i / n), z)
+                for i in range(n) for r, z in ((inner, 0), (outer, 0), (outer, 0.5), (inner, 0.5))]
+    faces = []
+    for i in range(n):
+        for k in range(4):
+            a, b = 4 * i + k, 4 * i + (k + 1) % 4
+            c, d = (a + 4) % (4 * n), (b + 4) % (4 * n)
+            faces += [(a, c, b), (b, c, d)]
+    return vertices, faces
+
+off("ring", *ring(40, 0.6, 1))
+robot("ring", [("base", [mesh("ring.off"), mesh("ring.off", "0.5 0.5 -1")]), ("arm", [mesh("good.off")])])
+robot("some", [("base", [mesh("good.off")])] + [(name, [mesh(name + ".off")]) for name in odd[:6]])
 robot("few", [("base", [mesh("good.off")]), ("plate", [mesh("plate.off")]), ("tool", [mesh("sheet.off")])])
 END
 
@@ -141,8 +158,8 @@ made 0 'every triangle of 2 links is inside' bmesh-decimate "$R/few.urdf" -o out
 # What was left out on request is said, and not called inside.
 made 0 'but the 2 of sheets that were dropped on request' bcd-decompose "$R/few.urdf" -o out --links tool --drop-sheets --effort fast
 # Nothing is verified about nothing, and a shape of size 0 is no obstacle.
-made 0 'every triangle of 3 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
-made 0 'every triangle of 3 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05
+made 0 'every triangle of 4 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
+made 0 'every triangle of 4 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05
 # One bad mesh does not refuse the robot: it stays where it was, is named, and the exit code says so.
 for program in 'bcd-decompose --effort fast' bmesh-decimate; do
   # shellcheck disable=SC2086
@@ -160,6 +177,39 @@ for program in bcd-decompose bmesh-decimate; do
   expect 3 'damaged.stl' $program "$R/worst.urdf" -o out --epsilon 0.05
   absent out
 done
+
+# Distances of meshes that are not convex are decided as well, one epsilon for all links.
+made 0 'every triangle of 2 links is inside' bmesh-decimate "$R/ring.urdf" -o out --epsilon 0.05
+grep -q '"check": ".*--epsilon 0.05"' r.json || fail "no epsilon in $(grep '"check"' r.json)"
+shows 0 'whose surface is nowhere farther from it than asked' bound-verify robot "$R/ring.urdf" out/ring.urdf --prepare --epsilon 0.05
+shows 1 'at least 0\.0[0-9]* from the solid' bound-verify robot "$R/ring.urdf" out/ring.urdf --prepare --epsilon 0.0001
+
+# A scene of a robot with a bad mesh: the rest is made; the link has no set, so the scene is refused until it has one.
+expect 1 "robot 'r', link 'broken': NOT enclosed, .*damaged.stl.*the scene is refused until" kaboum-scene make bad.json --robot "r=$R/bad.urdf" \
+  --epsilon 5% --effort fast --report r.json
+[ -s bad/r/sheet.glb ] || fail "sets: $(ls bad/r)"
+absent bad/r/broken.glb
+grep -q "bad_links.*" r.json || fail "the report does not name the links"
+expect 3 "link 'broken' has shapes for collisions, but no set" kaboum-check bad.json --configuration 0,0,0
+# What bounds no solid is wrapped: a set that holds every triangle.
+expect 0 '7 sets' kaboum-scene make odd.json --robot "r=$R/some.urdf" --epsilon 5% --effort fast
+grep -q 'A wrap takes the place of the mesh' err.txt || fail "nothing is said of wraps: $(cat err.txt)"
+# Too near for a wrap: held farther away, named, and not 0.
+expect 1 "link 'plate': every triangle is inside, but not as near" kaboum-scene make near.json --robot "r=$R/few.urdf" --epsilon 1e-7 --effort fast
+
+# Nor does it refuse a motion: links that are not held are named, and not swept.
+printf '0,0,0\n0.1,0,0.1\n' >path.csv
+expect 1 "link 'broken': NOT enclosed, .*damaged.stl.*it is NOT swept" sweep-approx "$R/bad.urdf" --path path.csv -o swept.glb --epsilon 0.1 --effort fast \
+  --report r.json
+grep -q '"verdict": "kept"' r.json || fail "the report does not tell: $(cat r.json)"
+shows 0 'verified' bound-verify sweep "$R/bad.urdf" path.csv swept.glb --links base,sheet
+expect 3 'damaged.stl' sweep-approx "$R/bad.urdf" --links broken --path path.csv -o none.glb
+absent none.glb
+printf '0,0\n0.1,0.1\n' >few.csv
+expect 0 'A wrap takes the place of the mesh' sweep-approx "$R/few.urdf" --path few.csv -o wrapped.glb --epsilon 0.1 --effort fast
+shows 0 'verified' bound-verify sweep "$R/few.urdf" few.csv wrapped.glb
+expect 0 'sheet.off: judged as it is, for it cannot be prepared' bound-verify sweep "$R/few.urdf" few.csv wrapped.glb --prepare
+
 # strict and off do as they are told: what they cannot hold stays, and is named.
 made 1 "link 'sheet': NOT enclosed" bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare strict
 # Too near for a wrap: every triangle is inside, but not as near as asked for.

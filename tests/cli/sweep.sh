@@ -149,6 +149,36 @@ printf '0.3,2,1 # in 3.2.1 steps\n' >numbers.csv
 expect 3 'at .* is outside its limits, .* to .* (radians' "$S" robots/urdf/numbered.urdf --path numbers.csv -o x.glb
 absent x.glb
 
+# A box whose normals point inwards encloses nothing as it is; plates round its faces do not hold its inside.
+mkdir inwards
+python3 - <<'END_OF_BOXES'
+def box(low, high, first=1):
+    corners = [(high[0] if i & 1 else low[0], high[1] if i & 2 else low[1], high[2] if i & 4 else low[2]) for i in range(8)]
+    faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+    return corners, faces
+corners, faces = box((0, 0, 0), (1, 1, 1))
+with open("inwards/in.off", "w") as out:
+    out.write("OFF\n8 12 0\n" + "".join("%g %g %g\n" % c for c in corners) + "".join("3 %d %d %d\n" % (a, c, b) for a, b, c in faces))
+with open("inwards/plates.obj", "w") as out:
+    n = 1
+    for axis in range(3):
+        for side in (0, 1):
+            low, high = [-0.01] * 3, [1.01] * 3
+            low[axis], high[axis] = side - 0.01, side + 0.01
+            corners, faces = box(low, high)
+            out.write("o plate%d\n" % n + "".join("v %g %g %g\n" % c for c in corners))
+            out.write("".join("f %d %d %d\n" % tuple(n + i for i in f) for f in faces))
+            n += 8
+END_OF_BOXES
+cat >inwards/r.urdf <<'END_OF_ROBOT'
+<robot name="r"><link name="base"><collision><geometry><mesh filename="in.off"/></geometry></collision></link><link name="tip"/>
+<joint name="j" type="prismatic"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>
+END_OF_ROBOT
+printf 'j\n0\n1\n' >inwards/path.csv
+shows 7 'solid claim: undecided: .*in.off: 1 part of it is inside out' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj
+expect 1 '' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj --prepare
+shows 0 'surface claim: verified' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj --claims surface
+
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
 V=$BIN/bound-verify
 shows 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
@@ -202,10 +232,11 @@ expect 4 'no-such' "$V" --sweep "$R" path.csv a.glb --report no-such/v.json
   printf '3 0 1 2\n3 0 3 1\n3 1 3 2\n3 4 5 6\n3 4 6 5\n'; } >robots/urdf/sheeted.off
 sed 's/u\.off/sheeted.off/' "$R" >robots/urdf/sheeted.urdf
 H=robots/urdf/sheeted.urdf
-expect 3 'drop-sheets' "$S" $H --path path.csv -o x.glb
+expect 0 'A wrap takes the place of the mesh' "$S" $H --path path.csv -o x.glb --body-epsilon 5% --effort fast
+shows 0 '^verified' "$V" --sweep $H path.csv x.glb
 expect 0 'NOT enclosed' "$S" $H --path path.csv -o sheeted.glb --drop-sheets
 expect 1 "sheeted.off: .*--prepare --drop-sheets judges that" "$V" --sweep $H path.csv sheeted.glb
-expect 3 'sheeted.off: .*sheets.*--drop-sheets' "$V" --sweep $H path.csv sheeted.glb --prepare
+expect 1 'sheeted.off: judged as it is, .*sheets' "$V" --sweep $H path.csv sheeted.glb --prepare
 shows 0 '^verified: 4 of 4 links judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
   "$V" --sweep $H path.csv sheeted.glb --prepare --drop-sheets --report v.json
 tr -d ' \n' <v.json | grep -q '"prepared":true,"dropped_sheet_triangles":{"robots/urdf/sheeted.off":2}' || fail "$(cat v.json)"

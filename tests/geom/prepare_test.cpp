@@ -159,6 +159,10 @@ TEST(Prepare, DropsCopiesAndCancelsWalls) {
   add_cube(twice, {0, 0, 0}, {1, 1, 1});
   add_cube(twice, {0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(prepare(twice).report.dropped_copies, 12U);
+  // Judging each of so many shells among the others would take minutes.
+  Mesh many;
+  for (int i = 0; i < 20000; ++i) add_cube(many, {0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(prepare(many).report.dropped_copies, 12U * 19999);
   EXPECT_EQ(prepare(twice).solid.mesh().triangles.size(), 12U);
 
   Mesh stacked;  // two cubes with a common face, triangulated alike

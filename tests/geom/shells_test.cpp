@@ -1,6 +1,7 @@
 // Shells that touch, share walls or lie in each other, in all combinations of orientation: what any
 // of them encloses is in the solid, unless it is a cavity.
 #include <kaboum/base/error.h>
+#include <kaboum/geom/preparation_doubt.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/geom/winding.h>
 
@@ -347,6 +348,14 @@ TEST(Shells, AHoleAtASharedWallIsRefusedOrSaid) {
       std::any_of(p.report.notes.begin(), p.report.notes.end(), [](const std::string& note) {
         return note.find("rim runs along a wall") != std::string::npos;
       }));
+  EXPECT_TRUE(p.report.guessed);
+  EXPECT_FALSE(doubt_about(p.report).empty());
+  Mesh plain = kaboum::test::box({1, 1, 1}, 1);  // a hole by itself is no guess
+  plain.triangles.pop_back();
+  const Prepared open = prepare(plain, fill);
+  EXPECT_EQ(open.report.holes, 1U);
+  EXPECT_FALSE(open.report.guessed);
+  EXPECT_TRUE(doubt_about(open.report).empty());
 }
 
 // A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined

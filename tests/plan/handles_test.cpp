@@ -2,9 +2,12 @@
 // what is an error; and verdicts against an exhaustive search that shares nothing with the planner.
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <random>
 #include <set>
 #include <stdexcept>
+
+#include <kaboum/plan/replay.h>
 
 #include "plan_test.h"
 
@@ -742,6 +745,57 @@ TEST(Handles, CheckReplaysOnceWhatFunctionsDoNotTellApart) {
   EXPECT_LT(r.states, 200U);  // 4,096 ways that sensing may turn out
 }
 
+/// An object that is out of reach is known after one call; subsets of the others are not looked at.
+TEST(Handles, ObjectsThatDoNotMatterMultiplyNothing) {
+  for (const Algorithm a : {Algorithm::DepthFirst, Algorithm::BreadthFirst, Algorithm::Greedy}) {
+    int calls = 0;
+    ExternalBindings b = geometry(calls);
+    b["reach"] = [](const Question& q) {
+      // Of the object's pose alone: the first argument but one.
+      return q.arguments[0] == "o1" ? Answer::impossible("out of reach")
+                                    : Answer::found("at " + q.arguments[0]);
+    };
+    const Solution s = with(bound(force_sensing(16, "home"), b), a);
+    EXPECT_EQ(s.outcome, Outcome::Unsolvable) << static_cast<int>(a);
+    expect_says(s.refused, "reach(o1, home, p1): out of reach");
+    EXPECT_LT(s.statistics.expanded, 50'000U) << static_cast<int>(a);
+    // Within reach once it has been moved, which takes another object.
+    b["reach"] = [](const Question& q) {
+      return q.arguments[0] == "o1" && q.arguments[2] == "p1"
+                 ? Answer::impossible("out of reach")
+                 : Answer::found("at " + q.arguments[0]);
+    };
+    std::string text = force_sensing(7, "home");
+    text.insert(text.find("action grasp("),
+                "action push preconds: K(isRemoved(o7)) & let ?p = extern(held(o1, home))"
+                " effects: add(Kf, pose(o1) = ?p)\n");
+    EXPECT_EQ(with(bound(text, b), a).outcome, Outcome::Solved) << static_cast<int>(a);
+  }
+}
+
+/// A run looks once at what only differs in what was sensed of objects that are done with.
+TEST(Handles, RunsThatDifferInNothingThatIsReadAreOne) {
+  int calls = 0;
+  ExternalBindings same = geometry(calls);
+  same["fast"] = same["upright"] = [](const Question& q) {
+    return Answer::found("away with " + q.arguments[0]);
+  };
+  const Model m = bound(force_sensing(20, "home"), same);
+  const Solution s = with(m, Algorithm::Greedy);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  std::map<Index, int> steps;
+  const RunSummary all = run(m, s.plan, {}, [&](const RunStep& step) { ++steps[step.node]; });
+  EXPECT_EQ(all.branches, 1U << 20U);
+  EXPECT_LT(all.states, 200U);
+  EXPECT_EQ(steps.size(), s.plan.nodes.size());
+  // Where terms have other values they are looked at apart: a simulation would see the difference.
+  const Model other = bound(force_sensing(6, "home"), geometry(calls));
+  const Solution apart = with(other, Algorithm::Greedy);
+  const RunSummary each = run(other, apart.plan, {}, [](const RunStep&) {});
+  EXPECT_EQ(each.branches, 64U);
+  EXPECT_EQ(each.ends, 64U);
+}
+
 /// Both outcomes lead to one node; the function that is asked there reads what was sensed.
 TEST(Handles, CheckReplaysAgainWhatFunctionsTellApart) {
   const auto where = [](const Question& q) {
@@ -798,6 +852,106 @@ TEST(Handles, AHandleThatMayHaveChangedIsNotKnown) {
                               "plan.json");
   EXPECT_FALSE(check(m, plan).valid);
   for (const Algorithm a : kAll) EXPECT_EQ(with(m, a).outcome, Outcome::NotInferred);
+}
+
+/// Of several additions to one term the last one stays, whatever the others take their value from.
+TEST(Handles, AdditionsComeInTheOrderOfTheText) {
+  const ExternalBindings bindings = {
+      {"there", [](const Question&) { return Answer::found("there"); }},
+      {"isHome", [](const Question& q) { return Answer::holds(q.arguments[0] == "home"); }},
+      {"isThere", [](const Question& q) { return Answer::holds(q.arguments[0] == "there"); }},
+      {"isAway", [](const Question& q) { return Answer::holds(q.arguments[0] == "away"); }}};
+  const auto outcome = [&](const std::string& effects, const std::string& wanted) {
+    const Model m = bound(
+        "types: conf handle\nconstants: conf home, away, start\npredicates: warm, done\n"
+        "functions: robot : conf; other : conf; never : conf\n"
+        "externals: there(conf) : conf; isHome(conf); isThere(conf); isAway(conf)\n"
+        "action go preconds: let ?q = extern(there(other)) effects: " +
+            effects + "\naction stop preconds: extern(" + wanted +
+            "(robot)) effects: add(Kf, done)\n"
+            "init: K(robot = start), K(other = home), K(warm) goal: K(done)",
+        bindings);
+    // Checked in every order of the two actions.
+    std::optional<Outcome> all;
+    for (const Algorithm a : kAll) {
+      const Solution s = with(m, a);
+      if (s.outcome == Outcome::Solved) {
+        const CheckResult r = check(m, s.plan);
+        EXPECT_TRUE(r.valid) << effects << ": " << r.violation;
+      }
+      EXPECT_TRUE(!all || *all == s.outcome) << effects;
+      all = s.outcome;
+    }
+    return *all == Outcome::Solved;
+  };
+  const std::string call = "add(Kf, robot = ?q)", term = "add(Kf, robot = other)",
+                    constant = "add(Kf, robot = home)", unknown = "add(Kf, robot = never)",
+                    if_warm = "K(warm) => ";
+  EXPECT_TRUE(outcome(call + ", " + constant, "isHome"));
+  EXPECT_FALSE(outcome(call + ", " + constant, "isThere"));
+  EXPECT_TRUE(outcome(constant + ", " + call, "isThere"));
+  EXPECT_FALSE(outcome(constant + ", " + call, "isHome"));
+  EXPECT_TRUE(outcome(if_warm + call + ", " + constant, "isHome"));
+  EXPECT_FALSE(outcome(if_warm + call + ", " + constant, "isThere"));
+  EXPECT_TRUE(outcome(call + ", " + if_warm + constant, "isHome"));
+  EXPECT_FALSE(outcome(call + ", " + if_warm + constant, "isThere"));
+  EXPECT_TRUE(outcome(constant + ", " + if_warm + call, "isThere"));
+  EXPECT_TRUE(outcome(call + ", " + constant + ", " + call, "isThere"));
+  EXPECT_TRUE(outcome(call + ", " + term, "isHome"));
+  EXPECT_TRUE(outcome(term + ", add(Kf, robot = away)", "isAway"));
+  EXPECT_TRUE(outcome(unknown + ", " + constant, "isHome"));
+  EXPECT_FALSE(outcome(constant + ", " + unknown, "isHome"));
+  EXPECT_FALSE(outcome(constant + ", " + unknown, "isAway"));
+}
+
+/// What was taken in one way leads no further: it is taken in another way.
+TEST(Handles, WhereAChoiceLeadsNoFurtherAnotherOneIsMade) {
+  const std::string text =
+      "types: conf handle\nconstants: conf home\npredicates: done\nfunctions: grasp : conf\n"
+      "externals: take(conf) : conf; put(conf) : conf\n"
+      "action take preconds: let ?g = extern(take(home)) effects: add(Kf, grasp = ?g)\n"
+      "action put preconds: let ?p = extern(put(grasp)) effects: add(Kf, done)\ngoal: K(done)";
+  int calls = 0;
+  const auto take = [&](const Question& q) {
+    ++calls;
+    constexpr std::array kGrasps = {"top", "left", "right"};
+    Answer a = Answer::found(kGrasps[q.choice % 3]);
+    a.chosen = true;
+    a.choices = 3;
+    return a;
+  };
+  const auto put = [](const std::string& good) {
+    return [good](const Question& q) {
+      return q.arguments[0] == good ? Answer::found("there")
+                                    : Answer::not_found(q.arguments[0] + " does not fit");
+    };
+  };
+  for (const Algorithm a : kAll) {
+    const Model m = bound(text, {{"take", take}, {"put", put("right")}});
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    EXPECT_EQ(s.plan.choice, 2U);
+    EXPECT_EQ(s.plan.attempts, 1U);
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+    const std::string written = write_plan(m, s.plan);
+    expect_says(written, "\"choice\": 2");
+    EXPECT_EQ(read_plan(m, written, "p.json"), s.plan);
+    Plan other = s.plan;
+    other.choice = 1;
+    EXPECT_FALSE(check(m, other).valid);
+    // The first choice does; nothing is chosen anew.
+    const Model first = bound(text, {{"take", take}, {"put", put("top")}});
+    EXPECT_EQ(with(first, a).plan.choice, 0U);
+    EXPECT_EQ(write_plan(first, with(first, a).plan).find("choice"), std::string::npos);
+    // None does.
+    calls = 0;
+    const Solution none = with(bound(text, {{"take", take}, {"put", put("none")}}), a);
+    EXPECT_EQ(none.outcome, Outcome::Limit);
+    expect_says(none.limit, "top does not fit");
+    expect_says(none.limit, "nor with 3 other choices");
+    EXPECT_EQ(calls, 4);
+  }
 }
 
 }  // namespace

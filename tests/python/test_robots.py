@@ -62,3 +62,23 @@ def test_robot_held_by_a_robot(arm, tmp_path):
     other.write_text(ARM.replace('axis xyz="0 1 0"', 'axis xyz="1 0 0"'))
     moved = kaboum.verify_robot(arm, other)
     assert moved.answer == "refuted" and moved.claims["joints"]["reason"]
+
+
+def test_one_bad_mesh_is_named(arm):
+    bad = arm.parent / "bad.urdf"
+    text = arm.read_text()
+    at = text.index("tool.ply")
+    bad.write_text(text[:at] + "broken.off" + text[at + len("tool.ply"):])
+    (arm.parent / "broken.off").write_text("OFF\n1 0 0\n0 0 0\n")
+    with pytest.raises(kaboum.Error, match="broken.off"):
+        kaboum.certify_robot(bad, epsilon="5%")
+    made = kaboum.certify_robot(bad, epsilon="5%", partial=True)
+    assert set(made.links) == {"base", "upper"}
+    assert [(link, verdict) for link, verdict, _ in made.verdicts] == [
+        ("base", "held"), ("upper", "held"), ("tool", "kept")]
+    assert "broken.off" in made.verdicts[2][2]
+    # Two triangles back to back bound nothing: they are wrapped, and inside.
+    (arm.parent / "broken.off").write_text("OFF\n3 2 0\n0 0 0\n.1 0 0\n0 .1 0\n3 0 1 2\n3 0 2 1\n")
+    made = kaboum.certify_robot(bad, epsilon="5%")
+    assert all(verdict == "held" for _, verdict, _ in made.verdicts)
+    assert kaboum.verify_cover(arm.parent / "broken.off", made.links["tool"])

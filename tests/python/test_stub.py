@@ -2,8 +2,10 @@
 
 import ast
 import inspect
+import os
 import pathlib
 import re
+import subprocess
 
 import pytest
 
@@ -66,3 +68,46 @@ def test_class(name):
         assert isinstance(value, property) == is_property, member
         if not is_property and member not in ("__len__", "__bool__"):
             assert parameters(node) == [p for p in of_docstring(getattr(there, member)) if p[0] != "self"]
+
+
+PROGRAMS = {"decompose": "bcd-decompose"}
+
+
+@pytest.mark.parametrize("function", PROGRAMS)
+def test_every_front_end_has_every_option(function):
+    table = kaboum._kaboum._option_tables()[function]
+    program = pathlib.Path(os.environ["KABOUM_BIN"]) / PROGRAMS[function]
+    text = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
+    there = set(re.findall(r"^  (--[a-z-]+)", text, re.M))
+    node = next(n for n in FUNCTIONS if n.name == function)
+    keywords = {name for name, kind, _ in parameters(node) if kind == "keyword"}
+    for option in table:
+        assert f"--{option['name']}" in there
+        assert option["keyword"] in keywords
+        assert f"\n{option['keyword']} : {option['type']}" in getattr(kaboum, function).__doc__
+    assert keywords - {o["keyword"] for o in table} == {"no_cache", "threads", "progress"}
+    stated = {name for name, _, _ in of_docstring(getattr(kaboum, function))}
+    assert stated == keywords | {"mesh"}
+
+
+@pytest.mark.parametrize("given, says", [
+    ({"max_bodies": 0}, "max_bodies must be a whole number from 1 to 100000"),
+    ({"max_bodies": 2.0}, "max_bodies must be an int"),
+    ({"max_bodies": True}, "max_bodies must be an int"),
+    ({"simplify": float("nan")}, "simplify must be a number from 0 to 1"),
+    ({"epsilon": "1mm"}, "epsilon must be a positive number"),
+    ({"epsilon": -1}, "epsilon must be a positive number"),
+    ({"effort": "fastt"}, "did you mean 'fast'"),
+    ({"drop_sheets": 1}, "drop_sheets must be True or False"),
+    ({"seal": "1%"}, "seal is for prepare wrap"),
+    ({"direction": "inner", "simplify": 0.25}, "simplify needs direction outer"),
+])
+def test_wrong_values_are_named(given, says):
+    with pytest.raises(kaboum.Error, match=re.escape(says)) as error:
+        kaboum.decompose("none.off", **given)
+    assert error.value.code == "invalid_argument"
+
+
+def test_unknown_keywords_are_type_errors():
+    with pytest.raises(TypeError, match="did you mean 'max_bodies'"):
+        kaboum.decompose("none.off", max_bodie=3)

@@ -200,6 +200,9 @@ TEST(Urdf, BadFilesAreRefused) {
                "</mesh></geometry></collision></link>"),
       "belongs beside <geometry>");
   has(robot_of("<link name='a'/>") + robot_of("<link name='b'/>"), "one robot");
+  EXPECT_EQ(message(robot_of("<link name='a'><self_collision_checking>" + box +
+                             "</self_collision_checking></link>")),
+            "no error");
   EXPECT_EQ(message(robot_of("<link name='a'/><gazebo reference='a'><visual/></gazebo>"
                              "<transmission name='t'><joint name='j'/></transmission>"
                              "<material name='grey'/>")),

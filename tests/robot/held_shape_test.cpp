@@ -76,7 +76,40 @@ TEST(HeldShape, NotEveryMeshHolds) {
   const Holders several({{"hollow", &hollow}, {"solid", &inner}});
   EXPECT_EQ(several.hold(block({0.3, 0.3, 0.3}, {0.4, 0.4, 0.4}), Claims::All).answer,
             Answer::Undecided);
-  EXPECT_FALSE(crooked.distance({inner}, 1).claim);
+}
+
+TEST(HeldShape, SegmentsAreJudgedAsTheyAre) {
+  const geom::Mesh solid = block({0, 0, 0}, {1, 1, 1});
+  const Holders holders({{"solid", &solid}});
+  const auto segment = [](double end) {
+    return geom::Mesh{{{0.5, 0.5, 0.5}, {end, 0.5, 0.5}, {0.6, 0.5, 0.5}}, {{0, 1, 2}}};
+  };
+  EXPECT_EQ(holders.hold(segment(1), Claims::All).answer, Answer::Verified);
+  EXPECT_EQ(holders.hold(segment(5), Claims::All).answer, Answer::Refuted);
+  geom::Mesh closed = segment(1);
+  closed.triangles.push_back({2, 1, 0});
+  EXPECT_EQ(holders.hold(closed, Claims::All).answer, Answer::Verified);
+  EXPECT_EQ(holders.hold(closed, Claims::Solid).answer, Answer::Undefined);
+  EXPECT_EQ(holders.hold({}, Claims::All).answer, Answer::Undecided);
+}
+
+// Of meshes that are not convex, the surface: inside them it may be farther.
+TEST(HeldShape, DistanceOfMeshesThatAreNotConvex) {
+  const geom::Mesh cavity = flipped(block({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
+  const geom::Mesh hollow = merged({block({0, 0, 0}, {2, 2, 2}), cavity}),
+                   larger = merged({block({0, 0, 0}, {2, 2, 2.2}), cavity});
+  const Holders holders({{"larger", &larger}});
+  const verify::HeldDistance near = holders.distance({hollow}, 0.21),
+                             far = holders.distance({hollow}, 0.19);
+  ASSERT_TRUE(near.claim && far.claim);
+  EXPECT_TRUE(near.of_surface && near.to_solid);
+  EXPECT_EQ(near.claim->answer, Answer::Verified);
+  EXPECT_EQ(far.claim->answer, Answer::Refuted);
+  EXPECT_NEAR(far.claim->largest, 0.2, 0.01);
+  geom::Mesh open = larger;
+  open.triangles.pop_back();
+  EXPECT_FALSE(Holders({{"open", &open}}).distance({hollow}, 1).claim);
+  EXPECT_FALSE(Holders({{"open", &open}, {"larger", &larger}}).distance({hollow}, 1).claim);
 }
 
 TEST(HeldShape, DistanceToAllMeshesTogether) {

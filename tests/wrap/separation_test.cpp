@@ -1,5 +1,4 @@
-// The cells that triangles are said to meet, and tetrahedra that are said to be clear of them,
-// against points of both.
+// Tetrahedra that are said to be clear of triangles, against points of both.
 #include <gtest/gtest.h>
 #include <kaboum/base/random.h>
 
@@ -8,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "cells.h"
 #include "obstacle.h"
 
 namespace kaboum::wrap {
@@ -20,49 +18,6 @@ Vec3 random_point(Random& random, double size) {
   const double x = random.between(-size, size), y = random.between(-size, size),
                z = random.between(-size, size);
   return {x, y, z};
-}
-
-TEST(Cells, EveryPointOfATriangleLiesInAMarkedCell) {
-  Random random(3);
-  for (int i = 0; i < 60; ++i) {
-    geom::Mesh mesh;
-    const Vec3 far = random_point(random, i % 3 == 0 ? 1000 : 1);
-    for (int k = 0; k < 3; ++k)
-      mesh.vertices.emplace_back(far + random_point(random, i % 2 == 0 ? 1 : 0.1));
-    if (i % 5 == 0) mesh.vertices[2] = mesh.vertices[0];
-    mesh.triangles.push_back({0, 1, 2});
-    const Lattice lattice =
-        lattice_round(geom::bounding_box(mesh), side_above(0.11), 1, false, 1e9);
-    const BitGrid cells = occupied_cells(lattice, mesh);
-    for (int n = 0; n < 300; ++n) {
-      double u = random.between(0, 1), v = random.between(0, 1);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      const Vec3 p = mesh.vertices[0] + u * (mesh.vertices[1] - mesh.vertices[0]) +
-                     v * (mesh.vertices[2] - mesh.vertices[0]);
-      const auto [x, y, z] = lattice.cell_of(p);
-      ASSERT_TRUE(cells.get(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)));
-    }
-  }
-}
-
-TEST(Cells, TouchedCellsAreMarkedOnBothSides) {
-  geom::Mesh mesh;  // in a plane between cells
-  mesh.vertices = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  mesh.triangles = {{0, 1, 2}};
-  const Lattice lattice = lattice_round(geom::bounding_box(mesh), 0.25, 1, true, 1e9);
-  const BitGrid cells = occupied_cells(lattice, mesh);
-  for (const double z : {0.9, 1.1}) {
-    const auto [i, j, k] = lattice.cell_of({0.3, 0.3, z});
-    EXPECT_TRUE(cells.get(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)));
-  }
-}
-
-TEST(Cells, SidesAreShortNumbers) {
-  for (const double least : {1.0, 0.3, 7.9, 8.0, 1e-9, 123456.7}) {
-    const double side = side_above(least);
-    EXPECT_GE(side, least);
-    EXPECT_LE(side, 1.25 * least);
-  }
 }
 
 /// Where a tetrahedron is clear of a triangle, no convex combinations of both coincide: tried by
@@ -229,6 +184,42 @@ TEST(Obstacle, TheClearanceIsKeptExactly) {
       Tetrahedron tetrahedron;
       for (std::size_t k = 0; k < 4; ++k) tetrahedron[k] = foot + gap * clearance * n + from[k];
       ASSERT_EQ(obstacle.clear(std::span(&tetrahedron, 1)), gap > 1) << i << ' ' << gap;
+    }
+  }
+}
+
+/// Where a corner is what is nearest, to a corner or an edge, a gap of little more than the
+/// clearance is told, and one of less is not enough.
+TEST(Obstacle, TheClearanceIsKeptExactlyAtCorners) {
+  Random random(37);
+  for (int i = 0; i < 2000; ++i) {
+    const double clearance = i % 2 == 0 ? 0.1 : 1e-4;
+    const Vec3 n = random_point(random, 1).normalized();
+    const auto behind = [&](double sign) {  // strictly on one side of the plane across n
+      const Vec3 d = random_point(random, 0.5);
+      return Vec3(d + (sign * (std::abs(d.dot(n)) + 0.1) - d.dot(n)) * n);
+    };
+    const Vec3 foot = random_point(random, 1);
+    Vec3 along = random_point(random, 0.5);
+    along -= along.dot(n) * n;
+    const int kind = i % 3;  // corner and corner; an edge of the triangle; one of the tetrahedron
+    Mesh mesh;
+    mesh.vertices = {foot, foot + behind(-1), foot + behind(-1)};
+    if (kind == 1) {
+      mesh.vertices[0] = foot + along;
+      mesh.vertices[1] = foot - along;
+    }
+    mesh.triangles = {{0, 1, 2}};
+    const Obstacle obstacle(mesh, clearance);
+    for (const double gap : {0.9, 1 - 1e-9, 1 + 1e-6, 1.01}) {
+      const Vec3 near = foot + gap * clearance * n;
+      Tetrahedron t{near, near + behind(1), near + behind(1), near + behind(1)};
+      if (kind == 2) {
+        t[0] = near + along;
+        t[1] = near - along;
+      }
+      std::swap(t[0], t[static_cast<std::size_t>(i / 3 % 4)]);
+      ASSERT_EQ(obstacle.clear(std::span(&t, 1)), gap > 1) << i << ' ' << gap;
     }
   }
 }

@@ -51,6 +51,7 @@ QueryEvaluator::QueryEvaluator(const Model& model, const Plan& plan)
     : model_(model),
       seed_(plan.seed),
       attempts_(std::max(plan.attempts, 1U)),
+      choice_(plan.choice),
       handles_(static_cast<Index>(model.objects.size())) {}
 
 std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& slots,
@@ -375,7 +376,7 @@ ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arg
   ExternalResult result;
   for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
     KnowledgeReader reader(k, noted_);
-    ExternalContext context{reader, handles_, seed_, attempt};
+    ExternalContext context{reader, handles_, seed_, attempt, choice_};
     try {
       result = model_.external_functions[external].call(arguments, context);
     } catch (const std::exception& e) {

@@ -53,6 +53,7 @@ class Run {
         options_(options),
         step_(step),
         evaluator_(model, plan),
+        live_(model, plan, evaluator_, LiveFacts::Sensing::Reads),
         transitions_(model, evaluator_, Transitions::Disjunctions::Kept),
         random_(options.seed),
         given_(given(model, options)) {}
@@ -75,11 +76,12 @@ class Run {
 
   /// What happens from a node on. @return ways through the plan.
   std::uint64_t carry_out(Index node, const RuntimeKnowledge& k, std::uint64_t actions) {
-    const auto [it, fresh] = seen_.try_emplace({node, k}, 0);
-    if (!fresh) return it->second;
+    const auto [at, fresh] = seen_.try_emplace({node, part_that_matters(node, k)}, 0);
+    std::uint64_t& ways = at->second;
+    if (!fresh) return ways;
     if (node == kNone) {
       ++summary_.ends;
-      return it->second = 1;
+      return ways = 1;
     }
     if (++summary_.states > options_.most_states)
       throw Error(ErrorCode::LimitReached, "the plan is carried out in more than " +
@@ -96,8 +98,6 @@ class Run {
     }
     if (options_.outcomes != RunOptions::Outcomes::All && !after.empty())
       after = {choose(after, &n)};
-    std::uint64_t ways = 0;
-    std::set<std::string> outcomes;
     for (const RuntimeKnowledge& then : after) {
       const auto [next, outcome] =
           n.branches ? follow(n.branch, then) : std::pair(std::optional(n.next), std::string());
@@ -112,7 +112,18 @@ class Run {
       }
       ways = std::min(kMostBranches, ways + carry_out(*next, then, done));
     }
-    return seen_[{node, k}] = ways;
+    return ways;
+  }
+
+  /// Of a state, what its way on from a node depends on and may be asked about: two that agree on
+  /// it are carried out alike. Who is told of what the plan has no branch for is told all.
+  RuntimeKnowledge part_that_matters(Index node, RuntimeKnowledge k) const {
+    if (options_.unplanned || live_.at(node).all) return k;
+    std::set<Fact> facts = live_.at(node).facts;
+    for (const auto& [term, value] : k.values()) facts.insert(term);
+    for (const auto& [term, values] : k.excluded()) facts.insert(term);
+    k.restrict_to(facts);
+    return k;
   }
 
   [[noreturn]] void missing(const Plan::Node& n) const {
@@ -221,6 +232,7 @@ class Run {
   const RunOptions& options_;
   const std::function<void(const RunStep&)>& step_;
   QueryEvaluator evaluator_;
+  LiveFacts live_;
   Transitions transitions_;
   Random random_;
   std::map<Fact, std::string> given_;

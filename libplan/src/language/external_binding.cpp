@@ -129,7 +129,7 @@ std::uint64_t seed_of(const std::string& name, const std::vector<std::string>& a
   };
   add(name);
   for (const std::string& a : arguments) add(a);
-  h += (context.attempt + 1) * 0x9e3779b97f4a7c15ULL;
+  h += (context.attempt + 1 + (std::uint64_t{context.choice} << 32U)) * 0x9e3779b97f4a7c15ULL;
   h = (h ^ (h >> 30U)) * 0xbf58476d1ce4e5b9ULL;
   h = (h ^ (h >> 27U)) * 0x94d049bb133111ebULL;
   return h ^ (h >> 31U);
@@ -137,31 +137,32 @@ std::uint64_t seed_of(const std::string& name, const std::vector<std::string>& a
 
 ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
                                std::shared_ptr<const Names> names) {
-  return {
-      [function, g, names = std::move(names)](std::span<const Index> arguments,
-                                              ExternalContext& context) {
-        std::vector<std::string> texts;
-        for (const Index a : arguments) texts.push_back(names->name(a, context.handles));
-        NamedState state(*names, context);
-        Answer answer = function({texts, state, seed_of(g.name, texts, context), context.attempt});
-        ExternalResult result;
-        result.kind = answer.kind;
-        result.payload = std::move(answer.payload);
-        result.reason = std::move(answer.reason);
-        result.chosen = answer.chosen;
-        result.fixed = answer.fixed;
-        if (answer.kind != Answer::Kind::Value || g.range == kNone) return result;
-        const auto found = names->object_of.find(answer.value);
-        const bool constant =
-            found != names->object_of.end() && names->is_a(found->second, g.range);
-        if (!constant && (!names->types[g.range].handle || answer.value.empty()))
-          throw Error(ErrorCode::InvalidInput, "it returned '" + answer.value +
-                                                   "', no constant of its type (" +
-                                                   names->types[g.range].name + ")");
-        result.value = constant ? found->second : context.handles.intern(g.range, answer.value);
-        return result;
-      },
-      function.reads_state(), function.takes_seed()};
+  return {[function, g, names = std::move(names)](std::span<const Index> arguments,
+                                                  ExternalContext& context) {
+            std::vector<std::string> texts;
+            for (const Index a : arguments) texts.push_back(names->name(a, context.handles));
+            NamedState state(*names, context);
+            Answer answer = function(
+                {texts, state, seed_of(g.name, texts, context), context.attempt, context.choice});
+            ExternalResult result;
+            result.kind = answer.kind;
+            result.payload = std::move(answer.payload);
+            result.reason = std::move(answer.reason);
+            result.chosen = answer.chosen;
+            result.choices = answer.choices;
+            result.fixed = answer.fixed;
+            if (answer.kind != Answer::Kind::Value || g.range == kNone) return result;
+            const auto found = names->object_of.find(answer.value);
+            const bool constant =
+                found != names->object_of.end() && names->is_a(found->second, g.range);
+            if (!constant && (!names->types[g.range].handle || answer.value.empty()))
+              throw Error(ErrorCode::InvalidInput, "it returned '" + answer.value +
+                                                       "', no constant of its type (" +
+                                                       names->types[g.range].name + ")");
+            result.value = constant ? found->second : context.handles.intern(g.range, answer.value);
+            return result;
+          },
+          function.reads_state(), function.takes_seed()};
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ class Reader {
              std::to_string(kMaximumAttempts));
       plan.seed = seed.get<std::uint64_t>();
       plan.attempts = attempts.get<unsigned>();
+      if (json.contains("choice")) {
+        const Json& choice = member(json, "choice");
+        if (!choice.is_number_unsigned() || choice.get<std::uint64_t>() > kMaximumAttempts)
+          fail("'choice' is a whole number, at most " + std::to_string(kMaximumAttempts));
+        plan.choice = choice.get<unsigned>();
+      }
     }
     const Json& nodes = member(json, "nodes");
     if (!nodes.is_array()) fail("'nodes' is not a list");
@@ -232,6 +238,7 @@ std::string write_plan(const Model& model, const Plan& plan) {
   if (plan.attempts > 0) {
     json["seed"] = plan.seed;
     json["attempts"] = plan.attempts;
+    if (plan.choice > 0) json["choice"] = plan.choice;
   }
   json["root"] = link(plan.root);
   json["nodes"] = std::move(nodes);

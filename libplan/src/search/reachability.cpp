@@ -32,8 +32,8 @@ bool has_variables(const Query* q) {
 
 }  // namespace
 
-Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts)
-    : task_(task), limits_(limits), facts_(facts) {
+Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers)
+    : task_(task), limits_(limits), facts_(facts), answers_(answers) {
   const Model& model = task.model();
   reached_.assign(facts.size(), 0);
   taken_.assign(task.layout().fluents().size(), 0);
@@ -370,6 +370,26 @@ bool Reachability::again() {
   return queue_.size() > before;
 }
 
+/// Whether what was answered leaves a value possible, where fluents have contents that are reached:
+/// from a node of the answers on.
+bool Reachability::may_answer(Index node) const {
+  const AnswerTree& answers = task_.calls().answers();
+  if (node == kNone) return true;
+  if (AnswerTree::is_leaf(node))
+    return answers.leaf(AnswerTree::leaf_number(node)).kind != Answer::Kind::Impossible;
+  const Index item = answers.reads(node);
+  if (is_call(item)) return true;
+  const Fluent& f = task_.layout().fluents()[item];
+  const Word sensed = f.function ? kValueSensed : static_cast<Word>(AtomKnowledge::Whether);
+  for (Word c = 0; c < facts_.contents(item); ++c) {
+    // What is sensed is decided before it is read; so decided, it is reached as well.
+    if (c == sensed || !reached(facts_.fact(item, c))) continue;
+    const bool any_handle = f.handle && c + 1 == facts_.contents(item);
+    if (any_handle || may_answer(answers.child(node, static_cast<Index>(c)))) return true;
+  }
+  return false;
+}
+
 bool Reachability::possible(Formula f, bool positive) const {
   const FormulaPool& pool = task_.pool();
   const FormulaPool::Node& n = pool.node(f);
@@ -380,9 +400,10 @@ bool Reachability::possible(Formula f, bool positive) const {
       return positive;
     case Kind::Xor:
     case Kind::Bits:
-    case Kind::External:
     case Kind::Derived:
       return true;
+    case Kind::External:
+      return !positive || answers_ == Answers::Any || may_answer(task_.calls().answers_of(n.a));
     case Kind::Not:
       return possible(*pool.begin(f), !positive);
     case Kind::And:

@@ -41,8 +41,11 @@ struct JoinedAction {
 /// while new facts are reached.
 class Reachability {
  public:
+  /// Calls of external functions may have any value; or none where these say that it is impossible.
+  enum class Answers : std::uint8_t { Any, AsGiven };
+
   /// @pre the arguments outlive it. @throws LimitExceeded
-  Reachability(Task& task, Limits& limits, const FactTable& facts);
+  Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers = Answers::Any);
 
   [[nodiscard]] bool reached(FactId f) const { return reached_[f] != 0; }
   /// Whether the formula, or its negation, may hold.
@@ -78,10 +81,12 @@ class Reachability {
   bool act(OperatorId step, Index effect);
   bool again();
   void mark(FactId f);
+  [[nodiscard]] bool may_answer(Index node) const;
 
   Task& task_;
   Limits& limits_;
   const FactTable& facts_;
+  Answers answers_;
   std::vector<char> reached_;
   std::vector<char> taken_;      ///< by fluent of an atom: that it is true is joined
   std::vector<char> acted_;      ///< by step

@@ -212,7 +212,7 @@ void Regression::touch_transfer(const ConditionalEffect::Transfer& t, bool happe
   if (happens && !reads_field(condition, f)) return;
   if (is_call(t.operand)) {
     require_footprint(t.operand & ~kCallOperand, before_, required_);
-  } else {
+  } else if (is_term(t.operand)) {
     require_as_before(fluents[t.operand & ~kTermOperand]);
   }
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "search/contingent.h"
+#include "search/fact_table.h"
+#include "search/reachability.h"
 #include "search/search.h"
 #include "task/exactness.h"
 #include "task/knowledge_view.h"
@@ -34,22 +36,55 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
   throw Error(ErrorCode::InvalidArgument, "unknown search algorithm");
 }
 
-/// Searches, and again with more samples while that fails and some call found nothing.
-void search(Task& task, const SolveOptions& options, Limits& limits, Solution& solution) {
-  ExternalCalls& calls = task.calls();
-  calls.seed(options.seed);
-  const Assumptions assumptions(task, options.assumed);
+/// Steps of a search after which it is first looked whether what was refused leaves a plan
+/// possible, and how many times as many there are before the next look.
+constexpr std::uint64_t kFirstLook = 2'000, kLaterLook = 8;
+
+/// Whether no state that the delete relaxation reaches meets the goal, if calls that were
+/// impossible are so wherever what they read has not changed. Objects that do not matter then
+/// multiply nothing.
+bool is_refuted(Task& task, Limits& limits) {
+  const FactTable facts(task.model(), task.layout());
+  return !Reachability(task, limits, facts, Reachability::Answers::AsGiven)
+              .possible(task.goal(), true);
+}
+
+/// A search, stopped now and then to look whether it can succeed at all. What it asks external
+/// functions the second time is known by then.
+Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& assumptions,
+                    Limits& limits, Solution& solution) {
+  std::uint64_t steps = kFirstLook;
+  const bool looks =
+      std::ranges::any_of(task.model().external_functions, &ExternalFunction::reads_state);
   while (true) {
+    if (looks) limits.pause_after(steps);
     ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
                               solution.statistics);
-    solution.outcome = planner.run();
+    const Outcome out = planner.run();
+    const bool paused = out == Outcome::Limit && limits.paused();
+    limits.never_pause();
+    if (out == Outcome::Solved) solution.plan = planner.plan();
+    if (!paused) return out;
+    if (!task.calls().refused().empty() && is_refuted(task, limits)) return Outcome::Unsolvable;
+    steps *= kLaterLook;
+  }
+}
+
+/// Searches, and again with more samples while that fails and some call found nothing.
+void search(Task& task, const SolveOptions& options, unsigned choice, Limits& limits,
+            Solution& solution) {
+  ExternalCalls& calls = task.calls();
+  calls.seed(options.seed, choice);
+  const Assumptions assumptions(task, options.assumed);
+  while (true) {
+    solution.outcome = run_planner(task, options, assumptions, limits, solution);
     if (solution.outcome == Outcome::Solved) {
-      solution.plan = planner.plan();
       const auto& functions = task.model().external_functions;
       if (std::any_of(functions.begin(), functions.end(),
                       [](const auto& f) { return f.takes_seed; })) {
         solution.plan.seed = options.seed;
         solution.plan.attempts = calls.attempts();
+        solution.plan.choice = choice;
       }
     }
     if (solution.outcome != Outcome::Unsolvable) break;
@@ -62,7 +97,7 @@ void search(Task& task, const SolveOptions& options, Limits& limits, Solution& s
                        (solution.refused.empty() ? "" : "; " + solution.refused);
       return;
     }
-    if (calls.attempts() >= options.attempts) {
+    if (calls.attempts() >= (choice == 0 ? options.attempts : 1)) {
       solution.outcome = Outcome::Limit;
       solution.limit = "an external function found nothing in " + std::to_string(calls.attempts()) +
                        (calls.attempts() == 1 ? " attempt, " : " attempts, ") + calls.missed();
@@ -106,23 +141,47 @@ bool search_worlds(const Model& model, const SolveOptions& options, Limits& limi
   return true;
 }
 
-/// With knowledge states.
-void search_knowledge(const Model& model, const SolveOptions& options, const std::string& lost,
-                      Limits& limits, Solution& solution) {
+/// One search with knowledge states. @return the most things that an external function chose among.
+unsigned search_once(const Model& model, const SolveOptions& options, unsigned choice,
+                     Limits& limits, Solution& solution) {
   Task task(model, limits);
+  Statistics& s = solution.statistics;
   const auto count = [&] {
-    solution.statistics.ground_actions = task.action_count();
-    solution.statistics.external_calls = task.calls().calls_made();
-    solution.statistics.external_bytes = task.calls().bytes();
-    solution.statistics.external_seconds = task.calls().seconds();
+    s.ground_actions = task.action_count();
+    s.external_calls += task.calls().calls_made();
+    s.external_bytes = std::max<decltype(s.external_bytes)>(s.external_bytes, task.calls().bytes());
+    s.external_seconds += task.calls().seconds();
   };
   try {
-    search(task, options, limits, solution);
+    search(task, options, choice, limits, solution);
   } catch (const LimitExceeded&) {
     count();
     throw;
   }
   count();
+  return task.calls().choices();
+}
+
+/// With knowledge states; where what was found leads no further, with other choices.
+void search_knowledge(const Model& model, const SolveOptions& options, const std::string& lost,
+                      Limits& limits, Solution& solution) {
+  const unsigned choices = search_once(model, options, 0, limits, solution);
+  // Without a text it is a search that ended, not a function that found nothing.
+  const bool again = solution.outcome == Outcome::Limit && !solution.limit.empty();
+  const unsigned most = again ? std::min(choices, options.choices) : 0;
+  for (unsigned choice = 1; choice <= most; ++choice) {
+    Solution other;
+    other.statistics = solution.statistics;
+    search_once(model, options, choice, limits, other);
+    solution.statistics = other.statistics;
+    if (other.outcome != Outcome::Solved) continue;
+    solution = std::move(other);
+    return;
+  }
+  if (most > 0)
+    solution.limit += "; nor with " + std::to_string(most) + " other " +
+                      (most == 1 ? "choice" : "choices") + " among up to " +
+                      std::to_string(choices) + " things that external functions chose among";
   if (solution.outcome != Outcome::Unsolvable || lost.empty()) return;
   solution.lost = lost;
   solution.outcome = Outcome::NotInferred;

@@ -7,11 +7,15 @@ namespace kaboum::plan {
 
 /// @return false: a call has no value.
 bool ActionEffects::take(const ConditionalEffect::Transfer& t, const Word* state, bool supposed) {
-  if (t.operand == kNone) {  // it may have been taken over
+  if (t.operand == kNone) {
     taken_.emplace_back(t.fluent, kValueUnknown);
     return true;
   }
-  if (!is_call(t.operand)) {
+  if (!is_call(t.operand) && !is_term(t.operand)) {
+    taken_.emplace_back(t.fluent, kFirstValue + t.operand);
+    return true;
+  }
+  if (is_term(t.operand)) {
     taken_.emplace_back(t.fluent, layout_.fluents()[t.operand & ~kTermOperand].get(state));
     return true;
   }

@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "task/bindings.h"
@@ -35,7 +36,7 @@ void EffectGrounder::ground(const std::vector<Effect>& effects, Formula conditio
           c.test = pool_.as_bits(condition).value_or(BitTest{});
           action.effects.push_back(std::move(c));
         }
-        add_update(e.update, slots, action.effects.back());
+        add_update(e.update, slots, action);
         break;
       }
       case Effect::Kind::When: {
@@ -66,8 +67,15 @@ Index EffectGrounder::position(const Update::Literal& l, const std::vector<Index
   return layout_.position(model_.functions[l.symbol].range, queries_.operand(*l.value, slots));
 }
 
+bool EffectGrounder::is_transferred(Index fluent, const GroundAction& action) {
+  return std::ranges::any_of(action.effects, [&](const ConditionalEffect& c) {
+    return std::ranges::any_of(c.transfers, [&](const auto& t) { return t.fluent == fluent; });
+  });
+}
+
 void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots,
-                                ConditionalEffect& out) {
+                                GroundAction& action) {
+  ConditionalEffect& out = action.effects.back();
   const Update::Literal& l = u.literals[0];
   const Layout::Field at = field(l, slots);
   if (!at.exists) return;  // an argument outside its type: no such atom
@@ -82,8 +90,10 @@ void EffectGrounder::add_update(const Update& u, const std::vector<Index>& slots
       out.transfers.push_back({at.fluent, o});
       return;
     }
-    if (o == kNone) {  // a term that is never known
-      out.deletions.push_back({Change::Kind::Forget, at.fluent, 0, {}});
+    // A term that is never known makes this one unknown. Writes come before transfers: after a
+    // transfer to this term, a value is one as well.
+    if (o == kNone || is_transferred(at.fluent, action)) {
+      out.transfers.push_back({at.fluent, o});
       return;
     }
   }

@@ -26,7 +26,10 @@ class EffectGrounder {
  private:
   void ground(const std::vector<Effect>& effects, Formula condition, std::vector<Index>& slots,
               GroundAction& action);
-  void add_update(const Update& u, const std::vector<Index>& slots, ConditionalEffect& out);
+  /// @pre `action` has an effect, to which the update is added.
+  void add_update(const Update& u, const std::vector<Index>& slots, GroundAction& action);
+  /// Whether a term takes over a value in one of the effects so far.
+  static bool is_transferred(Index fluent, const GroundAction& action);
   [[nodiscard]] Layout::Field field(const Update::Literal& l,
                                     const std::vector<Index>& slots) const;
   [[nodiscard]] Index position(const Update::Literal& l, const std::vector<Index>& slots) const;

@@ -147,8 +147,9 @@ ExternalResult ExternalCalls::run(const Call& c, const std::vector<Index>& objec
                                   StateReader& reader, unsigned attempt) {
   ++made_;
   const auto start = std::chrono::steady_clock::now();
-  ExternalContext context{reader, handles_, seed_, attempt};
+  ExternalContext context{reader, handles_, seed_, attempt, choice_};
   ExternalResult result = model_.external_functions[c.external].call(objects, context);
+  choices_ = std::max(choices_, result.choices);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -42,6 +42,10 @@ class ExternalCalls {
   ///         itself; LimitExceeded.
   Reply evaluate(Index call, const Word* state);
 
+  /// What is known of a call's answers: a node of `answers()`.
+  [[nodiscard]] Index answers_of(Index call) const { return calls_[call].answers.node; }
+  [[nodiscard]] const AnswerTree& answers() const { return answers_; }
+
   /// Fluents that the answer in this state rests on are added to `fluents`.
   void footprint(Index call, const Word* state, std::vector<Index>& fluents);
   /// Whether the answer can differ between states.
@@ -95,7 +99,12 @@ class ExternalCalls {
   [[nodiscard]] std::uint64_t calls_made() const { return made_; }
   [[nodiscard]] double seconds() const { return seconds_; }
   [[nodiscard]] std::size_t bytes() const { return handles_.bytes() + answers_.bytes(); }
-  void seed(std::uint64_t seed) { seed_ = seed; }
+  void seed(std::uint64_t seed, unsigned choice) {
+    seed_ = seed;
+    choice_ = choice;
+  }
+  /// The most things that a function chose among.
+  [[nodiscard]] unsigned choices() const { return choices_; }
 
  private:
   struct Call {
@@ -140,7 +149,7 @@ class ExternalCalls {
   std::vector<Sample> samples_;
   std::vector<std::uint8_t> sampled_;  ///< by external
   std::uint64_t seed_ = 0;
-  unsigned attempts_ = 1;
+  unsigned attempts_ = 1, choice_ = 0, choices_ = 0;
   Index missed_ = kNone;  ///< a leaf
   std::string missed_call_;
   std::map<Index, std::string> chosen_;  ///< handles that rest on a choice, and whose value it was

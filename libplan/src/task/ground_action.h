@@ -24,7 +24,8 @@ struct ConditionalEffect {
   };
   std::vector<MaskedWrite> writes;
   std::vector<Change> direct;  ///< what the writes are made of: for analysis
-  /// A handle's term takes the value that a term or call has before the action; after the writes.
+  /// A handle's term takes the value that a term or call has before the action, or a handle that is
+  /// given; after the writes, in their order. kNone: it becomes unknown.
   struct Transfer {
     Index fluent;
     Index operand;

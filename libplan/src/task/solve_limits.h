@@ -18,9 +18,15 @@ class Limits {
 
   /// For searches. @return true if the search, which holds `bytes`, must stop; `reason()` says why.
   bool exceeded(std::size_t bytes) {
-    if (++checks_ % 256 != 0 && reason_.empty()) return false;
+    if (++checks_ >= pause_at_) return true;
+    if (checks_ % 256 != 0 && reason_.empty()) return false;
     return check(bytes);
   }
+  /// `exceeded` is true after so many more calls of it, without a reason, until this is called
+  /// again: the search stops for its caller to look around.
+  void pause_after(std::uint64_t calls) { pause_at_ = checks_ + calls; }
+  [[nodiscard]] bool paused() const { return checks_ >= pause_at_ && reason_.empty(); }
+  void never_pause() { pause_at_ = ~std::uint64_t{0}; }
   /// The same, at every call: where one step takes long.
   bool check(std::size_t bytes);
 
@@ -47,6 +53,7 @@ class Limits {
   Statistics& statistics_;
   std::chrono::steady_clock::time_point start_, last_progress_;
   std::uint64_t checks_ = 0;
+  std::uint64_t pause_at_ = ~std::uint64_t{0};
   std::uint64_t work_ = 0;
   std::size_t held_ = 0;
   std::string reason_;

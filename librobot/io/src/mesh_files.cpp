@@ -144,7 +144,9 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
     if (is_file(path)) return {path};
     return fail("there is no file " + path.string());
   }
-  const std::string uri = reference.substr(package.size());
+  // package:///NAME/FILE can only mean the same: no package is without a name.
+  const std::string uri = reference.substr(
+      std::min(reference.find_first_not_of('/', package.size()), reference.size()));
   const std::string name = uri.substr(0, uri.find('/'));
   const std::string rest =
       uri.substr(std::min(uri.find_first_not_of('/', name.size()), uri.size()));

@@ -1,5 +1,6 @@
 // The second reading of CAD files: loads the module in a child process and takes its points.
 #include <kaboum/base/error.h>
+#include <kaboum/base/program_file.h>
 #include <kaboum/io/child_process.h>
 #include <kaboum/verify/exact_points.h>
 
@@ -26,18 +27,14 @@ constexpr double kEvaluation = 0x1p-40;
 /// Where the module may be: beside the program's libraries, where it was installed.
 std::vector<fs::path> places() {
   std::vector<fs::path> out;
-  Dl_info here{};
-  if (::dladdr(reinterpret_cast<const void*>(&read_exact_points), &here) != 0 &&
-      here.dli_fname != nullptr) {
-    std::error_code none;
-    const fs::path program = fs::canonical(here.dli_fname, none);
+  const fs::path program = program_file(reinterpret_cast<const void*>(&read_exact_points));
+  if (!program.empty()) {
     // Beside bin/, or so many folders above that of a Python module.
     const bool library = program.extension() == ".so";
     for (const int up : {2, 3, 5}) {
       auto folder = program;
       for (int i = 0; i < up; ++i) folder = folder.parent_path();
-      if (!none && (up > 2) == library)
-        out.push_back(folder / KABOUM_LIBRARY_FOLDER / kPointsModule);
+      if ((up > 2) == library) out.push_back(folder / KABOUM_LIBRARY_FOLDER / kPointsModule);
     }
   }
   out.emplace_back(fs::path(KABOUM_INSTALLED_LIBRARIES) / kPointsModule);

@@ -1,5 +1,6 @@
 // Whether the meshes that a result has in a frame of a link hold what the original has there.
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/distance.h>
 #include <kaboum/verify/held_shape.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
     out.reason = why;
     return out;
   };
-  if (!has_area(mesh)) return undecided("none of its triangles has an area");
+  if (mesh.triangles.empty()) return undecided("it has no triangles");
   if (set_.bodies.empty()) {
     const bool any = claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
     undecided("the result's link has no closed mesh of its pose and scale");
@@ -58,7 +59,8 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
     return out;
   }
   const Inclusion& in = out.inclusion.emplace(verify_inclusion(mesh, sum_, limits));
-  out.solid = claims != Claims::Surface && in.inner_closed;
+  // Segments and points bound nothing; whether they stick out is the surface claim.
+  out.solid = claims != Claims::Surface && in.inner_closed && has_area(mesh);
   out.surface = claims != Claims::Solid;
   for (const auto& [claim, counts] :
        {std::pair{&in.solid, out.solid}, std::pair{&in.surface, out.surface}})
@@ -79,13 +81,17 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
 HeldDistance Holders::distance(const std::vector<geom::Mesh>& meshes, double bound,
                                const InclusionOptions& limits) const {
   HeldDistance out;
-  if (!all_convex() || set_.bodies.size() < given_) return out;
+  if (set_.bodies.empty() || set_.bodies.size() < given_) return out;
   geom::ConvexSet all;
   for (const geom::Mesh& mesh : meshes) {
     all.bodies.push_back({"", mesh});
     out.to_solid = out.to_solid && closed(mesh);
   }
-  out.claim = verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
+  out.of_surface = !all_convex();
+  DistanceClaimOptions options;
+  options.to_solid = out.to_solid;
+  out.claim = out.of_surface ? verify_distance(sum_, sum_of(all), bound, options)
+                             : verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
   return out;
 }
 

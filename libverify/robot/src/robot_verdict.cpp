@@ -368,14 +368,17 @@ class RobotJudge {
         naming(path, [&] { return holders.distance(meshes, scaled.bound, q_.limits); });
     out.answer = answer_of(found, scaled);
     if (!found.claim) {
-      out.text = "distances are decided of convex bodies only, and not all are";
+      out.text = "distances are decided of closed meshes only, and not all are";
       return out;
     }
     const DistanceClaim& claim = *found.claim;
     out.distance = claim;
+    out.of_surface = found.of_surface;
     if (out.answer == Answer::Refuted && !has_solid) out.answer = Answer::Undecided;
     out.text = out.answer == Answer::Verified
-                   ? "nowhere more than " + number_text(scaled.bound) + " from the solid"
+                   ? (found.of_surface ? "its surface is nowhere more than "
+                                       : std::string("nowhere more than ")) +
+                         number_text(scaled.bound) + " from the solid"
                    : "at least " + number_text(claim.largest) + " from the solid at " +
                          text_of(claim.at) + ", claimed " + number_text(scaled.bound);
     out.text += ", in the mesh's own unit";
@@ -387,11 +390,13 @@ class RobotJudge {
 
   [[nodiscard]] std::string sentence_of(const LinkVerdict& link) const {
     std::size_t meshes = 0, others = 0, bodies = 0, sheets = 0, distances = 0, bad = 0;
+    bool of_surface = false;
     std::vector<const MeshFile*> holders;
     const ShapeVerdict* worst = nullptr;
     for (const ShapeVerdict& s : link.shapes) {
       if (s.bound) {
         ++distances;
+        of_surface = of_surface || s.of_surface;
       } else if (s.shape != Geometry::Shape::Mesh) {
         ++others;
       } else {
@@ -415,7 +420,9 @@ class RobotJudge {
                                " of sheets, which were dropped: "
                          : "every triangle is inside: ";
       out += counted(meshes, "mesh", "meshes") + " in " + counted(bodies, "body", "bodies");
-      if (distances > 0) out += ", nowhere farther from it than asked";
+      if (distances > 0)
+        out += std::string(of_surface ? ", whose surface is" : ",") +
+               " nowhere farther from it than asked";
     }
     if (others > 0)
       out += (out.empty() ? "" : "; ") + counted(others, "shape", "shapes") +

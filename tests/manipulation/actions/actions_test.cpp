@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
 
 #include "two_arms.h"
 
@@ -171,6 +172,26 @@ TEST_F(Actions, RefusalsNameWhatWasListed) {
   const Answer home = ask(all_, "move", {"left", "home"}, words);
   EXPECT_EQ(home.kind, Answer::Kind::Value) << home.reason;
   EXPECT_TRUE(home.fixed && !home.chosen);
+}
+
+TEST_F(Actions, AnswersSayAmongHowManyGraspsTheyChose) {
+  Words words = {{"conf(left)", "home"},
+                 {"conf(right)", "home"},
+                 {"pose(socket)", "start"},
+                 {"pose(wall)", "start"},
+                 {"pose(block)", "start"}};
+  for (unsigned choice = 0; choice <= 5; ++choice) {
+    const Answer answer = ask(all_, "fetch", {"left", "block", "home"}, words, 6, choice);
+    ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+    EXPECT_EQ(answer.choices, 5U);
+    EXPECT_TRUE(answer.chosen);
+  }
+  // What cannot be put down says how it is held.
+  words = holding(0, 0, arms_.world.robots[0].home);
+  words["pose(socket)"] = "at 5 0 0.2 0 0 0 1";
+  const Answer put = ask(all_, "put", {"left", "block", "socket", "home"}, words, 2);
+  EXPECT_EQ(put.kind, Answer::Kind::NotFound);
+  EXPECT_NE(put.reason.find("block, held by its grasp 'top',"), std::string::npos) << put.reason;
 }
 
 TEST_F(Actions, LiftIsStraightUp) {

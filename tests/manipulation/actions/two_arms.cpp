@@ -157,11 +157,12 @@ std::optional<bool> WordState::truth(const std::string& predicate,
 
 plan::Answer ask(const plan::ExternalBindings& all, const std::string& function,
                  const std::vector<std::string>& arguments,
-                 const std::map<std::string, std::string>& words, unsigned attempts) {
+                 const std::map<std::string, std::string>& words, unsigned attempts,
+                 unsigned choice) {
   plan::Answer answer;
   for (unsigned attempt = 0; attempt < attempts; ++attempt) {
     WordState state(words);
-    answer = all.at(function)({arguments, state, 1000U + attempt, attempt});
+    answer = all.at(function)({arguments, state, 1000U + attempt, attempt, choice});
     if (answer.kind != plan::Answer::Kind::NotFound) break;
   }
   return answer;

@@ -55,7 +55,8 @@ class WordState final : public plan::StateView {
 /// A call; more attempts, as the planner makes them, until something is found.
 plan::Answer ask(const plan::ExternalBindings& all, const std::string& function,
                  const std::vector<std::string>& arguments,
-                 const std::map<std::string, std::string>& words, unsigned attempts = 6);
+                 const std::map<std::string, std::string>& words, unsigned attempts = 6,
+                 unsigned choice = 0);
 
 struct Motion {
   std::string robot;

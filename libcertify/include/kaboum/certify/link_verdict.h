@@ -34,6 +34,7 @@ struct LinkVerdict {
 };
 
 /// Verdicts of the links asked for that have shapes, in order.
+std::vector<LinkVerdict> verdicts(const CertifiedBodies& robot);
 std::vector<LinkVerdict> verdicts(const CertifiedRobot& robot);
 std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot);
 

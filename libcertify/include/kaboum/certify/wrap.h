@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace kaboum::certify {
 
@@ -27,6 +28,9 @@ struct WrapRequest {
   /// The surface that is meant is within this of the triangles (io::ReadResult::deviation), and is
   /// to be inside as well. [length]
   double clearance = 0;
+  /// Quads that are not plane (io::ReadResult::bent_quads): both ways of splitting them are to be
+  /// inside.
+  std::vector<std::uint32_t> quads = {};
   bool float32 = true;  ///< numbers of the wrap; else doubles
   std::function<void(const std::string& stage)> progress;
 };
@@ -66,7 +70,7 @@ using CertifiedWrap = Certified<geom::Mesh, WrapCertificate>;
 /// @throws Error{InvalidInput} when there is nothing to wrap, coordinates are too large, or the
 /// wrap
 ///   reaches farther than it may; Error{InvalidArgument} on lengths that are not positive;
-///   Error{LimitReached} when the lattice or deciding takes too much; Error{Internal} when
+///   Error{LimitReached} when carving or deciding takes too much; Error{Internal} when
 ///   libverify refutes it.
 CertifiedWrap certify_wrap(const geom::Mesh& input, const WrapRequest& request);
 

@@ -69,7 +69,10 @@ struct PreparationReport {
   /// the first found, and noted.
   std::optional<Vec3> hollow;
   std::size_t quads_split_anew = 0;  ///< along the other diagonal
-  std::vector<std::string> notes;    ///< the same in words, for who made the file
+  /// Which solid is meant is a guess: a hole's rim runs along a wall, or triangles of a part that
+  /// was open were turned to agree. Noted.
+  bool guessed = false;
+  std::vector<std::string> notes;  ///< the same in words, for who made the file
 };
 
 /// A mesh whose solid is defined, and how it came from the input.

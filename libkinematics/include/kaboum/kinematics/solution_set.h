@@ -31,8 +31,9 @@ struct SolutionSet {
   Solutions isolated;                    ///< whatever the limits, each in (−π, π]
   std::vector<SolutionFamily> families;  ///< those that have a configuration within the limits
   /// There is nothing else within the limits, whole turns apart, up to the accuracy of closed forms
-  /// (SolveOptions::bound). Families without a configuration within the limits were proved to have
-  /// none.
+  /// (SolveOptions::bound). Every configuration is one of `isolated` up to its `accuracy`, 1e-5 at
+  /// most, or one of a family up to what its ranges are exact to. Families without a configuration
+  /// within the limits were proved to have none.
   bool complete = true;
   std::string reason;  ///< why it is not complete
 };

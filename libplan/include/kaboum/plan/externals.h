@@ -35,6 +35,8 @@ struct Question {
   std::uint64_t seed = 0;  ///< of whatever is random: made of --seed, the function, the arguments
                            ///< and the attempt
   unsigned attempt = 0;    ///< 0, 1, ...: how often it was asked before; more samples are worth it
+  /// 0, 1, ...: of several things that might do, to prefer another one each time.
+  unsigned choice = 0;
 };
 
 struct Answer {
@@ -50,6 +52,9 @@ struct Answer {
   /// Of a value: it was chosen among several, or others were not looked for. Where a search with
   /// it fails, it is not proved that there is no plan.
   bool chosen = false;
+  /// Among how many things `Question::choice` decides which one is preferred; 0: there is nothing
+  /// to choose. Where the search fails it begins anew with other choices.
+  unsigned choices = 0;
   /// Of a value: there is this one or none, whatever the state; only the arguments decide it.
   bool fixed = false;
 

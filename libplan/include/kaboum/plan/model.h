@@ -167,6 +167,7 @@ struct ExternalContext {
   HandleTable& handles;
   std::uint64_t seed = 0;  ///< of the run
   unsigned attempt = 0;
+  unsigned choice = 0;
 };
 
 struct ExternalResult {
@@ -175,6 +176,7 @@ struct ExternalResult {
   std::string payload;
   std::string reason;
   bool chosen = false, fixed = false;  ///< as in Answer
+  unsigned choices = 0;
 };
 
 struct ExternalFunction {

@@ -47,6 +47,7 @@ struct Plan {
   Index root = kNone;
   std::uint64_t seed = 0;  ///< of its calls
   unsigned attempts = 0;   ///< the most that one of them took; 0: no function reads the state
+  unsigned choice = 0;     ///< Question::choice of its calls
 
   [[nodiscard]] bool operator==(const Plan& other) const;
 };

@@ -57,14 +57,17 @@ struct RunOptions {
 };
 
 struct RunSummary {
-  std::uint64_t states = 0;    ///< pairs of a node and a state of knowledge that were carried out
+  /// Pairs of a node and a state of knowledge that were carried out. States that differ in no value
+  /// of a term, and in no atom that is read from there on, are one, unless `unplanned` is called.
+  std::uint64_t states = 0;
   std::uint64_t ends = 0;      ///< distinct of those at an end of the plan
   std::uint64_t branches = 0;  ///< ways through the plan, each outcome by itself; at most 10^18
 };
 
 /// Carries out a plan as far as what is known goes: calls `step` for every node in every state that
-/// it is reached in, depth first. External functions are not called: what they returned is what the
-/// plan says (`check` decides whether that is so, and whether preconditions hold).
+/// it is reached in (RunSummary::states), depth first. External functions are not called: what they
+/// returned is what the plan says (`check` decides whether that is so, and whether preconditions
+/// hold).
 ///
 /// @throws Error{InvalidInput} for graphs with cycles, plans that do not say what their calls
 ///   returned, and outcomes that no case of the plan is for (unless `unplanned` is told of them);

@@ -28,6 +28,18 @@ struct SceneNotes {
 World parse_scene(std::string_view text, const std::string& name, const FileReader& read,
                   SceneNotes* notes = nullptr);
 
+/// A world as read from its scene file, and the files that it was read from.
+struct SceneFile {
+  World world;
+  std::string sha256;
+  std::vector<std::string> inputs;  ///< the scene first
+  std::vector<std::string> notes;   ///< things a user should know; one sentence each
+};
+
+/// Reads a scene file; those that it names are looked for from its folder.
+/// @throws as parse_scene.
+SceneFile read_scene(const std::string& path);
+
 /// A scene file as JSON: what it is, or what its YAML says (without comments).
 /// @throws Error{InvalidInput}, Error{NotBuilt} as parse_scene.
 std::string scene_as_json(std::string_view text, const std::string& name);

@@ -19,34 +19,33 @@ struct WrapOptions {
   double clearance = 0;
   /// The wrap's coordinates are float32 numbers; else any doubles.
   bool float32 = true;
-  std::size_t max_cells = std::size_t{1} << 31U;  ///< of the lattice
+  std::size_t max_points = std::size_t{1} << 22U;  ///< of the tetrahedra that are carved
   std::function<void(const std::string& stage)> progress;
 };
 
-/// A closed chain of triangles that encloses others.
+/// A closed surface that encloses triangles.
 struct Wrap {
-  /// Each edge is run through as often one way as the other. Every triangle of the input lies off
-  /// the mesh, and the mesh winds at least once round it: docs/algorithms/wrapping.md.
+  /// Closed, manifold and free of self-intersections, decided exactly. Every triangle of the input
+  /// lies off the mesh, and inside: docs/algorithms/wrapping.md.
   geom::Mesh mesh;
-  double cell = 0;                  ///< side of the lattice's cells [length]
-  std::size_t cells = 0;            ///< of the lattice
-  std::size_t first_triangles = 0;  ///< of the boundary of cells that the search began with
+  std::size_t points = 0;           ///< of the tetrahedra that were carved
+  std::size_t first_triangles = 0;  ///< of what was carved, with which the search began
 };
 
 /// An enclosing closed mesh of any triangles: open, crossing each other, wrongly oriented.
 ///
-/// Starts from the boundary of the cells of a lattice that cannot be reached from outside by a ball
-/// of diameter `seal`, and moves, splits and contracts it as near to the input as it may: each step
-/// adds tetrahedra to the chain of which none meets the input, so that the winding number round the
-/// input stays. docs/algorithms/wrapping.md has the proof. How far the wrap reaches is not promised
-/// by this function: measure it (geom::directed_distance).
+/// Carves Delaunay tetrahedra from outside, as far as a ball of diameter `seal` gets, and moves,
+/// splits and contracts their boundary as near to the input as it may: each step adds tetrahedra
+/// of which none meets the input, and new triangles that meet no others.
+/// docs/algorithms/wrapping.md has the proof. How far the wrap reaches is not promised by this
+/// function: measure it (geom::directed_distance).
 ///
 /// The result does not depend on the number of threads.
 ///
 /// @throws Error{InvalidInput} when the input has no triangles, numbers that are not finite, or
-///   coordinates too large for lattice and precision; Error{InvalidArgument} on lengths that are
-///   not positive, or a clearance too large for the offset; Error{LimitReached} when the lattice
-///   would have more than max_cells.
+///   coordinates too large for `seal` and the precision, or a size beyond 1e±40;
+///   Error{InvalidArgument} on lengths that are not positive, or a clearance too large for the
+///   offset; Error{LimitReached} when more than max_points are needed.
 Wrap wrap(const geom::Mesh& input, const WrapOptions& options);
 
 }  // namespace kaboum::wrap

@@ -21,8 +21,9 @@ struct HeldShape {
 
 /// How far what holds meshes is from them.
 struct HeldDistance {
-  std::optional<DistanceClaim> claim;  ///< none: not all of what holds is convex
+  std::optional<DistanceClaim> claim;  ///< none: not all of what is to hold is closed
   bool to_solid = true;                ///< else to the surface, as a mesh is open
+  bool of_surface = false;  ///< of what holds, as not all of it is convex: else of all its points
 };
 
 /// The meshes of a result that have one frame of a link, of which each, or several together, are to
@@ -55,7 +56,8 @@ class Holders {
     return verify_inclusion(mesh, sum_, limits);
   }
 
-  /// Whether no point of the holders is farther than `bound` from the solids of the meshes.
+  /// Whether no point of the holders is farther than `bound` from the solids of the meshes; where
+  /// they are not all convex, no point of their surfaces.
   /// @pre bound > 0 [length, as the meshes]
   [[nodiscard]] HeldDistance distance(const std::vector<geom::Mesh>& meshes, double bound,
                                       const InclusionOptions& limits = {}) const;

@@ -44,7 +44,8 @@ struct ScaledBound {
 /// @param scale     factors along the axes, above 0
 ScaledBound scaled_bound(const Length& epsilon, double diagonal, const geom::Vec3& scale);
 
-/// Undecided where not all that holds is convex, or an uneven scale may bring near what is too far.
+/// Undecided where not all that is to hold is closed, or an uneven scale may bring near what is too
+/// far.
 Answer answer_of(const HeldDistance& distance, const ScaledBound& bound);
 
 }  // namespace kaboum::verify

@@ -76,6 +76,7 @@ struct ShapeVerdict {
   std::optional<Claim> convex = {};            ///< of what holds it
   std::optional<DistanceClaim> distance = {};  ///< of the bodies; then `shape` means nothing
   std::optional<double> bound = {};            ///< of the distance
+  bool of_surface = false;                     ///< the distance: HeldDistance::of_surface
 };
 
 struct LinkVerdict {

@@ -1,0 +1,229 @@
+#pragma once
+
+#include <kaboum/base/length.h>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// Options of requests, each described once: command lines, keywords of Python, records in
+/// containers, keys of caches and the reference pages are made of these descriptions.
+namespace kaboum {
+
+/// Name, values, default and meaning of one option.
+struct OptionDescription {
+  enum class Kind {
+    Flag,    ///< stated or not
+    Count,   ///< an integer
+    Number,  ///< a finite number
+    Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "0.5%"
+    Choice,  ///< one of `choices`
+    Text,
+  };
+
+  std::string name;  ///< words in small letters, joined by hyphens: "max-bodies"
+  /// What it means, without a full stop at its end. "{max-bodies}" stands for another option's
+  /// name as the front end spells it.
+  std::string text;
+  std::string values = {};  ///< what stands for a value in usage: "SECONDS"; empty: by its kind
+  double low = -std::numeric_limits<double>::infinity();  ///< least count or number
+  double high = std::numeric_limits<double>::infinity();  ///< largest count or number
+  /// What holds where it is not stated, in words; empty: its default value, if it has one.
+  std::string otherwise = {};
+  /// Whether records state its default, too.
+  bool always_recorded = false;
+  /// Whether records leave it out, because they have a field of its own for it.
+  bool unrecorded = false;
+
+  // Set by its kind.
+  Kind kind = Kind::Text;
+  std::vector<std::string> choices = {};
+};
+
+/// What stands for a value of the option in usage: "N", "outer|inner"; empty for flags.
+std::string value_words(const OptionDescription& option);
+
+/// The range of a count or number: "1 to 100000", "at least 0"; empty without limits.
+std::string range_words(const OptionDescription& option);
+
+/// Its text with the names of other options as a front end spells them.
+/// @param spelled  of a name: "--max-bodies", "max_bodies"
+std::string meaning(const std::string& text,
+                    const std::function<std::string(const std::string&)>& spelled);
+
+/// Why a text is no value of the option ("must be ..."); empty where it is one.
+std::string flaw_of(const OptionDescription& option, const std::string& value);
+
+/// Texts of values: the fewest digits that read back as the same number.
+namespace option_text {
+std::string of(bool value);
+std::string of(std::size_t value);
+std::string of(double value);
+std::string of(const Length& value);
+std::string of(const std::string& value);
+
+/// @pre flaw_of finds nothing.
+void parse(const std::string& text, bool& value);
+void parse(const std::string& text, std::size_t& value);
+void parse(const std::string& text, double& value);
+void parse(const std::string& text, Length& value);
+void parse(const std::string& text, std::string& value);
+}  // namespace option_text
+
+/// An option of a Request: its description, and how its value is read and set, as text.
+template <class Request>
+struct Option : OptionDescription {
+  /// nullopt where nothing is stated.
+  std::function<std::optional<std::string>(const Request&)> value;
+  /// @pre flaw_of finds nothing.
+  std::function<void(Request&, const std::string&)> assign;
+};
+
+namespace option_detail {
+template <class T>
+struct Content {
+  using Type = T;
+  static constexpr bool optional = false;
+};
+template <class T>
+struct Content<std::optional<T>> {
+  using Type = T;
+  static constexpr bool optional = true;
+};
+
+template <class T>
+constexpr OptionDescription::Kind kind_of() {
+  using Kind = OptionDescription::Kind;
+  if constexpr (std::is_same_v<T, bool>)
+    return Kind::Flag;
+  else if constexpr (std::is_same_v<T, std::size_t>)
+    return Kind::Count;
+  else if constexpr (std::is_same_v<T, double>)
+    return Kind::Number;
+  else if constexpr (std::is_same_v<T, Length>)
+    return Kind::Length;
+  else
+    return Kind::Text;
+}
+}  // namespace option_detail
+
+/// An option whose value is a member of the request: a bool, size_t, double, Length or string, or
+/// an optional one.
+/// @param member  of a request, const or not: a reference to the value
+template <class Request, class Member>
+Option<Request> option(OptionDescription description, Member member) {
+  using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
+  using Content = option_detail::Content<Stored>;
+  description.kind = option_detail::kind_of<typename Content::Type>();
+  return {std::move(description),
+          [member](const Request& request) -> std::optional<std::string> {
+            const Stored& stored = member(request);
+            if constexpr (Content::optional) {
+              if (!stored) return std::nullopt;
+              return option_text::of(*stored);
+            } else {
+              return option_text::of(stored);
+            }
+          },
+          [member](Request& request, const std::string& text) {
+            typename Content::Type parsed{};
+            option_text::parse(text, parsed);
+            member(request) = std::move(parsed);
+          }};
+}
+
+/// An option whose value is one of several, each of which has a name.
+/// @param names  pairs of a name and its value
+template <class Request, class Member, class Names>
+Option<Request> choice(OptionDescription description, Member member, const Names& names) {
+  using Value = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
+  description.kind = OptionDescription::Kind::Choice;
+  std::vector<Value> values;
+  for (const auto& [name, value] : names) {
+    description.choices.emplace_back(name);
+    values.push_back(value);
+  }
+  return {description,
+          [member, values, words = description.choices](const Request& request) {
+            std::optional<std::string> out;
+            for (std::size_t i = 0; i < values.size(); ++i)
+              if (member(request) == values[i]) out = words[i];
+            return out;
+          },
+          [member, values, words = description.choices](Request& request, const std::string& text) {
+            for (std::size_t i = 0; i < values.size(); ++i)
+              if (text == words[i]) member(request) = values[i];
+          }};
+}
+
+/// Options of a part of a larger request.
+/// @param part  of the larger request, const or not: a reference to the part
+template <class Whole, class Part, class Member>
+std::vector<Option<Whole>> options_of_part(const std::vector<Option<Part>>& options, Member part) {
+  std::vector<Option<Whole>> out;
+  for (const Option<Part>& option : options)
+    out.push_back({option,
+                   [part, value = option.value](const Whole& whole) { return value(part(whole)); },
+                   [part, assign = option.assign](Whole& whole, const std::string& text) {
+                     assign(part(whole), text);
+                   }});
+  return out;
+}
+
+/// The default value of an option: that of a request nobody has touched.
+template <class Request>
+std::optional<std::string> default_of(const Option<Request>& option) {
+  static const Request plain{};
+  return option.value(plain);
+}
+
+/// The options of a request that are not as by default, in one line: the record of what a result
+/// was made with. "--epsilon 1% --drop-sheets"
+template <class Request>
+std::string record_of(const std::vector<Option<Request>>& options, const Request& request) {
+  std::string out;
+  for (const Option<Request>& option : options) {
+    const std::optional<std::string> value = option.value(request);
+    if (option.unrecorded || !value) continue;
+    if (!option.always_recorded && value == default_of(option)) continue;
+    out += (out.empty() ? "--" : " --") + option.name;
+    if (option.kind != OptionDescription::Kind::Flag) out += ' ' + *value;
+  }
+  return out;
+}
+
+namespace option_detail {
+/// The next word of a line, taken from it; empty at its end.
+std::string next_word(std::string_view& line);
+}  // namespace option_detail
+
+/// The value of one option in a record; nullopt where the record does not state it.
+std::optional<std::string> recorded(std::string_view record, std::string_view name);
+
+/// Sets what a record says.
+/// @return what of it is not understood: an unknown option, or one with a wrong value; empty: all
+///   is.
+template <class Request>
+std::string read_record(const std::vector<Option<Request>>& options, std::string_view record,
+                        Request& request) {
+  for (std::string word = option_detail::next_word(record); !word.empty();
+       word = option_detail::next_word(record)) {
+    const Option<Request>* found = nullptr;
+    for (const Option<Request>& option : options)
+      if (!option.unrecorded && word == "--" + option.name) found = &option;
+    if (found == nullptr) return word;
+    const bool flag = found->kind == OptionDescription::Kind::Flag;
+    const std::string value = flag ? "true" : option_detail::next_word(record);
+    if (!flaw_of(*found, value).empty())
+      return value.empty() ? word : word.append(" ").append(value);
+    found->assign(request, value);
+  }
+  return {};
+}
+
+}  // namespace kaboum

@@ -1,0 +1,169 @@
+// Options of requests: texts of their values, and what is wrong with one.
+
+#include <kaboum/base/number_text.h>
+#include <kaboum/base/option.h>
+#include <kaboum/base/parse_length.h>
+#include <kaboum/base/similar_name.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace kaboum {
+namespace {
+
+using Kind = OptionDescription::Kind;
+
+/// A whole text as a number; a plus sign may come first.
+template <class Number>
+std::optional<Number> parsed(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
+  return out;
+}
+
+/// "a, b or c"
+std::string alternatives(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return out;
+}
+
+std::string limits_flaw(const OptionDescription& option, const std::string& value, bool whole) {
+  const std::string range = range_words(option);
+  return std::string("must be ") + (whole ? "a whole number" : "a number") +
+         (range.empty()                    ? ""
+          : range.starts_with("at least ") ? ", " + range
+                                           : " from " + range) +
+         (whole ? "" : ", without a unit") + ", not " + value;
+}
+
+}  // namespace
+
+std::string value_words(const OptionDescription& option) {
+  if (!option.values.empty()) return option.values;
+  switch (option.kind) {
+    case Kind::Flag:
+      return {};
+    case Kind::Count:
+      return "N";
+    case Kind::Number:
+      return "X";
+    case Kind::Length:
+      return "LENGTH|P%";
+    case Kind::Choice:
+      return joined(option.choices, "|");
+    case Kind::Text:
+      break;
+  }
+  return "NAME";
+}
+
+std::string range_words(const OptionDescription& option) {
+  if (option.kind != Kind::Count && option.kind != Kind::Number) return {};
+  const auto digits = [&](double limit) {
+    return option.kind == Kind::Count ? std::to_string(static_cast<std::size_t>(limit))
+                                      : number_text(limit);
+  };
+  if (std::isinf(option.low)) return {};
+  if (std::isinf(option.high)) return "at least " + digits(option.low);
+  return digits(option.low) + " to " + digits(option.high);
+}
+
+std::string meaning(const std::string& text,
+                    const std::function<std::string(const std::string&)>& spelled) {
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', at)) {
+    const std::size_t close = text.find('}', open);
+    if (close == std::string::npos) break;
+    out += text.substr(at, open - at) + spelled(text.substr(open + 1, close - open - 1));
+    at = close + 1;
+  }
+  return out + text.substr(at);
+}
+
+std::string flaw_of(const OptionDescription& option, const std::string& value) {
+  switch (option.kind) {
+    case Kind::Flag:
+      return value == "true" || value == "false" ? "" : "must be true or false, not " + value;
+    case Kind::Count: {
+      const auto count = parsed<std::size_t>(value);
+      const bool sound = count && static_cast<double>(*count) >= option.low &&
+                         static_cast<double>(*count) <= option.high;
+      return sound ? "" : limits_flaw(option, value, true);
+    }
+    case Kind::Number: {
+      const auto number = parsed<double>(value);
+      const bool sound =
+          number && std::isfinite(*number) && *number >= option.low && *number <= option.high;
+      return sound ? "" : limits_flaw(option, value, false);
+    }
+    case Kind::Length:
+      return parse_length(value) ? ""
+                                 : "must be a positive number, or a percentage such as 0.5%, "
+                                   "without blanks or units, not " +
+                                       value;
+    case Kind::Choice:
+      return std::ranges::find(option.choices, value) != option.choices.end()
+                 ? ""
+                 : "must be " + alternatives(option.choices) + ", not " + value +
+                       did_you_mean(value, option.choices);
+    case Kind::Text:
+      break;
+  }
+  return {};
+}
+
+namespace option_text {
+
+std::string of(bool value) { return value ? "true" : "false"; }
+std::string of(std::size_t value) { return std::to_string(value); }
+std::string of(double value) { return Length{value}.text(); }
+std::string of(const Length& value) { return value.text(); }
+std::string of(const std::string& value) { return value; }
+
+void parse(const std::string& text, bool& value) { value = text == "true"; }
+void parse(const std::string& text, std::size_t& value) {
+  value = parsed<std::size_t>(text).value_or(0);
+}
+void parse(const std::string& text, double& value) { value = parsed<double>(text).value_or(0); }
+void parse(const std::string& text, Length& value) {
+  value = parse_length(text).value_or(Length{});
+}
+void parse(const std::string& text, std::string& value) { value = text; }
+
+}  // namespace option_text
+
+namespace option_detail {
+
+std::string next_word(std::string_view& line) {
+  const std::size_t begin = std::min(line.find_first_not_of(" \n"), line.size());
+  const std::size_t end = std::min(line.find_first_of(" \n", begin), line.size());
+  std::string word(line.substr(begin, end - begin));
+  line.remove_prefix(end);
+  return word;
+}
+
+}  // namespace option_detail
+
+std::optional<std::string> recorded(std::string_view record, std::string_view name) {
+  for (std::string word = option_detail::next_word(record); !word.empty();
+       word = option_detail::next_word(record))
+    if (word.starts_with("--") && std::string_view(word).substr(2) == name)
+      return option_detail::next_word(record);
+  return std::nullopt;
+}
+
+}  // namespace kaboum

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <kaboum/base/option.h>
+#include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/preparation_options.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What a user states of a set of convex bodies. A request follows from it.
+struct SetOptions {
+  SetRequest request;  ///< all but `preparation`, `wrap` and `hold_exact_faces`
+  PreparationOptions preparation;
+};
+
+/// The options of a set, in the order in which records state them.
+const std::vector<Option<SetOptions>>& set_options();
+
+/// The request that options come to.
+SetRequest request_of(const SetOptions& options);
+
+/// Options that come to a request; its source, and what no option states, apart.
+SetOptions options_of(const SetRequest& request);
+
+/// Why the options do not go together, with names as OptionDescription::text has them; empty where
+/// they do.
+/// @param stated  names of those that a user stated
+std::string contradiction(const SetOptions& options, const std::set<std::string>& stated);
+
+/// What a user states of the sets of a robot's links.
+struct RobotSetOptions {
+  SetOptions set;
+  bool visual = false;  ///< shapes for drawing, not those for collisions
+};
+
+/// The options of a robot's sets: those of a set, and geometry.
+const std::vector<Option<RobotSetOptions>>& robot_set_options();
+
+}  // namespace kaboum::certify

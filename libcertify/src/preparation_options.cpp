@@ -1,0 +1,100 @@
+// Options that say how triangles are given a solid.
+
+#include <kaboum/certify/preparation_options.h>
+
+namespace kaboum::certify {
+namespace {
+
+using Mode = PreparationOptions::Mode;
+
+std::vector<Option<PreparationOptions>> table(bool may_stay_open) {
+  using R = PreparationOptions;
+  std::vector<std::pair<std::string, geom::Holes>> holes{{"fill", geom::Holes::Fill},
+                                                         {"refuse", geom::Holes::Refuse}};
+  if (may_stay_open) holes.insert(holes.begin() + 1, {"keep", geom::Holes::Keep});
+  return {
+      option<R>(
+          {.name = "drop-sheets",
+           .text = "Drop back-to-back faces without volume, which are then not held"},
+          [](auto& r) -> auto& { return r.drop_sheets; }),
+      choice<R>(
+          {.name = "holes",
+           .text = std::string(
+                       "Holes of an open mesh. fill: they are closed with triangles, and the "
+                       "claims are about the solid so closed, and about every input triangle; ") +
+                   (may_stay_open ? "keep: its border stays where it is, nothing is enclosed, and "
+                                    "the exit code is 1 (with {direction} any, which claims "
+                                    "nothing, 0); "
+                                  : "") +
+                   "refuse: an error"},
+          [](auto& r) -> auto& { return r.holes; }, holes),
+      option<R>(
+          {.name = "keep-orientation",
+           .text = "Never turn inconsistent triangles or inside-out components"},
+          [](auto& r) -> auto& { return r.keep_orientation; }),
+      choice<R>(
+          {.name = "prepare",
+           .text =
+               std::string(
+                   "How the triangles are given a solid. auto: inconsistent triangles and "
+                   "parts that are inside out are turned, copies and walls dropped, holes "
+                   "filled, and a mesh that this does not do for is wrapped; strict: the same, "
+                   "but open meshes are refused; wrap: a closed mesh is made round all "
+                   "triangles, whatever they are like, and its solid counts; off: the file's "
+                   "own orientation, and open meshes ") +
+               (may_stay_open ? "stay open" : "are refused") +
+               ". Of STEP and IGES, auto is wrap for what encloses, so that the exact faces are "
+               "inside, too; else what is claimed is about the triangles that stand for them"},
+          [](auto& r) -> auto& { return r.mode; },
+          std::vector<std::pair<std::string, Mode>>{{"auto", Mode::Auto},
+                                                    {"strict", Mode::Strict},
+                                                    {"wrap", Mode::Wrap},
+                                                    {"off", Mode::Off}}),
+      option<R>(
+          {.name = "offset",
+           .text = "With {prepare} wrap: how far the wrap may be from the triangles where it "
+                   "can get near them; a length or a percentage of the diagonal",
+           .otherwise = "a quarter of epsilon, or 0.1%"},
+          [](auto& r) -> auto& { return r.offset; }),
+      option<R>(
+          {.name = "seal",
+           .text = "With {prepare} wrap: hollows behind gaps narrower than this are filled "
+                   "(those up to 2.5 times as wide may be); also the scale of the search, "
+                   "whose time and memory grow with its inverse",
+           .otherwise = "what epsilon allows, or 1%"},
+          [](auto& r) -> auto& { return r.seal; })};
+}
+
+}  // namespace
+
+geom::PrepareOptions PreparationOptions::preparing() const {
+  geom::PrepareOptions out{.drop_sheets = drop_sheets,
+                           .holes = mode == Mode::Strict ? geom::Holes::Refuse
+                                    : mode == Mode::Off  ? geom::Holes::Keep
+                                                         : holes,
+                           .keep_orientation = keep_orientation || mode == Mode::Off};
+  return out;
+}
+
+const std::vector<Option<PreparationOptions>>& preparation_options(bool may_stay_open) {
+  static const std::vector<Option<PreparationOptions>> open = table(true), closed = table(false);
+  return may_stay_open ? open : closed;
+}
+
+std::string contradiction(const PreparationOptions& options, const std::set<std::string>& stated) {
+  const auto first_of = [&](std::initializer_list<const char*> names) -> std::string {
+    for (const char* name : names)
+      if (stated.contains(name)) return name;
+    return {};
+  };
+  std::string other;
+  if (options.mode != Mode::Wrap) other = first_of({"offset", "seal"});
+  if (!other.empty()) return "{" + other + "} is for {prepare} wrap";
+  if (options.mode != Mode::Auto) other = first_of({"holes"});
+  if (other.empty() && options.mode == Mode::Wrap)
+    other = first_of({"drop-sheets", "keep-orientation"});
+  if (other.empty()) return {};
+  return "{prepare} states what {" + other + "} is about: give one of the two";
+}
+
+}  // namespace kaboum::certify

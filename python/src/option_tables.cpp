@@ -1,0 +1,20 @@
+// The tables of options, for the typed stub, the reference page and tests of both.
+
+#include <kaboum/certify/set_options.h>
+
+#include "request_options.h"
+
+namespace kaboum::python {
+
+void bind_option_tables(py::module_& module) {
+  module.def(
+      "_option_tables",
+      [] {
+        py::dict out;
+        out["decompose"] = table_of(keywords_of(certify::set_options()));
+        return out;
+      },
+      "By function, its options as the library describes them: a list of dicts.");
+}
+
+}  // namespace kaboum::python

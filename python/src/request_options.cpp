@@ -1,0 +1,215 @@
+// Options that a library describes, as keywords of Python.
+
+#include "request_options.h"
+
+#include <kaboum/base/similar_name.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+namespace kaboum::python {
+namespace {
+
+using Kind = OptionDescription::Kind;
+
+constexpr std::size_t kWidth = 96;  ///< of lines of docstrings
+
+bool is_number(const py::object& value) {
+  return PyNumber_Check(value.ptr()) != 0 && !PyBool_Check(value.ptr()) &&
+         PyComplex_Check(value.ptr()) == 0;
+}
+
+[[noreturn]] void refuse(const OptionDescription& option, const std::string& what,
+                         const py::object& value) {
+  throw Error(ErrorCode::InvalidArgument, with_underscores(option.name) + " must be " + what +
+                                              ", not " + py::repr(value).cast<std::string>());
+}
+
+/// Of Python's kind, in words.
+const char* type_words(Kind kind) {
+  switch (kind) {
+    case Kind::Flag:
+      return "bool";
+    case Kind::Count:
+      return "int";
+    case Kind::Number:
+      return "float";
+    case Kind::Length:
+      return "float or str";
+    case Kind::Choice:
+    case Kind::Text:
+      break;
+  }
+  return "str";
+}
+
+/// A default as Python writes it.
+std::string literal(const Keyword& keyword) {
+  if (!keyword.initial) return "None";
+  switch (keyword.option.kind) {
+    case Kind::Flag:
+      return *keyword.initial == "true" ? "True" : "False";
+    case Kind::Count:
+      return *keyword.initial;
+    case Kind::Number: {
+      double value = 0;
+      option_text::parse(*keyword.initial, value);
+      return py::repr(py::float_(value)).cast<std::string>();
+    }
+    default:
+      break;
+  }
+  return py::repr(py::str(*keyword.initial)).cast<std::string>();
+}
+
+/// `text` in lines after `indent` blanks.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::istringstream words(text);
+  std::string out, line(indent, ' '), word;
+  while (words >> word) {
+    if (line.size() + 1 + word.size() > kWidth && line.size() > indent) {
+      out += line + "\n";
+      line.assign(indent, ' ');
+    }
+    line += (line.size() > indent ? " " : "") + word;
+  }
+  return out + line + "\n";
+}
+
+std::string entry_of(const Keyword& keyword) {
+  const OptionDescription& o = keyword.option;
+  const auto spelled = [](const std::string& text) { return meaning(text, with_underscores); };
+  std::string text = spelled(o.text);
+  if (const std::string range = range_words(o); !range.empty()) text += " (" + range + ")";
+  text += '.';
+  if (!o.otherwise.empty()) text += " By default " + spelled(o.otherwise) + ".";
+  return with_underscores(o.name) + " : " + type_words(o.kind) +
+         (keyword.initial ? "" : ", optional") + "\n" + wrapped(text, 4);
+}
+
+constexpr const char* kRunEntries =
+    R"(no_cache : bool
+    Neither use nor store results of earlier runs ($KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else
+    ~/.cache/kaboum).
+threads : int
+    0: one per core. The result is the same for any number.
+progress : callable, optional
+    Called with what is being done; what it raises ends the work, as Ctrl-C does.
+)";
+
+}  // namespace
+
+std::string with_underscores(const std::string& name) {
+  std::string out = name;
+  std::replace(out.begin(), out.end(), '-', '_');
+  return out;
+}
+
+std::optional<std::string> text_of(const OptionDescription& option, const py::object& value) {
+  if (value.is_none()) return std::nullopt;
+  std::string text;
+  const bool is_text = py::isinstance<py::str>(value);
+  switch (option.kind) {
+    case Kind::Flag:
+      if (!py::isinstance<py::bool_>(value)) refuse(option, "True or False", value);
+      text = value.cast<bool>() ? "true" : "false";
+      break;
+    case Kind::Count:
+      if (PyBool_Check(value.ptr()) || PyIndex_Check(value.ptr()) == 0)
+        refuse(option, "an int", value);
+      text = py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
+      break;
+    case Kind::Number:
+      if (!is_number(value)) refuse(option, "a number", value);
+      text = option_text::of(value.cast<double>());
+      break;
+    case Kind::Length:
+      if (!is_text && !is_number(value))
+        refuse(option, "a positive number, or a percentage of the diagonal such as '0.5%'", value);
+      text = is_text ? value.cast<std::string>() : option_text::of(value.cast<double>());
+      break;
+    case Kind::Choice:
+    case Kind::Text:
+      if (!is_text) refuse(option, "a str", value);
+      text = value.cast<std::string>();
+      break;
+  }
+  if (const std::string flaw = flaw_of(option, text); !flaw.empty())
+    throw Error(ErrorCode::InvalidArgument, with_underscores(option.name) + " " + flaw);
+  return text;
+}
+
+RunKeywords take_run_keywords(py::dict& keywords) {
+  RunKeywords out;
+  const auto take = [&](const char* name) -> py::object {
+    return keywords.attr("pop")(name, py::none());
+  };
+  const auto wrong = [](const char* name, const char* type) {
+    return py::type_error(std::string(name) + " must be " + type);
+  };
+  if (const py::object value = take("no_cache"); !value.is_none()) {
+    if (!py::isinstance<py::bool_>(value)) throw wrong("no_cache", "True or False");
+    out.no_cache = value.cast<bool>();
+  }
+  if (const py::object value = take("threads"); !value.is_none()) {
+    if (PyIndex_Check(value.ptr()) == 0) throw wrong("threads", "an int");
+    out.threads = value.cast<int>();
+  }
+  out.progress = take("progress");
+  return out;
+}
+
+void require_all_taken(const char* function, const py::dict& keywords,
+                       const std::vector<Keyword>& known) {
+  if (keywords.empty()) return;
+  const std::string first = py::str(keywords.attr("__iter__")().attr("__next__")());
+  std::vector<std::string> names{"no_cache", "threads", "progress"};
+  for (const Keyword& keyword : known) names.push_back(with_underscores(keyword.option.name));
+  throw py::type_error(std::string(function) + "() got an unexpected keyword argument '" + first +
+                       "'" + did_you_mean(first, names));
+}
+
+void require_none(const std::string& contradiction) {
+  if (!contradiction.empty())
+    throw Error(ErrorCode::InvalidArgument, meaning(contradiction, with_underscores));
+}
+
+std::string document(const std::string& function, const std::string& positional,
+                     const std::vector<Keyword>& keywords, const std::string& result,
+                     const std::string& text) {
+  std::string signature = function + "(" + positional + ", *";
+  std::string entries;
+  for (const Keyword& keyword : keywords) {
+    signature += ", " + with_underscores(keyword.option.name) + ": object = " + literal(keyword);
+    entries += entry_of(keyword);
+  }
+  signature +=
+      ", no_cache: bool = False, threads: int = 0, progress: object = None) -> " + result + "\n\n";
+  entries += kRunEntries;
+  const std::string place = "{keywords}\n";
+  const std::size_t at = text.find(place);
+  return signature + text.substr(0, at) + entries +
+         (at == std::string::npos ? "" : text.substr(at + place.size()));
+}
+
+py::list table_of(const std::vector<Keyword>& keywords) {
+  py::list out;
+  for (const Keyword& keyword : keywords) {
+    const OptionDescription& o = keyword.option;
+    py::dict entry;
+    entry["name"] = o.name;
+    entry["keyword"] = with_underscores(o.name);
+    entry["type"] = type_words(o.kind);
+    entry["choices"] = py::cast(o.values.empty() ? o.choices : std::vector<std::string>());
+    entry["values"] = value_words(o);
+    entry["range"] = range_words(o);
+    entry["default"] = literal(keyword);
+    entry["otherwise"] = meaning(o.otherwise, [](const std::string& n) { return "`" + n + "`"; });
+    entry["text"] = meaning(o.text, [](const std::string& n) { return "`" + n + "`"; });
+    out.append(entry);
+  }
+  return out;
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/option.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bindings.h"
+
+/// Options that a library describes, as keywords of Python.
+namespace kaboum::python {
+
+/// What every call that may take long is given besides.
+struct RunKeywords {
+  bool no_cache = false;
+  int threads = 0;
+  py::object progress = py::none();
+};
+
+/// A description and its default value.
+struct Keyword {
+  OptionDescription option;
+  std::optional<std::string> initial;
+};
+
+template <class Request>
+std::vector<Keyword> keywords_of(const std::vector<Option<Request>>& options) {
+  std::vector<Keyword> out;
+  for (const Option<Request>& option : options) out.push_back({option, default_of(option)});
+  return out;
+}
+
+/// "max_bodies" of "max-bodies".
+std::string with_underscores(const std::string& name);
+
+/// The value of a keyword as text; nullopt for None.
+/// @throws Error{InvalidArgument} naming the keyword: a value of another type, or a wrong one
+std::optional<std::string> text_of(const OptionDescription& option, const py::object& value);
+
+/// Takes no_cache, threads and progress out of keywords.
+/// @throws py::type_error on other types
+RunKeywords take_run_keywords(py::dict& keywords);
+
+/// @throws py::type_error naming a keyword that nothing took, and one like it
+void require_all_taken(const char* function, const py::dict& keywords,
+                       const std::vector<Keyword>& known);
+
+/// @param contradiction  why options do not go together; empty: they do
+/// @throws Error{InvalidArgument}
+void require_none(const std::string& contradiction);
+
+/// Takes a request's options out of keywords.
+/// @return the names of those that are stated
+/// @throws Error{InvalidArgument} as text_of
+template <class Request>
+std::set<std::string> take_options(const std::vector<Option<Request>>& options, py::dict& keywords,
+                                   Request& request) {
+  std::set<std::string> stated;
+  for (const Option<Request>& option : options) {
+    const py::str name(with_underscores(option.name));
+    if (!keywords.contains(name)) continue;
+    if (const auto text = text_of(option, keywords[name])) {
+      option.assign(request, *text);
+      // As by default: nothing is stated.
+      if (text != default_of(option)) stated.insert(option.name);
+    }
+    keywords.attr("pop")(name);
+  }
+  return stated;
+}
+
+/// A docstring: the signature in its first line, the text, and a section for the keywords in the
+/// place of "{keywords}".
+/// @param positional  parameters before the keywords: "mesh: object"
+/// @param result      the type of what is returned
+std::string document(const std::string& function, const std::string& positional,
+                     const std::vector<Keyword>& keywords, const std::string& result,
+                     const std::string& text);
+
+/// The table of a function's keywords, for stub and reference: a list of dicts.
+py::list table_of(const std::vector<Keyword>& keywords);
+
+}  // namespace kaboum::python

@@ -1,0 +1,397 @@
+// Worlds: kaboum.World, as kaboum-check and kaboum-move.
+
+#include <kaboum/base/similar_name.h>
+#include <kaboum/motion/find_path.h>
+#include <kaboum/world/scene.h>
+#include <pybind11/numpy.h>
+
+#include <cmath>
+#include <memory>
+
+#include "arguments.h"
+#include "mesh.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A scene and its checker, which refers to it. It never changes.
+struct WorldValue {
+  std::shared_ptr<const world::SceneFile> scene;
+  std::shared_ptr<const world::Checker> checker;
+
+  [[nodiscard]] const world::World& world() const { return scene->world; }
+};
+
+/// Things in contact in one state.
+struct ContactList {
+  WorldValue in;
+  std::vector<world::Contact> contacts;
+};
+
+struct MotionValue {
+  WorldValue in;
+  world::MotionAnswer answer;
+};
+
+struct PathValue {
+  WorldValue in;
+  motion::PathAnswer answer;
+};
+
+std::size_t robot_index(const world::World& world, const std::optional<std::string>& name) {
+  std::vector<std::string> names;
+  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
+  if (!name) {
+    if (names.size() == 1) return 0;
+    throw Error(ErrorCode::InvalidArgument,
+                names.empty() ? "the scene has no robot"
+                              : "the scene has several robots: robot must name one");
+  }
+  if (const auto robot = world.find_robot(*name)) return *robot;
+  throw Error(ErrorCode::InvalidArgument,
+              "robot: the scene has no robot '" + *name + "'" + did_you_mean(*name, names));
+}
+
+/// n x k values, a row for each configuration; one configuration may be given without its row.
+/// @throws Error{InvalidArgument} naming the argument: another shape, values that are not finite
+robot::Path rows_of(const Rows& values, std::size_t variables, const char* name, bool& one) {
+  one = values.ndim() == 1;
+  if ((values.ndim() != 1 && values.ndim() != 2) ||
+      static_cast<std::size_t>(values.shape(values.ndim() - 1)) != variables)
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(name) + " must be " + std::to_string(variables) +
+                    " values, one for each variable, or rows of so many");
+  const auto count = one ? std::size_t{1} : static_cast<std::size_t>(values.shape(0));
+  robot::Path out(count, std::vector<double>(variables));
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < variables; ++k) {
+      out[i][k] = values.data()[i * variables + k];
+      if (!std::isfinite(out[i][k]))
+        throw Error(ErrorCode::InvalidArgument,
+                    std::string(name) + " has a value that is not finite");
+    }
+  return out;
+}
+
+py::array_t<double> rows_array(const robot::Path& path) {
+  const std::size_t columns = path.empty() ? 0 : path.front().size();
+  py::array_t<double> out({path.size(), columns});
+  for (std::size_t i = 0; i < path.size(); ++i)
+    for (std::size_t k = 0; k < columns; ++k) out.mutable_at(i, k) = path[i][k];
+  return out;
+}
+
+py::dict dict_of(const world::World& world, const world::Contact& contact) {
+  py::dict out;
+  out["pair"] = py::make_tuple(world.name_of(contact.items[0]), world.name_of(contact.items[1]));
+  out["certain"] = contact.certain;
+  out["epsilon"] = contact.epsilon;
+  out["place"] = array_of(contact.place);
+  return out;
+}
+
+world::WorldState state_at(const WorldValue& in, std::size_t robot, const std::vector<double>& q) {
+  world::WorldState state = initial_state(in.world());
+  state.q[robot] = q;
+  return state;
+}
+
+WorldValue read_world(const py::object& path) {
+  const auto file = path_of(path);
+  if (!file) throw Error(ErrorCode::InvalidArgument, "path must be a str or an os.PathLike");
+  return run(0, [&] {
+    WorldValue out;
+    out.scene = std::make_shared<const world::SceneFile>(world::read_scene(*file));
+    out.checker = std::make_shared<const world::Checker>(out.scene->world);
+    return out;
+  });
+}
+
+std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
+                                     const robot::Path& rows, bool resting) {
+  return run(0, [&] {
+    world::Scratch scratch;
+    std::vector<ContactList> out;
+    for (const std::vector<double>& q : rows)
+      out.push_back({in, in.checker->find_contacts(state_at(in, robot, q), scratch, {resting})});
+    return out;
+  });
+}
+
+py::object check(const WorldValue& in, const Rows& q, const std::optional<std::string>& robot,
+                 bool resting) {
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  std::vector<ContactList> made = contacts_at(in, index, rows, resting);
+  if (one) return py::cast(std::move(made.front()));
+  return py::cast(std::move(made));
+}
+
+py::array_t<bool> are_free(const WorldValue& in, const Rows& q,
+                           const std::optional<std::string>& robot) {
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  const std::vector<char> free = run(0, [&] {
+    world::Scratch scratch;
+    std::vector<char> out;
+    for (const std::vector<double>& row : rows)
+      out.push_back(in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0);
+    return out;
+  });
+  py::array_t<bool> out(static_cast<py::ssize_t>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    out.mutable_at(static_cast<py::ssize_t>(i)) = free[i] != 0;
+  return out;
+}
+
+MotionValue check_motion(const WorldValue& in, const Rows& path,
+                         const std::optional<std::string>& robot, double resolution,
+                         std::size_t max_intervals) {
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
+  return run(0, [&] {
+    world::MotionOptions options;
+    options.resolution = resolution;
+    options.most_intervals = max_intervals;
+    return MotionValue{
+        in, world::check_motion(*in.checker, initial_state(in.world()), index, rows, options)};
+  });
+}
+
+PathValue find_path(const WorldValue& in, const Rows& start, const Rows& goals,
+                    const std::optional<std::string>& robot, std::uint64_t seed, double max_work,
+                    std::size_t max_nodes, int shortcuts, double resolution) {
+  const std::size_t index = robot_index(in.world(), robot);
+  const std::size_t variables = in.world().robots[index].kinematics.variables.size();
+  bool one = false;
+  const robot::Path from = rows_of(start, variables, "start", one);
+  if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
+  const robot::Path to = rows_of(goals, variables, "goals", one);
+  if (!(max_work > 0)) throw Error(ErrorCode::InvalidArgument, "max_work must be above 0");
+  if (shortcuts < 0) throw Error(ErrorCode::InvalidArgument, "shortcuts must be at least 0");
+  return run(0, [&] {
+    motion::PathOptions options;
+    options.seed = seed;
+    options.most_work = max_work;
+    options.most_nodes = max_nodes;
+    options.shortcuts = shortcuts;
+    options.check.resolution = resolution;
+    return PathValue{in, motion::find_path(*in.checker, initial_state(in.world()), index,
+                                           from.front(), to, options)};
+  });
+}
+
+const char* outcome_of(const world::MotionAnswer& answer) {
+  using Outcome = world::MotionAnswer::Outcome;
+  return answer.outcome == Outcome::Free      ? "free"
+         : answer.outcome == Outcome::Contact ? "contact"
+                                              : "undecided";
+}
+
+void bind_answers(py::module_& module) {
+  py::class_<ContactList>(module, "Contacts",
+                          "Pairs in contact at one configuration; true where there is none: the "
+                          "configuration is free, for certain.")
+      .def("__bool__", [](const ContactList& c) { return c.contacts.empty(); })
+      .def("__len__", [](const ContactList& c) { return c.contacts.size(); })
+      .def_property_readonly(
+          "pairs",
+          [](const ContactList& c) {
+            py::list out;
+            for (const world::Contact& contact : c.contacts)
+              out.append(dict_of(c.in.world(), contact));
+            return out;
+          },
+          "Dicts of 'pair', 'certain' (else they are within 'epsilon'), 'epsilon' and 'place'. "
+          "[length]")
+      .def("__repr__", [](const ContactList& c) {
+        return "<kaboum.Contacts: " +
+               (c.contacts.empty() ? std::string("free") : std::to_string(c.contacts.size())) + ">";
+      });
+  py::class_<MotionValue>(module, "MotionCheck",
+                          "Whether a motion is free; true if and only if it is, at every instant.")
+      .def("__bool__",
+           [](const MotionValue& m) {
+             return m.answer.outcome == world::MotionAnswer::Outcome::Free;
+           })
+      .def_property_readonly(
+          "outcome", [](const MotionValue& m) { return outcome_of(m.answer); },
+          "'free', 'contact' or 'undecided' (max_intervals was reached).")
+      .def_property_readonly(
+          "free_until",
+          [](const MotionValue& m) { return py::make_tuple(m.answer.segment, m.answer.share); },
+          "Where it stops being certainly free: a waypoint, counted from 0, and the share of the "
+          "way to the next.")
+      .def_property_readonly(
+          "contact",
+          [](const MotionValue& m) -> py::object {
+            if (!m.answer.contact) return py::none();
+            return dict_of(m.in.world(), *m.answer.contact);
+          },
+          "The first contact that was found, as in `Contacts.pairs`, or None.")
+      .def("__repr__", [](const MotionValue& m) {
+        return std::string("<kaboum.MotionCheck: ") + outcome_of(m.answer) + ">";
+      });
+  py::class_<PathValue>(module, "Path",
+                        "A path that is free at every instant, or why there is none; true where "
+                        "one was found.")
+      .def(
+          "__bool__",
+          [](const PathValue& p) { return p.answer.outcome == motion::PathAnswer::Outcome::Found; })
+      .def_property_readonly(
+          "outcome", [](const PathValue& p) { return motion::name_of(p.answer.outcome); },
+          "'found', or why there is none. Only 'found' says something of all paths.")
+      .def_property_readonly(
+          "waypoints", [](const PathValue& p) { return rows_array(p.answer.path); },
+          "n x k float64: a row for each waypoint, straight in joint space between.")
+      .def_property_readonly(
+          "goal",
+          [](const PathValue& p) -> py::object {
+            if (p.answer.outcome != motion::PathAnswer::Outcome::Found) return py::none();
+            return py::int_(p.answer.goal);
+          },
+          "Which goal it leads to, counted from 0.")
+      .def_property_readonly(
+          "straight", [](const PathValue& p) { return p.answer.straight; },
+          "Whether the straight line was free.")
+      .def_property_readonly(
+          "contact",
+          [](const PathValue& p) -> py::object {
+            if (!p.answer.contact) return py::none();
+            return dict_of(p.in.world(), *p.answer.contact);
+          },
+          "What start or goal touches, or None.")
+      .def_property_readonly(
+          "blockers",
+          [](const PathValue& p) {
+            py::list out;
+            for (const motion::Blocker& b : p.answer.blockers)
+              out.append(py::make_tuple(p.in.world().name_of(b.items[0]),
+                                        p.in.world().name_of(b.items[1]), b.times));
+            return out;
+          },
+          "What stood in the way most often: tuples of two names and a count.")
+      .def("__len__", [](const PathValue& p) { return p.answer.path.size(); })
+      .def("__repr__", [](const PathValue& p) {
+        return "<kaboum.Path: " + std::string(motion::name_of(p.answer.outcome)) + ">";
+      });
+}
+
+void bind_world(py::module_& module) {
+  py::class_<WorldValue>(
+      module, "World",
+      R"(Robots and objects of a scene by their bounding sets, as kaboum-check and kaboum-move read it.
+
+It never changes. Angles are in radians, lengths in the scene's unit.)")
+      .def(py::init(&read_world), py::arg("path"), "Reads a scene file (docs/scene.md).")
+      .def_property_readonly(
+          "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
+      .def_property_readonly(
+          "robots",
+          [](const WorldValue& w) {
+            std::vector<std::string> out;
+            for (const world::RobotModel& robot : w.world().robots) out.push_back(robot.name);
+            return out;
+          },
+          "Names.")
+      .def_property_readonly(
+          "objects",
+          [](const WorldValue& w) {
+            std::vector<std::string> out;
+            for (const world::Object& object : w.world().objects) out.push_back(object.name);
+            return out;
+          },
+          "Names.")
+      .def_property_readonly(
+          "notes", [](const WorldValue& w) { return w.scene->notes; },
+          "What a user should know of the scene.")
+      .def(
+          "variables",
+          [](const WorldValue& w, const std::optional<std::string>& robot) {
+            std::vector<std::string> out;
+            for (const robot::Variable& v :
+                 w.world().robots[robot_index(w.world(), robot)].kinematics.variables)
+              out.push_back(v.name);
+            return out;
+          },
+          py::arg("robot") = py::none(), "Names of what a configuration has values for.")
+      .def(
+          "home",
+          [](const WorldValue& w, const std::optional<std::string>& robot) {
+            const std::vector<double>& home = w.world().robots[robot_index(w.world(), robot)].home;
+            return py::array_t<double>(static_cast<py::ssize_t>(home.size()), home.data());
+          },
+          py::arg("robot") = py::none(), "The configuration that the scene gives a robot.")
+      .def("check", &check, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           py::arg("resting") = false,
+           R"(All contacts of the world with a robot at a configuration, the other robots at home.
+
+Parameters
+----------
+q : array
+    k values, or n x k: then a list is returned.
+robot : str, optional
+    Its name, where the scene has several.
+resting : bool
+    Look at pairs of objects that rest, too.)")
+      .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           "Of n x k values, n bools: whether each configuration is free, for certain.")
+      .def(
+          "check_motion", &check_motion, py::arg("path"), py::kw_only(),
+          py::arg("robot") = py::none(), py::arg("resolution") = 1e-5,
+          py::arg("max_intervals") = 1'000'000,
+          R"(Whether a robot may move along straight segments of joint values: at every instant, not at samples.
+
+Parameters
+----------
+path : array
+    n x k, a row for each waypoint.
+robot : str, optional
+resolution : float
+    What is not farther apart counts as contact. [length]
+max_intervals : int
+    Of time that are looked at.)")
+      .def("find_path", &find_path, py::arg("start"), py::arg("goals"), py::kw_only(),
+           py::arg("robot") = py::none(), py::arg("seed") = 1, py::arg("max_work") = 10.0,
+           py::arg("max_nodes") = 100'000, py::arg("shortcuts") = 60, py::arg("resolution") = 1e-5,
+           R"(A path from a configuration to one of several, certified free at every instant.
+
+Parameters
+----------
+start : array
+    k values.
+goals : array
+    k values, or n x k.
+robot : str, optional
+seed : int
+max_work : float
+    The search ends after so much work, counted, not measured: about seconds of one core.
+max_nodes : int
+    Of the search trees.
+shortcuts : int
+    That are tried to shorten a path.
+resolution : float
+    As of `check_motion`. [length])")
+      .def("__repr__", [](const WorldValue& w) {
+        return "<kaboum.World of " + std::to_string(w.world().robots.size()) + " robots and " +
+               std::to_string(w.world().objects.size()) + " objects>";
+      });
+}
+
+}  // namespace
+
+void bind_worlds(py::module_& module) {
+  bind_answers(module);
+  bind_world(module);
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,114 @@
+// Options described once: texts of their values, ranges, records.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/option.h>
+
+namespace kaboum {
+namespace {
+
+struct Part {
+  bool flag = false;
+};
+
+struct Request {
+  std::optional<Length> epsilon;
+  std::size_t count = 64;
+  std::optional<double> share;
+  enum class Way { Left, Right } way = Way::Left;
+  std::string name;
+  Part part;
+};
+
+std::vector<Option<Request>> options() {
+  std::vector<Option<Request>> out;
+  out.push_back(option<Request>(
+      {.name = "epsilon", .text = "Not with {max-count}"},
+      [](auto& r) -> auto& { return r.epsilon; }));
+  out.push_back(option<Request>(
+      {.name = "max-count", .text = "Most", .low = 8, .high = 100, .always_recorded = true},
+      [](auto& r) -> auto& { return r.count; }));
+  out.push_back(option<Request>(
+      {.name = "share", .text = "Share", .low = 0, .high = 1},
+      [](auto& r) -> auto& { return r.share; }));
+  out.push_back(choice<Request>(
+      {.name = "way", .text = "Way"}, [](auto& r) -> auto& { return r.way; },
+      std::vector<std::pair<std::string, Request::Way>>{{"left", Request::Way::Left},
+                                                        {"right", Request::Way::Right}}));
+  out.push_back(option<Request>(
+      {.name = "name", .text = "Name", .unrecorded = true},
+      [](auto& r) -> auto& { return r.name; }));
+  std::vector<Option<Part>> parts{option<Part>(
+      {.name = "flag", .text = "Flag"}, [](auto& p) -> auto& { return p.flag; })};
+  for (auto& o : options_of_part<Request>(
+           parts, [](auto& r) -> auto& { return r.part; }))
+    out.push_back(std::move(o));
+  return out;
+}
+
+const Option<Request>& named(const std::vector<Option<Request>>& all, const std::string& name) {
+  for (const Option<Request>& o : all)
+    if (o.name == name) return o;
+  throw std::out_of_range(name);
+}
+
+TEST(Options, AreWhatTheirMembersAre) {
+  const auto all = options();
+  EXPECT_EQ(value_words(named(all, "epsilon")), "LENGTH|P%");
+  EXPECT_EQ(value_words(named(all, "max-count")), "N");
+  EXPECT_EQ(value_words(named(all, "way")), "left|right");
+  EXPECT_EQ(value_words(named(all, "flag")), "");
+  EXPECT_EQ(range_words(named(all, "max-count")), "8 to 100");
+  EXPECT_EQ(default_of(named(all, "max-count")), "64");
+  EXPECT_EQ(default_of(named(all, "epsilon")), std::nullopt);
+  EXPECT_EQ(default_of(named(all, "way")), "left");
+  EXPECT_EQ(meaning(named(all, "epsilon").text, [](const std::string& n) { return "--" + n; }),
+            "Not with --max-count");
+}
+
+TEST(Options, RefuseWrongValues) {
+  const auto all = options();
+  for (const auto& [name, values] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"epsilon", {"", "0", "-1", "1 %", "1%%", "nan", "inf", "1e999", "x"}},
+           {"max-count", {"", "7", "101", "8.0", "-8", "8x", "1e2", "99999999999999999999999"}},
+           {"share", {"", "-0.1", "1.1", "nan", "inf", "0.5%"}},
+           {"way", {"", "Left", "up"}},
+           {"flag", {"", "yes", "1"}}})
+    for (const std::string& value : values)
+      EXPECT_NE(flaw_of(named(all, name), value), "") << name << " " << value;
+  EXPECT_NE(flaw_of(named(all, "way"), "rigth").find("did you mean 'right'"), std::string::npos);
+}
+
+TEST(Options, RecordsAreReadBack) {
+  const auto all = options();
+  EXPECT_EQ(record_of(all, Request{}), "--max-count 64");
+  Request given{.epsilon = Length{0.1, true},
+                .count = 8,
+                .share = 1.0 / 3,
+                .way = Request::Way::Right,
+                .name = "left out",
+                .part = {true}};
+  const std::string record = record_of(all, given);
+  EXPECT_EQ(record, "--epsilon 0.1% --max-count 8 --share 0.3333333333333333 --way right --flag");
+  Request back;
+  EXPECT_EQ(read_record(all, record, back), "");
+  EXPECT_EQ(back.epsilon, given.epsilon);
+  EXPECT_EQ(back.count, 8U);
+  EXPECT_EQ(back.share, given.share);
+  EXPECT_EQ(back.way, Request::Way::Right);
+  EXPECT_TRUE(back.part.flag);
+  EXPECT_EQ(back.name, "");
+}
+
+TEST(Options, RecordsThatAreNotUnderstoodAreNamed) {
+  const auto all = options();
+  Request r;
+  EXPECT_EQ(read_record(all, "--share 2", r), "--share 2");
+  EXPECT_EQ(read_record(all, "--share", r), "--share");
+  EXPECT_EQ(read_record(all, "--name x", r), "--name");
+  EXPECT_EQ(read_record(all, "--flag extra", r), "extra");
+  EXPECT_EQ(read_record(all, "share 1", r), "share");
+  EXPECT_EQ(read_record(all, "", r), "");
+}
+
+}  // namespace
+}  // namespace kaboum

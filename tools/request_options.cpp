@@ -1,0 +1,49 @@
+// Options that a library describes, on the command line.
+
+#include "request_options.h"
+
+#include <kaboum/base/error.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+namespace kaboum::tools {
+namespace {
+
+/// "Most bodies (1 to 100000) [64]"
+std::string text_of(const OptionDescription& option, const std::optional<std::string>& initial) {
+  std::string out = with_dashes(option.text);
+  const std::string range = range_words(option);
+  if (!range.empty()) out += " (" + range + ")";
+  if (!option.otherwise.empty())
+    out += " [" + with_dashes(option.otherwise) + "]";
+  else if (initial && !initial->empty() && option.kind != OptionDescription::Kind::Flag)
+    out += " [" + *initial + "]";
+  return out;
+}
+
+}  // namespace
+
+void add_request_option(CLI::App& app, const OptionDescription& option,
+                        const std::optional<std::string>& initial,
+                        std::function<void(const std::string&)> assign) {
+  const std::string name = "--" + option.name, text = text_of(option, initial);
+  if (option.kind == OptionDescription::Kind::Flag) {
+    app.add_flag_callback(
+        name, [assign = std::move(assign)] { assign("true"); }, text);
+    return;
+  }
+  app.add_option_function<std::string>(name, std::move(assign), text)
+      ->check([&option](const std::string& value) { return flaw_of(option, value); })
+      ->type_name(value_words(option));
+}
+
+std::string with_dashes(const std::string& text) {
+  return meaning(text, [](const std::string& name) { return "--" + name; });
+}
+
+void require_none(const std::string& contradiction) {
+  if (!contradiction.empty()) throw Error(ErrorCode::InvalidArgument, with_dashes(contradiction));
+}
+
+}  // namespace kaboum::tools
