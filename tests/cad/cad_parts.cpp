@@ -335,7 +335,7 @@ void write_tessellated(const std::string& name) {
 /// A closed spline round (30, 0, 0) in the plane y = 0, 5 in radius, with a spike at its least z
 /// that is 2 high; it starts at the angle `start`.
 Handle(Geom_BSplineCurve) spiked_ring(double start) {
-  constexpr double radius = 5, width = 0.1, at = 1.5 * M_PI, whole = 2 * M_PI;
+  constexpr double radius = 5, width = 0.02, at = 1.5 * M_PI, whole = 2 * M_PI;
   const double spike = std::fmod(at - start + whole, whole);
   std::vector<double> angles;  // of the poles, from the start
   for (int i = 0; i <= 40; ++i)
@@ -349,7 +349,7 @@ Handle(Geom_BSplineCurve) spiked_ring(double start) {
     const bool beside = i == 1 || i == count - 2;  // on the tangent where both ends meet
     const double a = beside || i == count - 1 ? start : start + angles[i];
     const double along = beside ? radius * (i == 1 ? step : -step) : 0;
-    const double r = angles[i] == spike ? 1.5 * radius : radius;
+    const double r = angles[i] == spike ? 3 * radius : radius;
     poles(i + 1) = gp_Pnt(30 + r * std::cos(a) - along * std::sin(a), 0,
                           r * std::sin(a) + along * std::cos(a));
   }
@@ -364,7 +364,7 @@ Handle(Geom_BSplineCurve) spiked_ring(double start) {
   return new Geom_BSplineCurve(poles, knots, times, degree);
 }
 
-/// Half of such a ring's lower side, turned by a half circle round the z-axis or moved along y. The
+/// Half of such a ring's lower side, turned by 0.1 rad round the z-axis or moved along y. The
 /// spline starts inside the face: at the angle 1.4 pi, or outside it, at 0.5 pi.
 TopoDS_Shape ring_sheet(bool turned, bool starts_inside) {
   const double start = starts_inside ? 1.4 * M_PI : 0.5 * M_PI;
@@ -383,14 +383,14 @@ TopoDS_Shape ring_sheet(bool turned, bool starts_inside) {
   }
   gp_Trsf by;
   if (turned)
-    by.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), M_PI);
+    by.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 0.1);
   else
     by.SetTranslation(gp_Vec(0, 20, 0));
   const auto other = Handle(Geom_Curve)::DownCast(border->Transformed(by));
   const auto side = [&](const gp_Pnt& p) -> TopoDS_Edge {
     if (!turned) return BRepBuilderAPI_MakeEdge(p, p.Transformed(by));
     const gp_Circ circle(gp_Ax2(gp_Pnt(0, 0, p.Z()), gp_Dir(0, 0, 1)), p.X());
-    return BRepBuilderAPI_MakeEdge(circle, 0, M_PI);
+    return BRepBuilderAPI_MakeEdge(circle, 0, 0.1);
   };
   BRepBuilderAPI_MakeWire wire;
   wire.Add(BRepBuilderAPI_MakeEdge(border).Edge());
