@@ -89,12 +89,15 @@ std::string contradiction(const PreparationOptions& options, const std::set<std:
   };
   std::string other;
   if (options.mode != Mode::Wrap) other = first_of({"offset", "seal"});
-  if (!other.empty()) return "{" + other + "} is for {prepare} wrap";
+  if (!other.empty()) return "{" + other + "} needs {prepare} wrap";
   if (options.mode != Mode::Auto) other = first_of({"holes"});
   if (other.empty() && options.mode == Mode::Wrap)
     other = first_of({"drop-sheets", "keep-orientation"});
   if (other.empty()) return {};
-  return "{prepare} states what {" + other + "} is about: give one of the two";
+  std::string mode;
+  for (const Option<PreparationOptions>& option : preparation_options(false))
+    if (option.name == "prepare") mode = option.value(options).value_or("");
+  return "{prepare} " + mode + " cannot be joined with {" + other + "}";
 }
 
 }  // namespace kaboum::certify

@@ -24,7 +24,7 @@ expect 3 'prepare wrap' "$P" open.off -o none.off --prepare strict
 expect 3 'prepare wrap' "$P" sheet.off -o none.off
 expect 3 '' "$P" crossing.off -o none.off --prepare strict
 expect 1 '' "$P" open.off -o kept.off --prepare off
-expect 2 'prepare auto' "$P" open.off -o none.off --seal 1%
+expect 2 'prepare wrap' "$P" open.off -o none.off --seal 1%
 expect 2 '' "$P" open.off -o none.off --prepare wrap --seal 0
 expect 2 '' "$P" open.off -o none.off --prepare other
 
@@ -108,7 +108,7 @@ expect 3 'the mesh is open' "$BIN/bcd-decompose" open.off -o none.glb --prepare 
 expect 3 '' "$BIN/bcd-decompose" open.off -o none.glb --prepare off --no-cache
 expect 2 'direction outer' "$BIN/bcd-decompose" closed.off -o none.glb --prepare wrap --direction inner
 expect 2 'prepare wrap' "$BIN/bcd-decompose" closed.off -o none.glb --prepare wrap --drop-sheets
-expect 2 'prepare auto' "$BIN/bcd-decompose" closed.off -o none.glb --seal 1%
+expect 2 'prepare wrap' "$BIN/bcd-decompose" closed.off -o none.glb --seal 1%
 # The other way round it must be refuted; so must a result that is too small.
 "$V" --outer w.stl crossing.off --raw >/dev/null 2>&1 && fail "two triangles hold their wrap"
 expect 0 '' "$P" closed.off -o w.off --prepare wrap --seal 4%

@@ -89,7 +89,7 @@ def test_inner_set(ring):
 
 def test_whatever_triangles_are_wrapped():
     soup = (np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.3, 1], [0.4, 0.2, 1]]), np.arange(6).reshape(2, 3))
-    with pytest.raises(kaboum.Error, match="prepare='wrap'"):
+    with pytest.raises(kaboum.Error, match="seal needs prepare wrap"):
         kaboum.decompose(soup, epsilon="10%", seal="4%")
     made = kaboum.decompose(soup, prepare="wrap", epsilon="10%", seal="4%", effort="fast", no_cache=True)
     assert 0 < made.report["wrap"]["farthest_upper"] < made.distance[1] <= 0.1 * made.report["wrap"]["diagonal"]

@@ -99,7 +99,7 @@ def test_every_front_end_has_every_option(function):
     ({"epsilon": -1}, "epsilon must be a positive number"),
     ({"effort": "fastt"}, "did you mean 'fast'"),
     ({"drop_sheets": 1}, "drop_sheets must be True or False"),
-    ({"seal": "1%"}, "seal is for prepare wrap"),
+    ({"seal": "1%"}, "seal needs prepare wrap"),
     ({"direction": "inner", "simplify": 0.25}, "simplify needs direction outer"),
 ])
 def test_wrong_values_are_named(given, says):
