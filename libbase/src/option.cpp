@@ -28,7 +28,7 @@ std::optional<Number> parsed(std::string_view text) {
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
   std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
+  for (const std::string& word : words) out.append(out.empty() ? "" : between).append(word);
   return out;
 }
 
@@ -88,7 +88,8 @@ std::string meaning(const std::string& text,
   for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', at)) {
     const std::size_t close = text.find('}', open);
     if (close == std::string::npos) break;
-    out += text.substr(at, open - at) + spelled(text.substr(open + 1, close - open - 1));
+    out.append(text, at, open - at);
+    out += spelled(text.substr(open + 1, close - open - 1));
     at = close + 1;
   }
   return out + text.substr(at);

@@ -247,8 +247,10 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
     if (options.preparation.mode == Mode::Wrap)
       return "{prepare} wrap: what lies in a wrap need not lie in the input; only {direction} "
              "outer";
+    const char* outer_only = nullptr;
     for (const char* name : {"max-total-vertices", "simplify", "improve-work"})
-      if (stated.contains(name)) return "{" + std::string(name) + "} needs {direction} outer";
+      if (outer_only == nullptr && stated.contains(name)) outer_only = name;
+    if (outer_only != nullptr) return "{" + std::string(outer_only) + "} needs {direction} outer";
     if (options.request.pre_step == bcd::PreStep::On)
       return "{pre-step} on needs {direction} outer";
   }
