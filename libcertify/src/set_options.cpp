@@ -135,6 +135,7 @@ std::vector<Option<R>> table() {
            preparation_options(false), [](auto& r) -> auto& { return r.preparation; }))
     out.push_back(std::move(o));
   std::vector<std::pair<std::string, std::string>> units;
+  units.reserve(kLengthUnits.size());
   for (const std::string& unit : kLengthUnits) units.emplace_back(unit, unit);
   out.push_back(choice<R>(
       {.name = "unit",

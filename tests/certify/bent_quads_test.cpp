@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cube whose top is a quad with one corner raised; `other`: that quad is two triangles along the
-/// other diagonal.
+/// A cube whose top is a quad with one corner raised, which readers split along its lower diagonal;
+/// `other`: two triangles along the higher one.
 std::string cube(bool other) {
   std::string text =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1.3\nv 0 1 1\n"
       "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-  return text + (other ? "f 5 6 8\nf 6 7 8\n" : "f 5 6 7 8\n");
+  return text + (other ? "f 5 6 7\nf 5 7 8\n" : "f 6 7 8 5\n");
 }
 
 io::ReadResult read(const std::string& text) {

@@ -33,7 +33,7 @@ TEST(SetOptions, RecordsKeepTheirWords) {
   r.preparation.holes = geom::Holes::Refuse;
   r.preparation.keep_orientation = true;
   EXPECT_EQ(r.parameters(),
-            "--epsilon 0.01 --max-bodies 3 --max-total-vertices 100 --min-thickness 0.0001 "
+            "--epsilon 0.01 --max-bodies 3 --max-total-vertices 100 --min-thickness 1e-04 "
             "--max-vertices-per-body 255 --effort best --simplify 0.25 --max-work 2.5 "
             "--improve-work 30 --method voxels --pre-step off --scale 0.001 --drop-sheets "
             "--holes refuse --keep-orientation");

@@ -166,6 +166,7 @@ Option<Request> choice(OptionDescription description, Member member, const Names
 template <class Whole, class Part, class Member>
 std::vector<Option<Whole>> options_of_part(const std::vector<Option<Part>>& options, Member part) {
   std::vector<Option<Whole>> out;
+  out.reserve(options.size());
   for (const Option<Part>& option : options)
     out.push_back({option,
                    [part, value = option.value](const Whole& whole) { return value(part(whole)); },
