@@ -5,7 +5,6 @@
 #include <kaboum/base/error.h>
 
 #include <CLI/CLI.hpp>
-#include <utility>
 
 namespace kaboum::tools {
 namespace {
@@ -26,14 +25,14 @@ std::string text_of(const OptionDescription& option, const std::optional<std::st
 
 void add_request_option(CLI::App& app, const OptionDescription& option,
                         const std::optional<std::string>& initial,
-                        std::function<void(const std::string&)> assign) {
+                        const std::function<void(const std::string&)>& assign) {
   const std::string name = "--" + option.name, text = text_of(option, initial);
   if (option.kind == OptionDescription::Kind::Flag) {
     app.add_flag_callback(
-        name, [assign = std::move(assign)] { assign("true"); }, text);
+        name, [assign] { assign("true"); }, text);
     return;
   }
-  app.add_option_function<std::string>(name, std::move(assign), text)
+  app.add_option_function<std::string>(name, assign, text)
       ->check([&option](const std::string& value) { return flaw_of(option, value); })
       ->type_name(value_words(option));
 }

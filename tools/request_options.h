@@ -19,7 +19,7 @@ namespace kaboum::tools {
 /// @param assign   is given the value, where the option is stated and the value is sound
 void add_request_option(CLI::App& app, const OptionDescription& option,
                         const std::optional<std::string>& initial,
-                        std::function<void(const std::string&)> assign);
+                        const std::function<void(const std::string&)>& assign);
 
 /// Adds all options of a request.
 /// @param stated  gets the names of those that are stated
