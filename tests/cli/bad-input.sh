@@ -35,7 +35,7 @@ expect 3 'holes fill' "$D" open.off -o x.off --vertices 4 --require-closed
 expect 3 'holes fill' "$D" open.off -o x.off --vertices 4 --holes refuse
 expect 3 'holes fill' "$BIN/bcd-decompose" open.off -o x.obj --holes refuse --no-cache
 expect 2 '' "$D" open.off -o x.off --vertices 4 --require-closed --holes keep
-expect 2 'fill,refuse' "$BIN/bcd-decompose" open.off -o x.obj --holes keep --no-cache
+expect 2 'fill or refuse' "$BIN/bcd-decompose" open.off -o x.obj --holes keep --no-cache
 # Möbius strip of five quads.
 awk 'BEGIN { n = 5; print "OFF"; print 2 * n, 2 * n, 0; pi = atan2(0, -1)
   for (i = 0; i < n; i++) for (s = -1; s <= 1; s += 2) { u = 2 * pi * i / n; r = 1 + 0.3 * s * cos(u / 2)

@@ -175,7 +175,7 @@ cat >inwards/r.urdf <<'END_OF_ROBOT'
 <joint name="j" type="prismatic"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>
 END_OF_ROBOT
 printf 'j\n0\n1\n' >inwards/path.csv
-shows 7 'solid claim: undecided: .*in.off: 1 part of it is inside out' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj
+shows 7 'solid claim: undecided: .*is inside out' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj
 expect 1 '' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj --prepare
 shows 0 'surface claim: verified' "$BIN/bound-verify" sweep inwards/r.urdf inwards/path.csv inwards/plates.obj --claims surface
 
