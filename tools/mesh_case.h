@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/geom/inside_out.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +17,9 @@ struct MeshCase {
   const VerifyMeshOptions& asked;
   MeshInput original;
   ApproximationInput approximation;
-  std::optional<InsideOut> inside_out;  ///< of the original, where it is judged as it is
-  double diagonal = 0;                  ///< of the original's box [length]
-  std::optional<double> bound;          ///< of distances [length]
+  std::optional<geom::InsideOut> inside_out;  ///< of the original, where it is judged as it is
+  double diagonal = 0;                        ///< of the original's box [length]
+  std::optional<double> bound;                ///< of distances [length]
   verify::MeshVerdict verdict;
 
   [[nodiscard]] bool inner() const { return asked.relation == verify::Relation::Inner; }

@@ -1,10 +1,6 @@
-// A mesh as the programs that simplify prepare it, and what of it is inside out otherwise.
+// A mesh as the programs that simplify prepare it.
 
 #include "prepared_original.h"
-
-#include <kaboum/base/error.h>
-
-#include "verdict.h"
 
 namespace kaboum::tools {
 
@@ -13,40 +9,6 @@ geom::Prepared prepare_original(const geom::Mesh& mesh, bool drop_sheets, bool f
   options.drop_sheets = drop_sheets;
   options.holes = fill ? geom::Holes::Fill : geom::Holes::Keep;
   return geom::prepare(mesh, options);
-}
-
-std::optional<InsideOut> find_inside_out(const geom::Mesh& mesh) {
-  try {
-    const geom::Prepared prepared = prepare_original(mesh, true, false);
-    InsideOut out;
-    if (prepared.report.inside_out.empty()) {
-      if (!prepared.report.hollow) return {};
-      out.hollow = prepared.report.hollow;
-      return out;
-    }
-    out.parts = prepared.report.reversed_components;
-    out.triangle = prepared.report.inside_out.front();
-    for (const std::uint32_t v : mesh.triangles[out.triangle]) out.at += mesh.vertices[v] / 3;
-    return out;
-  } catch (const Error& error) {
-    InsideOut out;
-    out.refusal = error.what();
-    return out;
-  }
-}
-
-std::string text_of(const InsideOut& found) {
-  if (!found.refusal.empty())
-    return "whether parts of it are inside out is not known, for it cannot be prepared (" +
-           found.refusal + "); such parts are not in the solid, and nothing is decided about them";
-  if (found.hollow)
-    return "what its surfaces enclose near " + point(*found.hollow) +
-           " counts as outside, although it need not be a cavity: nothing is decided about it";
-  return std::to_string(found.parts) + (found.parts == 1 ? " part of it is" : " parts of it are") +
-         " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
-         point(found.at) +
-         "): as the file is, what that encloses is not in the solid, and nothing is decided about "
-         "it; --prepare turns it and judges that solid";
 }
 
 }  // namespace kaboum::tools

@@ -23,11 +23,7 @@ geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, 
   io::ReadResult read = io::read_mesh(path);
   for (const std::string& note : read.notes) out.mesh_notes.add(path, note);
   out.cad = out.cad || io::is_cad(read.format);
-  if (!o.prepare) {
-    if (const auto found = find_inside_out(read.mesh); found && found->refusal.empty())
-      out.inside_out.push_back(path + ": " + text_of(*found));
-    return std::move(read.mesh);
-  }
+  if (!o.prepare) return std::move(read.mesh);
   try {
     const geom::Prepared prepared = prepare_original(read.mesh, o.drop_sheets, true);
     for (const std::string& note : prepared.report.notes) out.mesh_notes.add(path, note);

@@ -22,7 +22,6 @@ struct SweepShapes {
   std::vector<std::string> files;    ///< of the meshes
   std::vector<std::string> notes;
   Notes mesh_notes;
-  std::vector<std::string> inside_out;  ///< of meshes as they are: what of them encloses nothing
   DroppedSheets dropped;
   robot::BareLinks bare;
   std::size_t judged = 0, asked = 0;  ///< links

@@ -23,7 +23,7 @@ inline std::string number(double x) { return number_text(x); }
 /// "at least X and at most Y", as far as they are known.
 std::string in_words(const verify::Bracket& bracket);
 
-/// What a verdict says where triangles stand for exact faces, of which no point was looked at.
+/// End of a verdict where triangles stand for exact faces, of which no point was looked at.
 inline constexpr const char* kOfTriangles =
     "; of the triangles, which stand for exact faces: of these nothing is said (bound-verify mesh "
     "and cover look at points of them)";

@@ -38,7 +38,7 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
                                              ", enlarges the bodies; an inner set must have none");
   for (const std::string& note : run.original.notes) log(quiet, o.original + ": " + note);
   for (const std::string& note : run.approximation.notes) log(quiet, o.approximation + ": " + note);
-  if (!o.prepare) run.inside_out = find_inside_out(run.original.mesh);
+  if (!o.prepare) run.inside_out = geom::find_inside_out(run.original.mesh);
   if (run.inside_out) log(false, "warning: " + o.original + ": " + text_of(*run.inside_out));
   run.diagonal = diagonal_of(run.original.mesh);
   return run;

@@ -2,6 +2,7 @@
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/geom/inside_out.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/robot_file.h>
 
@@ -189,7 +190,7 @@ class RobotVerifier {
   }
 
   void note_on_unprepared(const verify::ShapeVerdict& shape) {
-    if (const auto found = find_inside_out(shape.file->mesh); found && found->refusal.empty())
+    if (const auto found = geom::find_inside_out(shape.file->mesh); found && found->refusal.empty())
       notes_.add(shape.file->path, text_of(*found));
     if (shape.answer == Answer::Verified) return;
     try {

@@ -52,11 +52,6 @@ void decide(SweepCase& run, Progress& progress) {
   options.solids = o.claims != "surface";
   options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
   run.claims = verify::verify_sweep(run.shapes.shapes, run.path, run.swept.set, options);
-  // What is oriented inwards encloses nothing as it is: that nothing of it is outside says nothing.
-  if (!run.shapes.inside_out.empty() && run.claims.solid.answer == Answer::Verified) {
-    run.claims.solid.answer = Answer::Undecided;
-    run.claims.solid.reason = run.shapes.inside_out.front();
-  }
   run.answer = answer_of(run.claims, claims_of(o.claims));
 }
 

@@ -1,6 +1,7 @@
 // Whether a set of convex bodies holds what moves: docs/algorithms/swept-volumes.md, "Checked from
 // files alone".
 #include <kaboum/base/error.h>
+#include <kaboum/geom/inside_out.h>
 #include <kaboum/verify/sweep.h>
 
 #include <algorithm>
@@ -492,6 +493,14 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
   }
 }
 
+/// Why the solid of a closed mesh need not be all that it encloses: a part of it is oriented
+/// inwards; empty: it is.
+std::string hollow_of(const geom::Mesh& mesh) {
+  const std::optional<geom::InsideOut> found = geom::find_inside_out(mesh);
+  if (found && found->refusal.empty()) return text_of(*found);
+  return found && is_inside_out(mesh) ? "it is inside out: its volume is negative" : "";
+}
+
 /// Of the insides of all shapes.
 void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
                  const geom::ConvexSet& set, const std::vector<SweptBody>& bodies,
@@ -514,10 +523,10 @@ void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
       claim = {};
       claim.answer = Answer::Undecided;
       claim.reason = "without the surface claim it is not looked at";
-    } else if (mesh && is_inside_out(shape.mesh)) {
+    } else if (const std::string why = mesh ? hollow_of(shape.mesh) : ""; !why.empty()) {
       claim = {};
       claim.answer = Answer::Undecided;
-      claim.reason = shape.name + " is inside out: nothing is known of what its surface encloses";
+      claim.reason = shape.name + ": " + why;
     } else if (mesh) {
       if (options.progress) options.progress(shape.name + ", its inside");
       claim = verify_inside(shape, path, set, bodies, options);

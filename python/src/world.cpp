@@ -5,6 +5,7 @@
 #include <kaboum/world/scene.h>
 #include <pybind11/numpy.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -14,8 +15,6 @@
 
 namespace kaboum::python {
 namespace {
-
-using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// A scene and its checker, which refers to it. It never changes.
 struct WorldValue {
@@ -56,23 +55,29 @@ std::size_t robot_index(const world::World& world, const std::optional<std::stri
 }
 
 /// n x k values, a row for each configuration; one configuration may be given without its row.
-/// @throws Error{InvalidArgument} naming the argument: another shape, values that are not finite
-robot::Path rows_of(const Rows& values, std::size_t variables, const char* name, bool& one) {
-  one = values.ndim() == 1;
-  if ((values.ndim() != 1 && values.ndim() != 2) ||
-      static_cast<std::size_t>(values.shape(values.ndim() - 1)) != variables)
+/// @throws Error{InvalidArgument} naming the argument: another shape, numbers that are no doubles
+/// or
+///   not finite
+robot::Path rows_of(const py::object& value, std::size_t variables, const char* name, bool& one) {
+  py::array given = py::array::ensure(value);
+  if (!given) PyErr_Clear();
+  one = given && given.ndim() == 1;
+  if (one) given = given.reshape({py::ssize_t{1}, given.shape(0)});
+  if (!given || given.ndim() != 2 || static_cast<std::size_t>(given.shape(1)) != variables)
     throw Error(ErrorCode::InvalidArgument,
                 std::string(name) + " must be " + std::to_string(variables) +
                     " values, one for each variable, or rows of so many");
-  const auto count = one ? std::size_t{1} : static_cast<std::size_t>(values.shape(0));
-  robot::Path out(count, std::vector<double>(variables));
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < variables; ++k) {
-      out[i][k] = values.data()[i * variables + k];
-      if (!std::isfinite(out[i][k]))
-        throw Error(ErrorCode::InvalidArgument,
-                    std::string(name) + " has a value that is not finite");
-    }
+  require_doubles(given, name);
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!array) throw py::error_already_set();
+  robot::Path out;
+  const double* q = array.data();
+  for (py::ssize_t i = 0; i < array.shape(0); ++i, q += variables) {
+    out.emplace_back(q, q + variables);
+    if (!std::ranges::all_of(out.back(), [](double x) { return std::isfinite(x); }))
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(name) + " has a value that is not finite");
+  }
   return out;
 }
 
@@ -121,7 +126,7 @@ std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
   });
 }
 
-py::object check(const WorldValue& in, const Rows& q, const std::optional<std::string>& robot,
+py::object check(const WorldValue& in, const py::object& q, const std::optional<std::string>& robot,
                  bool resting) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
@@ -132,7 +137,7 @@ py::object check(const WorldValue& in, const Rows& q, const std::optional<std::s
   return py::cast(std::move(made));
 }
 
-py::array_t<bool> are_free(const WorldValue& in, const Rows& q,
+py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
                            const std::optional<std::string>& robot) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
@@ -151,7 +156,7 @@ py::array_t<bool> are_free(const WorldValue& in, const Rows& q,
   return out;
 }
 
-MotionValue check_motion(const WorldValue& in, const Rows& path,
+MotionValue check_motion(const WorldValue& in, const py::object& path,
                          const std::optional<std::string>& robot, double resolution,
                          std::size_t max_intervals) {
   const std::size_t index = robot_index(in.world(), robot);
@@ -167,7 +172,7 @@ MotionValue check_motion(const WorldValue& in, const Rows& path,
   });
 }
 
-PathValue find_path(const WorldValue& in, const Rows& start, const Rows& goals,
+PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
                     const std::optional<std::string>& robot, std::uint64_t seed, double max_work,
                     std::size_t max_nodes, int shortcuts, double resolution) {
   const std::size_t index = robot_index(in.world(), robot);

@@ -134,6 +134,7 @@ def test_wrong_configurations_are_refused(cell):
     world = kaboum.World(cell)
     home = world.home()
     for call in (lambda: world.check(home[:-1]), lambda: world.check([[home]]), lambda: world.check(home * np.nan),
+                 lambda: world.check([2**53 + 1] * len(home)), lambda: world.check(["0"] * len(home)),
                  lambda: world.check(home, robot="another"), lambda: world.find_path([home, home], home),
                  lambda: world.find_path(home, home, max_work=0), lambda: world.check_motion([home], resolution=0)):
         with pytest.raises(kaboum.Error) as error:

@@ -1,9 +1,10 @@
 """Robots, sweeps and what the verifier says of them."""
 
+import numpy as np
 import pytest
 
 import kaboum
-from conftest import ARM
+from conftest import ARM, cube
 
 
 def test_robot(arm):
@@ -33,6 +34,28 @@ def test_sweep_holds_the_robot_at_every_instant(arm):
     assert kaboum.sweep(arm, path[:2], epsilon=0.02, verify=True).claim == "decided"
     stated = kaboum.sweep(arm, path, epsilon=0.02, implicit_margin=True)
     assert 0 < stated.margin <= 0.02 and stated.set.margin == stated.margin
+
+
+def test_parts_that_are_inside_out_are_not_called_held(tmp_path):
+    """A large cube and a small one whose normals point inwards: as it is, its inside is in no solid."""
+    vertices, faces = cube()
+    both = np.concatenate([3 * vertices, vertices + 10]), np.concatenate([faces, faces[:, ::-1] + 8])
+    kaboum.write(both, tmp_path / "part.off")
+    (tmp_path / "r.urdf").write_text(
+        '<robot name="r"><link name="base"><collision><geometry><mesh filename="part.off"/></geometry></collision></link>'
+        '<link name="tip"/><joint name="j" type="prismatic"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/>'
+        '<limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>')
+    plates = []
+    for axis in range(3):
+        for side in (0, 1):
+            size, low = np.full(3, 1.02), np.full(3, 9.99)
+            size[axis], low[axis] = 0.02, 10 + side - 0.01
+            plates.append((vertices * size + low, faces))
+    bodies = [(3.02 * vertices - 0.01, faces), *plates]
+    found = kaboum.verify_sweep(tmp_path / "r.urdf", [[0], [1]], bodies)
+    assert found.answer == "undecided" and found.claims["surface"]["answer"] == "verified"
+    assert "inside out" in found.claims["solid"]["reason"]
+    assert kaboum.verify_sweep(tmp_path / "r.urdf", [[0], [1]], bodies, prepare=True).answer == "refuted"
 
 
 def test_paths(arm, tmp_path):

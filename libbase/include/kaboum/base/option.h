@@ -27,17 +27,17 @@ struct OptionDescription {
   };
 
   std::string name;  ///< words in small letters, joined by hyphens: "max-bodies"
-  /// What it means, without a full stop at its end. "{max-bodies}" stands for another option's
-  /// name as the front end spells it.
+  /// Meaning, without a full stop at its end. "{max-bodies}" stands for another option's name as
+  /// the front end spells it.
   std::string text;
-  std::string values = {};  ///< what stands for a value in usage: "SECONDS"; empty: by its kind
+  std::string values = {};  ///< placeholder of a value in usage: "SECONDS"; empty: by its kind
   double low = -std::numeric_limits<double>::infinity();  ///< least count or number
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
-  /// What holds where it is not stated, in words; empty: its default value, if it has one.
+  /// Default in words; empty: that of the request, if it has one.
   std::string otherwise = {};
-  /// Whether records state its default, too.
+  /// Part of each record, its default too.
   bool always_recorded = false;
-  /// Whether records leave it out, because they have a field of its own for it.
+  /// Part of no record's line: containers have a field of its own for it.
   bool unrecorded = false;
 
   // Set by its kind.
@@ -45,18 +45,18 @@ struct OptionDescription {
   std::vector<std::string> choices = {};
 };
 
-/// What stands for a value of the option in usage: "N", "outer|inner"; empty for flags.
+/// Placeholder of a value of the option in usage: "N", "outer|inner"; empty for flags.
 std::string value_words(const OptionDescription& option);
 
 /// The range of a count or number: "1 to 100000", "at least 0"; empty without limits.
 std::string range_words(const OptionDescription& option);
 
-/// Its text with the names of other options as a front end spells them.
+/// Text of an option with the names of other ones as a front end spells them.
 /// @param spelled  of a name: "--max-bodies", "max_bodies"
 std::string meaning(const std::string& text,
                     const std::function<std::string(const std::string&)>& spelled);
 
-/// Why a text is no value of the option ("must be ..."); empty where it is one.
+/// Objection to a text as a value of the option ("must be ..."); empty where it is one.
 std::string flaw_of(const OptionDescription& option, const std::string& value);
 
 /// Texts of values: the fewest digits that read back as the same number.
