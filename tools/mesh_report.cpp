@@ -86,7 +86,7 @@ Json claims_of(const MeshCase& run) {
     }
   }
   if (const std::string why = why_no_points(run); !why.empty())
-    claims["exact_points"] = {{"answer", name_of(Answer::Undefined)}, {"reason", why}};
+    claims["exact_points"] = {{"answer", name_of(verify::Answer::Undefined)}, {"reason", why}};
   if (v.depth) {
     claims["depth"] = to_json(*v.depth);
     claims["depth"]["bound"] = *run.bound;

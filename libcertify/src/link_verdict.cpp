@@ -59,10 +59,9 @@ MeshOutcome outcome_of(const EnclosedLinkMesh& mesh) {
 
 /// @param held  what is said of a link that is held
 std::string sentence_of(const MeshOutcome& worst, const std::string& held, std::size_t sheets) {
-  const std::string but = sheets == 0
-                              ? held
-                              : "every triangle is inside but the " + std::to_string(sheets) +
-                                    " of sheets that were dropped on request";
+  std::string but = sheets == 0 ? held
+                                : "every triangle is inside but the " + std::to_string(sheets) +
+                                      " of sheets that were dropped on request";
   const std::string why = worst.why.empty() ? std::string() : ": " + worst.why;
   switch (worst.outcome) {
     case Outcome::Held:

@@ -313,6 +313,7 @@ class RobotJudge {
                                    const std::vector<const MeshFile*>& bodies,
                                    const geom::Vec3& scale) {
     std::vector<Holders::NamedMesh> named;
+    named.reserve(bodies.size());
     for (const MeshFile* file : bodies) named.push_back({file->path, &file->mesh});
     const Holders holders(named);
     for (const auto& [path, why] : holders.left_out()) note(path, why);
