@@ -17,8 +17,6 @@ namespace {
 using verify::Answer;
 
 void require_possible(const VerifyMeshOptions& o, const CommonOptions& common) {
-  if (o.approximation.empty())
-    throw Error(ErrorCode::InvalidArgument, "ORIGINAL and APPROXIMATION are required");
   require_apart({{"--report", common.report}, {"--witness", o.witness}},
                 {o.original, o.approximation});
   require_witness_format(o.witness);

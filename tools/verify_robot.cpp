@@ -280,8 +280,6 @@ class RobotVerifier {
 }  // namespace
 
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
-  if (options.result.empty())
-    throw Error(ErrorCode::InvalidArgument, "robots are compared two by two: ORIGINAL and RESULT, two URDFs");
   const ThreadLimit threads(common.threads);
   return RobotVerifier(options, common).run();
 }

@@ -21,7 +21,7 @@ shows 0 'contains that of the level before' "$V" progressive "$BRACKET" p.pm --r
 grep -q '"relation": "progressive"' p.json || fail "report"
 "$D" "$BRACKET" --direction inner --vertices 900,500 --effort fast --progressive i.pm --quiet || fail "decimation"
 shows 0 'contained in that of the level before' "$V" progressive "$BRACKET" i.pm
-expect 2 'joined with --epsilon' "$V" progressive "$BRACKET" p.pm --epsilon 1%
+expect 2 'unknown option --epsilon' "$V" progressive "$BRACKET" p.pm --epsilon 1%
 expect 3 'not a progressive file' "$V" progressive "$BRACKET" outer.log
 # Damaged files are refused by all that read them; that what is wrong in an undamaged one is refuted,
 # the tests of the library see.

@@ -222,8 +222,8 @@ expect 2 '' "$V" sweep "$R" path.csv a.glb x.off
 expect 2 '' "$V" sweep "$R" path.csv a.glb --epsilon 1
 expect 2 '' "$V" sweep "$R" path.csv a.glb --drop-sheets
 expect 2 '' "$V" sweep "$R" path.csv a.glb --claims solid
-expect 2 'sweep cannot be joined with --input-format' "$V" sweep "$R" path.csv a.glb --input-format stl
-expect 2 'sweep cannot be joined with --max-contacts' "$V" sweep "$R" path.csv a.glb --max-contacts 5
+expect 2 'unknown option --input-format' "$V" sweep "$R" path.csv a.glb --input-format stl
+expect 2 'unknown option --max-contacts' "$V" sweep "$R" path.csv a.glb --max-contacts 5
 expect 2 '' "$V" mesh --outer shapes/t.off shapes/t.off --links hand
 expect 2 'nothing' "$V" sweep "$R" path.csv a.glb --links nothing
 expect 4 'no-such' "$V" sweep "$R" path.csv a.glb --report no-such/v.json
