@@ -54,6 +54,8 @@ std::vector<std::string> lines_of(const std::string& file) {
   return lines;
 }
 
+constexpr const char* kJournals = ".kaboum-batch";  ///< folder of them, in that of a batch
+
 /// A file to work on, and what it is called.
 struct Found {
   std::string name;
@@ -65,16 +67,44 @@ bool is_input(const fs::path& path) {
   return extension == ".urdf" || io::format_from_name(extension).has_value();
 }
 
-void add_folder(const fs::path& folder, const fs::path& results, std::vector<Found>& found) {
+/// Whether a folder holds what a batch made, this one or another.
+bool is_of_batch(const fs::path& path) {
+  const fs::path name = path.filename();
+  std::error_code error;
+  return (name == "results" || name == "pictures" || name == kJournals) &&
+         fs::is_directory(path.parent_path() / kJournals, error);
+}
+
+void add_folder(const fs::path& folder, const JobOptions& options, std::vector<Found>& found) {
   std::error_code error;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
   if (error) throw Error(ErrorCode::InvalidInput, folder.string() + ": " + error.message());
   for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
     const fs::path& path = it->path();
-    if (it->is_directory(error) && fs::equivalent(path, results, error))
+    const bool directory = it->is_directory(error);
+    if (directory && fs::equivalent(path, options.results, error)) {
       it.disable_recursion_pending();
-    else if (it->is_regular_file(error) && is_input(path))
+    } else if (directory && is_of_batch(path)) {
+      it.disable_recursion_pending();
+      if (options.note && path.filename() == "results")
+        options.note(path.string() + ": left out, for these are results of a batch");
+    } else if (it->is_regular_file(error) && is_input(path)) {
       found.push_back({path.lexically_relative(folder).generic_string(), path});
+    }
+  }
+}
+
+/// @throws Error{InvalidArgument} when inputs lie where results are written.
+void require_no_results(const std::vector<Found>& found, const fs::path& batch) {
+  std::error_code error;
+  const fs::path results = fs::weakly_canonical(batch / "results", error);
+  for (const Found& f : found) {
+    const fs::path input = fs::weakly_canonical(f.path, error);
+    if (std::mismatch(results.begin(), results.end(), input.begin(), input.end()).first ==
+        results.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  f.path.string() + " lies in " + (batch / "results").string() +
+                      ", where this batch writes its results; give another --output");
   }
 }
 
@@ -99,12 +129,13 @@ std::vector<Found> find_inputs(const JobOptions& options) {
     const fs::path input(text);
     std::error_code error;
     if (fs::is_directory(input, error))
-      add_folder(input, options.results, found);
+      add_folder(input, options, found);
     else if (input.extension() == ".txt")
       add_list(input, found);
     else
       found.push_back({input.filename().string(), input});
   }
+  require_no_results(found, options.results);
   std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
   });
