@@ -119,9 +119,15 @@ void decide_the_rest(const MeshQuestion& q, const InclusionOptions& options, Mes
     out.solid_backwards = back.solid.answer != Answer::Verified;
     all.solid = back.solid;
   }
-  if (!q.subject->has_more) return;
   InclusionOptions surface = options;
   surface.surface_only = true;
+  if (q.subject->filled_triangles > 0 && all.surface.answer != Answer::Verified) {
+    const Inclusion own =
+        inclusion_of(q, without_filling(q.original, q.subject->filled_triangles), surface);
+    add(own);
+    all.surface = own.surface;
+  }
+  if (!q.subject->has_more) return;
   surface.max_work = options.max_work.value_or(
       usual_work(q.subject->triangles.triangles.size() + q.approximation.triangles.size()));
   const Inclusion more = inclusion_of(q, q.subject->triangles, surface);

@@ -29,6 +29,11 @@ void add_other_ways(const std::vector<std::uint32_t>& quads, geom::Mesh& mesh) {
 
 }  // namespace
 
+geom::Mesh without_filling(geom::Mesh mesh, std::size_t filled_triangles) {
+  mesh.triangles.resize(mesh.triangles.size() - filled_triangles);
+  return mesh;
+}
+
 geom::Mesh turned(geom::Mesh mesh) {
   for (geom::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;

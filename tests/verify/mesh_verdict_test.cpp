@@ -55,6 +55,28 @@ TEST(MeshVerdict, DepthsAreMeasuredWhereRefuted) {
   EXPECT_FALSE(verified.solid_depth || verified.surface_depth);
 }
 
+// Triangles that close a hole may reach out: they bound the solid, but are none of the file's.
+TEST(MeshVerdict, TrianglesThatCloseHolesNeedNotLieInside) {
+  verify::Subject subject;
+  subject.mesh = cube(0, 1);
+  const auto first = static_cast<std::uint32_t>(subject.mesh.vertices.size());
+  for (const Vec3& corner : {Vec3{0.5, 0.5, 0.5}, Vec3{0.6, 0.5, 0.5}, Vec3{0.5, 0.5, 5}})
+    subject.mesh.vertices.push_back(corner);
+  subject.mesh.triangles.push_back({first, first + 1, first + 2});
+  subject.mesh.triangles.push_back({first, first + 2, first + 1});
+  const auto decided_of = [&](const Mesh& result) {
+    return verify::decide({.original = subject.mesh,
+                           .approximation = result,
+                           .set = nullptr,
+                           .relation = Relation::Outer,
+                           .subject = &subject});
+  };
+  EXPECT_EQ(decided_of(cube(-1, 2)).answer, Answer::Refuted);
+  subject.filled_triangles = 2;
+  EXPECT_EQ(decided_of(cube(-1, 2)).answer, Answer::Verified);
+  EXPECT_EQ(decided_of(cube(0.25, 2)).answer, Answer::Refuted);
+}
+
 // Where preparing refuses the triangles, all of them are to be held, and all that they wind round.
 TEST(MeshVerdict, SubjectsThatCannotBePrepared) {
   Mesh file = verify::turned(cube(0, 1));

@@ -94,6 +94,7 @@ class Judgement {
     if (held.surface) out_.triangles = in.surface;
     if (held.solid) out_.solid = in.solid;
     measured_ = &subject_.mesh;
+    if (held.surface && subject_.filled_triangles > 0) look_past_filling();
     if (held.surface && subject_.has_more) look_at_file();
     if (!out_.triangles && !out_.solid) {
       out_.answer = Answer::Undefined;
@@ -118,6 +119,18 @@ class Judgement {
     in.left_out += back.inclusion->left_out;
     in.limited = in.limited || back.inclusion->limited;
     return out;
+  }
+
+  /// Triangles that close holes are none of the file's: they need not lie inside themselves.
+  void look_past_filling() {
+    if (out_.triangles->answer == Answer::Verified) return;
+    InclusionOptions options = q_.limits;
+    options.surface_only = true;
+    const Inclusion in =
+        holders_.inclusion_of(without_filling(subject_.mesh, subject_.filled_triangles), options);
+    out_.triangles = in.surface;
+    out_.left_out += in.left_out;
+    out_.limited = out_.limited || in.limited;
   }
 
   /// The file's triangles that preparing has left out lie inside as well.

@@ -18,6 +18,8 @@ struct Subject {
   bool has_more = false;
   geom::Mesh triangles;  ///< with has_more: those of the file and, of such quads, the other ways
   geom::PreparationReport report;  ///< where it was prepared
+  /// The last triangles of `mesh`, which close holes. They bound its solid, but none of them is in
+  /// the file: they need not lie inside themselves.
   std::size_t filled_triangles = 0;
   std::string refusal;  ///< why it could not be prepared; empty: it was
 };
@@ -37,6 +39,9 @@ struct MeasuredMesh {
 };
 
 MeasuredMesh measured_mesh(const Subject& subject, const geom::Mesh& file);
+
+/// The mesh without its last triangles, which close holes.
+geom::Mesh without_filling(geom::Mesh mesh, std::size_t filled_triangles);
 
 /// With all triangles the other way round.
 geom::Mesh turned(geom::Mesh mesh);
