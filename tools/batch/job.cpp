@@ -57,7 +57,7 @@ std::vector<std::string> lines_of(const std::string& file) {
 constexpr const char* kJournals = ".kaboum-batch";  ///< folder of them, in that of a batch
 
 /// A file to work on, and what it is called.
-struct Found {
+struct InputFile {
   std::string name;
   fs::path path;
 };
@@ -75,7 +75,7 @@ bool is_of_batch(const fs::path& path) {
          fs::is_directory(path.parent_path() / kJournals, error);
 }
 
-void add_folder(const fs::path& folder, const JobOptions& options, std::vector<Found>& found) {
+void add_folder(const fs::path& folder, const JobOptions& options, std::vector<InputFile>& found) {
   std::error_code error;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
   if (error) throw Error(ErrorCode::InvalidInput, folder.string() + ": " + error.message());
@@ -95,10 +95,10 @@ void add_folder(const fs::path& folder, const JobOptions& options, std::vector<F
 }
 
 /// @throws Error{InvalidArgument} when inputs lie where results are written.
-void require_no_results(const std::vector<Found>& found, const fs::path& batch) {
+void require_no_results(const std::vector<InputFile>& found, const fs::path& batch) {
   std::error_code error;
   const fs::path results = fs::weakly_canonical(batch / "results", error);
-  for (const Found& f : found) {
+  for (const InputFile& f : found) {
     const fs::path input = fs::weakly_canonical(f.path, error);
     if (std::mismatch(results.begin(), results.end(), input.begin(), input.end()).first ==
         results.end())
@@ -116,15 +116,15 @@ std::string name_of(const fs::path& path) {
   return name.generic_string();
 }
 
-void add_list(const fs::path& list, std::vector<Found>& found) {
+void add_list(const fs::path& list, std::vector<InputFile>& found) {
   for (const std::string& line : lines_of(list.string())) {
     if (line.empty() || line.starts_with('#')) continue;
     found.push_back({name_of(line), list.parent_path() / line});
   }
 }
 
-std::vector<Found> find_inputs(const JobOptions& options) {
-  std::vector<Found> found;
+std::vector<InputFile> find_inputs(const JobOptions& options) {
+  std::vector<InputFile> found;
   for (const std::string& text : options.inputs) {
     const fs::path input(text);
     std::error_code error;
@@ -136,7 +136,7 @@ std::vector<Found> find_inputs(const JobOptions& options) {
       found.push_back({input.filename().string(), input});
   }
   require_no_results(found, options.results);
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+  std::sort(found.begin(), found.end(), [](const InputFile& a, const InputFile& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
   });
   for (std::size_t i = 1; i < found.size(); ++i)
@@ -233,7 +233,7 @@ std::string Job::key() const {
 
 std::vector<Job> find_jobs(const JobOptions& options) {
   std::vector<Job> jobs;
-  for (const Found& found : find_inputs(options)) {
+  for (const InputFile& found : find_inputs(options)) {
     const auto rule = std::find_if(options.rules.begin(), options.rules.end(), [&](const Rule& r) {
       return fnmatch(r.pattern.c_str(), found.name.c_str(), 0) == 0;
     });
