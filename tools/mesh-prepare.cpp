@@ -1,5 +1,6 @@
 // Gives the triangles of a file a solid, or wraps them, and says what it changed where.
 #include <kaboum/base/error.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
@@ -93,10 +94,16 @@ void wrap(PrepareCase& run, bool doubles) {
   std::optional<double> farthest;
   if (!o.epsilon.empty())
     farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
+  if (farthest)
+    if (const std::string text = certify::warning_of(parse_length(o.epsilon),
+                                                     geom::bounding_box(run.input.mesh).diagonal());
+        !text.empty())
+      note(run, text);
   certify::WrapRequest request = o.preparation.request(farthest);
   request.clearance = run.input.deviation;
   request.quads = run.input.bent_quads;
   request.float32 = !doubles || all_float32(run.input.mesh);
+  request.may_be_double = doubles;
   certify::CertifiedWrap made;
   {
     Progress progress(o.common.quiet);

@@ -13,6 +13,9 @@ namespace kaboum::certify {
 /// @throws Error{InvalidInput} when the original would enclose nothing by itself.
 void require_extent(const geom::Prepared& original);
 
+/// @throws Error{InvalidInput} when all triangles are segments or points, exactly.
+void require_area(const geom::Mesh& mesh);
+
 /// Certifies candidates for one request, finest first. Whatever made them: with
 /// MeshRequest::decide no claim is made that libverify refutes.
 class MeshCertifier {
