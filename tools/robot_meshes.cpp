@@ -27,12 +27,19 @@ const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::Rob
 const verify::MeshFile& RobotMeshes::read(const std::string& path) {
   const auto at = files_.find(path);
   if (at != files_.end()) return at->second;
-  std::vector<char> bytes;
-  io::ReadResult read = io::read_mesh(path, {}, &bytes);
-  return files_
-      .emplace(path, verify::MeshFile{path, io::sha256(bytes), std::move(read.mesh),
-                                      std::move(read.notes)})
-      .first->second;
+  verify::MeshFile file{path, {}, {}};
+  try {
+    std::vector<char> bytes;
+    io::ReadResult read = io::read_mesh(path, {}, &bytes);
+    file.sha256 = io::sha256(bytes);
+    file.mesh = std::move(read.mesh);
+    file.notes = std::move(read.notes);
+  } catch (const Error& error) {
+    if (!verify::is_of_one_mesh(error)) throw;
+    file.sha256 = io::sha256(io::read_file(path));
+    file.error = error;
+  }
+  return files_.emplace(path, std::move(file)).first->second;
 }
 
 std::string RobotMeshes::record_of_other_kind(const robot::RobotFile& original, bool visual) const {

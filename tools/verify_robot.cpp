@@ -190,6 +190,7 @@ class RobotVerifier {
   }
 
   void note_on_unprepared(const verify::ShapeVerdict& shape) {
+    if (!shape.is_judged) return;
     if (const auto found = geom::find_inside_out(shape.file->mesh); found && found->refusal.empty())
       notes_.add(shape.file->path, text_of(*found));
     if (shape.answer == Answer::Verified) return;
@@ -279,8 +280,6 @@ class RobotVerifier {
 }  // namespace
 
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
-  if (options.result.empty())
-    throw Error(ErrorCode::InvalidArgument, "--robot takes ORIGINAL and APPROXIMATION, two URDFs");
   const ThreadLimit threads(common.threads);
   return RobotVerifier(options, common).run();
 }

@@ -16,6 +16,9 @@ void require_extent(const geom::Prepared& original);
 /// @throws Error{InvalidInput} when all triangles are segments or points, exactly.
 void require_area(const geom::Mesh& mesh);
 
+/// The options of the search; targets and callbacks apart.
+bmesh::DecimateOptions search_options(const MeshRequest& request, const MeshPlan& plan);
+
 /// Certifies candidates for one request, finest first. Whatever made them: with
 /// MeshRequest::decide no claim is made that libverify refutes.
 class MeshCertifier {

@@ -26,12 +26,19 @@ class Files {
     const std::string path = robot::find_only_mesh(mesh.mesh, robot.path, packages_).string();
     const auto at = files_.find(path);
     if (at != files_.end()) return at->second;
-    std::vector<char> bytes;
-    io::ReadResult read = io::read_mesh(path, {}, &bytes);
-    return files_
-        .emplace(path,
-                 verify::MeshFile{path, sha256(bytes), std::move(read.mesh), std::move(read.notes)})
-        .first->second;
+    verify::MeshFile file{path, {}, {}};
+    try {
+      std::vector<char> bytes;
+      io::ReadResult read = io::read_mesh(path, {}, &bytes);
+      file.sha256 = sha256(bytes);
+      file.mesh = std::move(read.mesh);
+      file.notes = std::move(read.notes);
+    } catch (const Error& error) {
+      if (!verify::is_of_one_mesh(error)) throw;
+      file.sha256 = sha256(io::read_file(path));
+      file.error = error;
+    }
+    return files_.emplace(path, std::move(file)).first->second;
   }
 
  private:

@@ -94,7 +94,7 @@ tetrahedron | sed 's/^1 0 0/9.5 0 0/' >pb/t.off
 touch -d @1 pa/t.off pb/t.off
 expect 0 '1 done; p-out' "$B" pa -o p-out --no-pictures
 expect 0 '1 done; p-out' "$B" pb -o p-out --no-pictures
-"$BIN/bound-verify" --outer pb/t.off p-out/results/t.ply --quiet || fail "the result of another input"
+"$BIN/bound-verify" mesh --outer pb/t.off p-out/results/t.ply --quiet || fail "the result of another input"
 expect 2 'depfile' "$B" back -o x --command bmesh-decimate --ratio 0.5 --depfile=x.d
 
 # A robot is done again when one of its meshes has changed.
