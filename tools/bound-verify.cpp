@@ -49,6 +49,7 @@ int verify_robot(const VerifyOptions& o) {
   robot.drop_sheets = o.drop_sheets;
   robot.max_contacts = o.max_contacts;
   robot.max_work = o.max_work;
+  robot.exact_points = o.exact_points;
   return tools::verify_robot(robot, o.common);
 }
 

@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/mesh_files.h>
+#include <kaboum/verify/exact_points.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -32,6 +33,9 @@ const verify::MeshFile& RobotMeshes::read(const std::string& path) {
     std::vector<char> bytes;
     io::ReadResult read = io::read_mesh(path, {}, &bytes);
     file.sha256 = io::sha256(bytes);
+    if (exact_points_ > 0 && io::is_cad(read.format))
+      file.exact =
+          verify::read_exact_points(bytes, read.format, path, exact_points_, 1, read.exact_faces);
     file.mesh = std::move(read.mesh);
     file.notes = std::move(read.notes);
   } catch (const Error& error) {

@@ -108,6 +108,7 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
   add_epsilon(*c, o, kOfEachMesh);
   add_preparation(*c, o, "each mesh of ORIGINAL");
   add_links(*c, o);
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_geometry(*c, o, "ORIGINAL");
   add_common_options(*c, o.common);

@@ -149,6 +149,13 @@ expect 0 'writing double' "$D" far.off -o far.ply --vertices 4
 expect 0 '' "$D" far.off -o far.off2 --output-format off --vertices 4 --precision double
 expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
 
+# An epsilon as large as the part is mostly one in another unit.
+expect 0 'WARNING: epsilon is 5, and the part is only' "$D" t.off -o large.off --epsilon 5
+expect 0 'WARNING: epsilon' "$BIN/bcd-decompose" t.off -o large.glb --epsilon 95% --effort fast --no-cache
+expect 0 'WARNING: epsilon' "$BIN/mesh-prepare" t.off -o large.off --prepare wrap --epsilon 50%
+expect 0 '' "$D" t.off -o large.off --epsilon 45%
+! grep -q WARNING err.txt || fail "a warning of 45 %"
+
 # The border of an open mesh does not move.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0.1\nv 0 0 1\nf 1 3 2\nf 1 2 4\n' >open.obj
 expect 1 'border stays where it is.*Write .ply, .obj, .off' "$D" open.obj -o x.stl --vertices 4 --holes keep

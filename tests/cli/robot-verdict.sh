@@ -125,6 +125,14 @@ require(html.unescape(rows[-1][1]) == report["sentence"] and (rows[-1][0] == "ye
 for text, name in ((page, "page"), (terminal, "terminal")):
     lines = [l for l in re.split("\n|<br>", text) if re.search("\\bNOT\\b", l) and "dropped on request" not in l]
     require(not held or not lines, f"{name}: a NOT beside exit code 0: {lines[:3]}")
+# All count alike.
+foot = re.findall("<td[^>]*>(.*?)</td>", re.search("<tfoot>(.*?)</tfoot>", page).group(1))
+made = report["bodies"] if "bodies" in report else report["meshes"] - report["meshes_kept"]
+said = re.search(r"urdf: (\d+) \w+ of (\d+) links?(?:, from (\d+) mesh\w*)?(?:, of which (\d+) stay)?", terminal)
+counts = [made, len(report["links"]), report["meshes"] if said.group(3) else None, report["meshes_kept"] or None]
+require([int(n) if n else None for n in said.groups()] == counts, f"terminal: {said.group(0)}, not {counts}")
+require([int(n) for n in re.findall(r"\d+", foot[0])][:2] == [len(report["links"]), report["meshes"]] and foot[3:5] == [str(made), str(report["vertices"])], f"page: {foot}")
+require(report["meshes_kept"] == len({m["file"] for l in report["links"] for m in l.get("meshes", []) if "flaw" in m}), "meshes kept")
 commands = [html.unescape(c) for c in re.findall(r"<code>(.*?)</code>", page)]
 require(len(commands) == 1 and commands[0] == report["check"], f"commands: {commands}")
 for command in commands:

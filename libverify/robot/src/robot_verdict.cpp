@@ -103,6 +103,7 @@ class Judgement {
     out_.answer = Answer::Verified;
     for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
       if (*claim) out_.answer = worse(out_.answer, (*claim)->answer);
+    look_at_exact_faces();
     if (out_.answer == Answer::Refuted && !holders_.refutes()) out_.answer = Answer::Undecided;
     measure();
     put_into_words();
@@ -145,6 +146,14 @@ class Judgement {
     measured_ = &subject_.triangles;
   }
 
+  void look_at_exact_faces() {
+    const std::optional<ExactPoints>& exact = subject_.file->exact;
+    if (!exact) return;
+    out_.exact_points =
+        verify_points({exact->points, exact->of_face, exact->rounding}, holders_.sum());
+    if (out_.exact_points->answer == Answer::Refuted) out_.answer = Answer::Refuted;
+  }
+
   void measure() {
     if (!out_.triangles || out_.triangles->answer != Answer::Refuted) return;
     BracketEffort effort;
@@ -185,6 +194,14 @@ class Judgement {
     }
     for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
       if (*claim && (*claim)->answer != Answer::Verified) out_.text = (*claim)->reason;
+    if (const auto& points = out_.exact_points; points && points->answer == Answer::Refuted)
+      out_.text = (!out_.text.empty() ? out_.text
+                   : out_.triangles   ? std::string("every triangle is inside")
+                                      : std::string("its solid is inside")) +
+                  ", but " + std::to_string(points->outside) + " of " +
+                  std::to_string(points->points) + " points of its exact faces stick out of the " +
+                  bodies + " of its pose, by up to " + number_up(points->farthest) + ", near " +
+                  text_of(points->at) + ", in the mesh's own unit";
   }
 
   const JudgedFile& subject_;

@@ -6,6 +6,7 @@
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/points.h>
 
 #include <algorithm>
 #include <functional>
@@ -30,6 +31,8 @@ struct MeshFile {
   std::string path, sha256;
   geom::Mesh mesh;
   std::vector<std::string> notes = {};
+  /// Points of the exact faces that the triangles stand for, where these are looked at.
+  std::optional<ExactPoints> exact = {};
   std::optional<Error> error = {};  ///< why it could not be read; then it has no mesh
 };
 
@@ -81,10 +84,11 @@ struct ShapeVerdict {
   bool is_judged = true;              ///< else the mesh is none that claims can be decided of
   std::size_t triangles_without_area = 0, left_out = 0, dropped_sheets = 0;
   bool limited = false;
-  std::optional<Claim> convex = {};            ///< of what holds it
-  std::optional<DistanceClaim> distance = {};  ///< of the bodies; then `shape` means nothing
-  std::optional<double> bound = {};            ///< of the distance
-  bool of_surface = false;                     ///< the distance: HeldDistance::of_surface
+  std::optional<Claim> convex = {};             ///< of what holds it
+  std::optional<PointClaim> exact_points = {};  ///< they refute, and prove nothing
+  std::optional<DistanceClaim> distance = {};   ///< of the bodies; then `shape` means nothing
+  std::optional<double> bound = {};             ///< of the distance
+  bool of_surface = false;                      ///< the distance: HeldDistance::of_surface
 };
 
 struct LinkVerdict {
