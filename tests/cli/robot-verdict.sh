@@ -193,7 +193,7 @@ for program in 'bcd-decompose --effort fast' bmesh-decimate; do
   grep -q '"answer": "verified"' v.json || fail "no link of the report is verified: $(cat v.json)"
 done
 # Another mesh of the result that cannot be read is bad input, and so is a robot of which nothing can be judged.
-sed 's|filename="[^"]*"|filename="m/damaged.stl"|' "$R/empty.urdf" >"$R/other.urdf"
+sed 's|filename="[^"]*"|filename="m/damaged.stl"|g' "$R/empty.urdf" >"$R/other.urdf"
 expect 3 'damaged.stl' bound-verify robot "$R/empty.urdf" "$R/other.urdf" --prepare
 expect 3 'damaged.stl' bound-verify robot "$R/worst.urdf" "$R/worst.urdf" --prepare
 # Where nothing can be made, nothing is written.
