@@ -204,6 +204,18 @@ class CertifiedRobot:
     def verdicts(self) -> list[tuple[str, str, str]]: ...
     @property
     def distance(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def write(
+        self,
+        folder: _Path,
+        *,
+        formats: str | Sequence[str] | None = None,
+        loader: Literal["moveit", "mujoco", "gazebo", "bullet", "drake"] | None = None,
+        mesh_prefix: str | None = None,
+        srdf: bool = False,
+        no_cache: bool = False,
+    ) -> dict[str, list[str]]: ...
 
 class Solution:
     @property
@@ -492,16 +504,33 @@ def verify_robot(
 def certify_robot(
     robot: _Robot,
     *,
-    epsilon: _Length | None = None,
-    max_bodies: int | None = None,
-    max_vertices_per_body: int = 64,
-    effort: _Effort = "normal",
     links: Sequence[str] | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
-    unit: str = "m",
-    drop_sheets: bool = False,
+    epsilons: Mapping[str, _Length] | None = None,
+    robot_bodies: int | None = None,
+    robot_vertices: int | None = None,
     partial: bool = False,
+    # options of certify_robot
+    epsilon: _Length | None = None,
+    max_bodies: int | None = None,
+    max_total_vertices: int | None = None,
+    min_thickness: float = 0.0,
+    max_vertices_per_body: int = 64,
+    effort: Literal["fast", "normal", "best"] = "normal",
+    simplify: float | None = None,
+    max_work: float | None = None,
+    improve_work: float | None = None,
+    method: Literal["planes", "clusters", "voxels"] = "planes",
+    pre_step: Literal["auto", "on", "off"] = "auto",
+    drop_sheets: bool = False,
+    holes: Literal["fill", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    unit: str = "m",
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,

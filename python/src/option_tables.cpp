@@ -3,6 +3,7 @@
 #include <kaboum/certify/set_options.h>
 
 #include "request_options.h"
+#include "robot.h"
 
 namespace kaboum::python {
 
@@ -12,6 +13,7 @@ void bind_option_tables(py::module_& module) {
       [] {
         py::dict out;
         out["decompose"] = table_of(keywords_of(certify::set_options()));
+        out["certify_robot"] = table_of(keywords_of(link_options()));
         return out;
       },
       "By function, its options as the library describes them: a list of dicts.");
