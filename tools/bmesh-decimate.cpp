@@ -27,16 +27,15 @@ void note(tools::DecimationCase& run, const std::string& text) {
 
 /// Whether the triangles stand for exact faces, which are to be enclosed as well.
 bool wraps_exact_faces(const tools::DecimationOptions& o, io::Format format) {
-  return io::is_cad(format) && o.direction == "outer" && o.preparation.holds_exact_faces();
+  return io::is_cad(format) && o.mesh.request.direction == bmesh::Direction::Outer &&
+         o.mesh.preparation.holds_exact_faces();
 }
 
 /// What is asked for, where it is not contradictory.
 tools::DecimationCase case_of(const tools::DecimationOptions& o) {
-  std::vector<std::size_t> counts;
-  if (!o.vertices.empty()) counts = *tools::parse_counts(o.vertices);
-  tools::require_sound(o, counts);
+  tools::require_sound(o);
   tools::DecimationCase run{.asked = o};
-  run.files = tools::level_files(o.output, counts);
+  run.files = tools::level_files(o.output, o.mesh.request.vertices);
   tools::require_separate_files(o, run.files);
   if (!o.depfile.empty() && (o.output.empty() || o.output == "-"))
     throw Error(ErrorCode::InvalidArgument, "--depfile needs a result that is a file");
@@ -49,7 +48,7 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
                 "--log and --progressive start from triangles, and " + o.input +
                     " has exact faces: write a wrap round them with mesh-prepare first, and "
                     "simplify that, or claim it of the triangles alone (--prepare strict)");
-  run.request = tools::request_of(o, std::move(counts), format);
+  run.options = tools::mesh_options_of(o, format);
   return run;
 }
 
@@ -67,25 +66,6 @@ void read(tools::DecimationCase& run) {
          "bound-verify judges that without --prepare");
 }
 
-certify::MeshPreparation preparation_of(const tools::DecimationCase& run) {
-  using Wrap = certify::MeshPreparation::Wrap;
-  using Diagonal = geom::PrepareOptions::Diagonal;
-  const tools::DecimationOptions& o = run.asked;
-  certify::MeshPreparation out;
-  out.options = o.prepare;
-  out.options.holes = o.holes.value();
-  o.preparation.apply(out.options);
-  if (!o.records() && run.request.direction != bmesh::Direction::Any) {  // logs start from the file
-    out.options.quads = run.input.bent_quads;
-    out.options.diagonal = run.outer() ? Diagonal::Outward : Diagonal::Inward;
-  }
-  const bool always = o.preparation.wraps() || wraps_exact_faces(o, run.input.format);
-  out.wrap = always ? Wrap::Always : o.preparation.name == "auto" ? Wrap::WhereNeeded : Wrap::Never;
-  out.wrapping = o.preparation.request(std::nullopt);
-  out.wrapping.clearance = run.input.deviation;
-  return out;
-}
-
 /// Makes and certifies the results.
 void bound(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
@@ -96,15 +76,17 @@ void bound(tools::DecimationCase& run) {
         .found = [&] { run.seconds_decimated = tools::user_seconds(); },
         .prepared = [&] { run.seconds_read = tools::user_seconds(); }};
     run.made = tools::naming(o.input, [&] {
-      return bound_mesh(run.input.mesh, run.request, preparation_of(run), hooks);
+      return bound_mesh(
+          run.input.mesh, run.request(),
+          certify::preparation_of(run.options, run.input.bent_quads, run.input.deviation), hooks);
     });
   }
   for (const std::string& text : notes_of(run.made)) note(run, text);
   if (!run.original().solid.closed())
     note(run, "its border stays where it is, as --holes keep asks");
   if (o.records()) {
-    run.log.direction = run.request.direction;
-    run.log.tool = run.request.comment;
+    run.log.direction = run.request().direction;
+    run.log.tool = run.request().comment;
     bmesh::record_preparation(run.original().report, run.input.mesh.triangles.size(), run.log);
     run.log.steps = std::move(run.made.series.steps);
   }
@@ -120,9 +102,9 @@ bool say_plan(tools::DecimationCase& run) {
                  "% of the diagonal, which bounds hardly anything; 1% is written --epsilon 1%");
   const auto& shortage = run.series().shortage;
   if (shortage && !say_shortage(run, *shortage)) return false;
-  if (o.effort_given && plan.effort != run.request.effort)
-    note(run, "--effort " + o.effort + " has no effect " +
-                  (o.keep_convex ? "with --keep-convex" : "on open meshes"));
+  if (o.stated.contains("effort") && plan.effort != run.request().effort)
+    note(run, "--effort " + o.value("effort") + " has no effect " +
+                  (run.request().keep_convex ? "with --keep-convex" : "on open meshes"));
   return true;
 }
 
@@ -146,22 +128,13 @@ int decimate(const tools::DecimationOptions& options) {
 
 /// Takes results from a progressive file: what makes a result is in there.
 int extract(const CLI::App& app, const tools::DecimationOptions& o) {
-  tools::require_absent(app, "--from",
-                        {"INPUT",         "--progressive", "--direction",      "--ratio",
-                         "--epsilon",     "--cost",        "--effort",         "--max-work",
-                         "--as-printed",  "--precision",   "--sharp-angle",    "--keep-convex",
-                         "--drop-sheets", "--holes",       "--require-closed", "--keep-orientation",
-                         "--verify",      "--log",         "--preview",        "--input-format",
-                         "--unit",        "--scale"});
+  std::vector<std::string> others{"INPUT",     "--progressive",  "--require-closed", "--log",
+                                  "--preview", "--input-format", "--unit",           "--scale"};
+  for (const auto& option : certify::mesh_options())
+    if (option.name != "vertices") others.push_back("--" + option.name);
+  tools::require_absent(app, "--from", others);
   return tools::extract_levels(
-      {o.from, o.output, o.output_format, o.vertices, o.depfile, o.common});
-}
-
-/// Options that only some costs follow are not ignored silently with others.
-void require_cost_follows(const CLI::App& app, const std::string& cost) {
-  const std::string with = "--cost " + cost;
-  if (cost != "planes-diagonal") tools::require_absent(app, with, {"--as-printed"});
-  if (!cost.starts_with("planes")) tools::require_absent(app, with, {"--sharp-angle"});
+      {o.from, o.output, o.output_format, o.mesh.request.vertices, o.depfile, o.common});
 }
 
 }  // namespace
@@ -178,12 +151,8 @@ int main(int argc, char** argv) {
     if (robot && (options.from == "collision" || options.from == "visual"))
       options.robot.geometry = std::exchange(options.from, {});
     if (!options.from.empty()) return extract(app, options);
-    require_cost_follows(app, options.cost);
-    require_meaning(app, options.preparation);
-    if (options.preparation.name != "auto")
-      tools::require_absent(app, "--prepare " + options.preparation.name,
-                            {"--holes", "--require-closed"});
-    options.effort_given = app.count("--effort") > 0;
+    if (options.mesh.preparation.mode != certify::PreparationOptions::Mode::Auto)
+      tools::require_absent(app, "--prepare " + options.value("prepare"), {"--require-closed"});
     if (robot) return simplify_robot(app, options);
     tools::require_options_of_meshes(app, options.input);
     return decimate(options);

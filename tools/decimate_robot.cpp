@@ -36,23 +36,13 @@ io::Format format_of_meshes(const DecimationOptions& o) {
 }
 
 certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
-  certify::EnclosureRequest r;
-  std::vector<std::size_t> counts;
-  if (!o.vertices.empty()) counts = *parse_counts(o.vertices);
-  require_sound(o, counts);
-  if (counts.size() > 1)
+  require_sound(o);
+  if (o.mesh.request.vertices.size() > 1)
     throw Error(ErrorCode::InvalidArgument, "--vertices: a robot's meshes are no series");
-  require_sound_formats(o, format_of_meshes(o));
-  r.mesh = request_of(o, std::move(counts), format_of_meshes(o));
-  if (o.output_format.empty() && r.mesh.format == io::Format::Stl) r.spare_format = io::Format::Obj;
-  r.preparation = o.prepare;
-  r.preparation.holes = o.holes.value();
-  o.preparation.apply(r.preparation);
-  const bool if_needed = o.preparation.name == "auto" && r.preparation.holes == geom::Holes::Fill &&
-                         !r.preparation.keep_orientation;
-  if (o.preparation.wraps() || if_needed) r.wrap = o.preparation.request(std::nullopt);
-  if (r.wrap) r.wrap->where_needed = if_needed;
-  r.hold_exact_faces = o.preparation.holds_exact_faces();
+  const io::Format format = format_of_meshes(o);
+  require_sound_formats(o, format);
+  certify::EnclosureRequest r = certify::enclosure_request_of(mesh_options_of(o, format));
+  if (o.output_format.empty() && format == io::Format::Stl) r.spare_format = io::Format::Obj;
   return r;
 }
 
@@ -123,11 +113,8 @@ RobotCheck check_of(const Run& run, const RobotWriter& output) {
     epsilon.reset();
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
     if (!mesh.flaw.empty() || mesh.made.enclosure.certificate().wrap) epsilon.reset();
-  certify::PreparationOptions preparation;
-  preparation.mode = run.o.preparation.mode();
-  preparation.drop_sheets = run.o.prepare.drop_sheets;
-  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot, preparation,
-                         epsilon, run.verdicts);
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.mesh.preparation, epsilon, run.verdicts);
 }
 
 /// The shapes of each link that has some.
@@ -242,8 +229,8 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   require_absent(app, "a robot (.urdf)", {"--progressive", "--log"});
   require_absent(app, "a robot (.urdf), which states its meshes' scales itself",
                  {"--unit", "--scale"});
-  if (o.direction != "outer")
-    throw Error(ErrorCode::InvalidArgument, "--direction " + o.direction +
+  if (o.mesh.request.direction != bmesh::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument, "--direction " + o.value("direction") +
                                                 ": a robot's meshes are enclosed; simplify them "
                                                 "one by one for others");
   require_robot_folder(o.output, "");

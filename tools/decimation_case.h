@@ -15,7 +15,7 @@ namespace kaboum::tools {
 /// What was asked, of which file, and what was made.
 struct DecimationCase {
   const DecimationOptions& asked;
-  certify::MeshRequest request = {};
+  certify::MeshOptions options = {};
   std::vector<std::string> files = {};  ///< of each result; an empty name: none
   io::ReadResult input = {};            ///< its mesh is dropped once it is prepared
   std::vector<std::string> notes = {};  ///< of reading and preparing, and options without effect
@@ -26,7 +26,8 @@ struct DecimationCase {
   [[nodiscard]] const geom::Prepared& original() const { return made.original; }
   [[nodiscard]] const certify::MeshSeries& series() const { return made.series; }
   [[nodiscard]] const std::optional<certify::WrapCertificate>& wrap() const { return made.wrap; }
-  [[nodiscard]] bool outer() const { return request.direction == bmesh::Direction::Outer; }
+  [[nodiscard]] const certify::MeshRequest& request() const { return options.request; }
+  [[nodiscard]] bool outer() const { return request().direction == bmesh::Direction::Outer; }
 };
 
 /// Four digits.

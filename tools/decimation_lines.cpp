@@ -46,7 +46,7 @@ class Lines {
           "--max-work");
     if (!made_.reached()) {
       complain(std::to_string(*made_.requested) + " vertices cannot be reached with --cost " +
-               run_.asked.cost + ": no further contraction is possible at " +
+               run_.asked.value("cost") + ": no further contraction is possible at " +
                std::to_string(made_.vertices) + "; the result so far is written");
       return kNo;
     }
@@ -56,7 +56,8 @@ class Lines {
   [[nodiscard]] std::string summary() const {
     const double diagonal = run_.series().plan.diagonal;
     std::string line = file_ + ": " + std::to_string(made_.statistics.vertices_in) + " → " +
-                       std::to_string(made_.vertices) + " vertices, " + run_.asked.direction;
+                       std::to_string(made_.vertices) + " vertices, " +
+                       run_.asked.value("direction");
     if (made_.direction != bmesh::Direction::Any)
       line += !made_.closed ? ", NOTHING IS ENCLOSED: the mesh is open"
               : made_.surface_answer() == Answer::Verified ? ", certified"
@@ -197,15 +198,15 @@ bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& sho
       remedy = "round the input's coordinates to float32 first, or close its holes";
     }
   }
-  if (run.request.may_be_double()) {
+  if (run.request().may_be_double()) {
     log(run.asked.common.quiet, "note: " + why + ": writing double");
     return true;
   }
   log(false, "bmesh-decimate: " + run.asked.input + ": " + why +
                  "; nothing is written. Write .ply, .obj, .off or (--output-format) stl-ascii, "
                  "which hold doubles" +
-                 (run.asked.precision == "auto" ? "" : ", with --precision double") + "; or " +
-                 remedy);
+                 (run.asked.value("precision") == "auto" ? "" : ", with --precision double") +
+                 "; or " + remedy);
   return false;
 }
 

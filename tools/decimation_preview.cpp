@@ -20,7 +20,7 @@ std::string words_of(const certify::MeshClaim& claim) {
 }  // namespace
 
 std::string page_of(const DecimationCase& run) {
-  const bool inner = run.request.direction == bmesh::Direction::Inner;
+  const bool inner = run.request().direction == bmesh::Direction::Inner;
   const geom::Mesh& original = run.original().solid.mesh();
   const double extent = run.series().plan.diagonal;
   const std::string name = std::filesystem::path(run.asked.input).filename().string();

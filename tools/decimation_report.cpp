@@ -39,7 +39,7 @@ Json input_of(const DecimationCase& run) {
 
 Json preparation_of(const DecimationCase& run) {
   const geom::PreparationReport& p = run.original().report;
-  return {{"prepare", run.asked.preparation.name},
+  return {{"prepare", run.asked.value("prepare")},
           {"why_wrapped", run.made.why_wrapped.empty() ? Json() : Json(run.made.why_wrapped)},
           {"why_not_wrapped",
            run.made.why_not_wrapped.empty() ? Json() : Json(run.made.why_not_wrapped)},
@@ -59,18 +59,21 @@ Json preparation_of(const DecimationCase& run) {
 Json options_of(const DecimationCase& run) {
   const DecimationOptions& o = run.asked;
   const certify::MeshPlan& plan = run.series().plan;
-  return {{"direction", o.direction},
-          {"cost", o.cost},
-          {"effort", name_of(plan.effort)},
-          {"as_printed", o.as_printed},
+  const certify::MeshRequest& r = o.mesh.request;
+  certify::MeshOptions planned;
+  planned.request.effort = plan.effort;
+  return {{"direction", o.value("direction")},
+          {"cost", o.value("cost")},
+          {"effort", value_of(certify::mesh_options(), "effort", planned)},
+          {"as_printed", r.as_printed},
           {"precision", plan.precision == bmesh::Precision::Double ? "double" : "float"},
           {"vertices", plan.vertices.empty()       ? Json()
                        : plan.vertices.size() == 1 ? Json(plan.vertices.front())
                                                    : Json(plan.vertices)},
           {"epsilon", plan.epsilon ? Json(*plan.epsilon) : Json()},
-          {"sharp_angle", o.sharp_angle.value_or(bmesh::kSharpAngle)},
-          {"keep_convex", o.keep_convex},
-          {"max_work", o.max_work ? Json(*o.max_work) : Json()}};
+          {"sharp_angle", r.sharp_angle.value_or(bmesh::kSharpAngle)},
+          {"keep_convex", r.keep_convex},
+          {"max_work", r.max_work ? Json(*r.max_work) : Json()}};
 }
 
 Json verification_of(const certify::DecidedMesh& decided) {

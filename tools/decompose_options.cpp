@@ -54,20 +54,12 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
                "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
 }
 
-/// The same as --holes refuse, under the name that it had.
-void add_require_closed(CLI::App& app, DecomposeOptions& o) {
-  app.add_flag_callback(
-         "--require-closed", [&o] { o.set.preparation.holes = geom::Holes::Refuse; },
-         "The same as --holes refuse")
-      ->excludes("--holes");
-}
-
 }  // namespace
 
 void describe(CLI::App& app, DecomposeOptions& o) {
   add_input(app, o);
   add_request_options(app, certify::set_options(), o.set, o.stated);
-  add_require_closed(app, o);
+  add_require_closed(app, o.set.preparation);
   add_output(app, o);
   add_robot_options(app, o.robot, true);
   add_budget(app, "--robot-bodies", o.robot_bodies, "bodies");

@@ -74,7 +74,7 @@ Json report(const ExtractOptions& o, const bmesh::Progressive& p, const std::str
 int extract_levels(const ExtractOptions& o) {
   if (o.vertices.empty()) throw Error(ErrorCode::InvalidArgument, "--from needs --vertices");
   if (o.output.empty()) throw Error(ErrorCode::InvalidArgument, "--from needs -o for the result");
-  const std::vector<std::size_t> counts = *parse_counts(o.vertices);
+  const std::vector<std::size_t>& counts = o.vertices;
   const std::vector<std::string> files = level_files(o.output, counts);
   std::vector<std::pair<std::string, std::string>> outputs{{"--report", o.common.report},
                                                            {"--depfile", o.depfile}};

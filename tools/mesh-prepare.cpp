@@ -7,9 +7,11 @@
 #include <kaboum/verify/inclusion.h>
 
 #include <CLI/CLI.hpp>
+#include <set>
 
-#include "preparation_option.h"
+#include "cli.h"
 #include "repairs.h"
+#include "request_options.h"
 #include "unit_option.h"
 
 namespace kaboum::tools {
@@ -17,10 +19,15 @@ namespace {
 
 struct PrepareToolOptions {
   std::string input, output, input_format, output_format, epsilon, depfile;
-  bool drop_sheets = false, verify = false;
-  PreparationOption preparation;
+  bool verify = false;
+  certify::PreparationOptions preparation;
+  std::set<std::string> stated;  ///< names of the options of preparation that were stated
   UnitOption unit;
   CommonOptions common;
+
+  [[nodiscard]] bool wraps() const {
+    return preparation.mode == certify::PreparationOptions::Mode::Wrap;
+  }
 };
 
 /// What was made of which file.
@@ -66,13 +73,9 @@ void verify_raw(PrepareCase& run) {
 
 void prepare(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
-  geom::PrepareOptions options;
-  options.holes = geom::Holes::Fill;
-  options.drop_sheets = o.drop_sheets;
-  o.preparation.apply(options);
   const geom::Prepared prepared = naming(o.input, [&] {
     try {
-      return certify::prepare_mesh(run.input.mesh, options);
+      return certify::prepare_mesh(run.input.mesh, o.preparation.preparing());
     } catch (const Error& error) {
       throw Error(error.code(), std::string(error.what()) +
                                     "; --prepare wrap encloses whatever triangles there are");
@@ -90,10 +93,11 @@ void prepare(PrepareCase& run) {
 
 void wrap(PrepareCase& run, bool doubles) {
   const PrepareToolOptions& o = run.asked;
-  std::optional<double> farthest;
+  certify::WrapRequest request;
+  request.offset = o.preparation.offset;
+  request.seal = o.preparation.seal;
   if (!o.epsilon.empty())
-    farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
-  certify::WrapRequest request = o.preparation.request(farthest);
+    request.farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
   request.clearance = run.input.deviation;
   request.quads = run.input.bent_quads;
   request.float32 = !doubles || all_float32(run.input.mesh);
@@ -127,9 +131,10 @@ void read(PrepareCase& run) {
 }
 
 int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
-  require_meaning(app, o.preparation);
-  if (!o.preparation.wraps()) require_absent(app, "--prepare " + o.preparation.name, {"--epsilon"});
-  if (o.preparation.wraps()) require_absent(app, "--prepare wrap", {"--drop-sheets", "--verify"});
+  const std::string mode = value_of(certify::preparation_options(certify::PreparedFor::Preparing),
+                                    "prepare", o.preparation);
+  require_none(certify::contradiction(o.preparation, o.stated));
+  require_absent(app, "--prepare " + mode, {o.wraps() ? "--verify" : "--epsilon"});
   require_apart({{"--output", o.output}, {"--report", o.common.report}, {"--depfile", o.depfile}},
                 {o.input});
   const io::Format format = format_for(o.output, o.output_format, "--output-format");
@@ -137,7 +142,7 @@ int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
   PrepareCase run{.asked = o};
   read(run);
   const bool doubles = io::holds_double(format);
-  if (o.preparation.wraps()) {
+  if (o.wraps()) {
     wrap(run, doubles);
   } else {
     prepare(run);
@@ -146,7 +151,7 @@ int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
       certify::serialise_checked(run.mesh, format, doubles && !all_float32(run.mesh),
                                  std::string("mesh-prepare ") + version() + o.unit.words());
   Json report{{"input", {{"file", o.input}, {"sha256", run.sha256}}},
-              {"prepare", o.preparation.name},
+              {"prepare", mode},
               {"unit", run.input.unit},
               {"scale", o.unit.scale}};
   report.update(run.report);
@@ -169,7 +174,8 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
   app.add_option("-o,--output", o.output, "Where the prepared mesh goes (- for stdout)")
       ->required()
       ->type_name("FILE");
-  add_preparation_options(app, o.preparation);
+  add_request_options(app, certify::preparation_options(certify::PreparedFor::Preparing),
+                      o.preparation, o.stated);
   app.add_option("--epsilon", o.epsilon,
                  "With --prepare wrap: no point of the wrap is farther from the triangles than "
                  "this, or it is refused; a length or a percentage of the diagonal")
@@ -177,8 +183,6 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
         return parse_length(s) ? std::string() : "must be a positive number, or a percentage";
       })
       ->type_name("LENGTH|P%");
-  app.add_flag("--drop-sheets", o.drop_sheets,
-               "Drop back-to-back faces without volume (they are then not enclosed)");
   app.add_flag("--verify", o.verify,
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");

@@ -37,6 +37,13 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
       ->type_name(value_words(option));
 }
 
+void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
+  app.add_flag_callback(
+         "--require-closed", [&options] { options.holes = geom::Holes::Refuse; },
+         "The same as --holes refuse")
+      ->excludes("--holes");
+}
+
 std::string with_dashes(const std::string& text) {
   return meaning(text, [](const std::string& name) { return "--" + name; });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/option.h>
+#include <kaboum/certify/preparation_options.h>
 
 #include <functional>
 #include <set>
@@ -33,6 +34,9 @@ void add_request_options(CLI::App& app, const std::vector<Option<Request>>& opti
                          stated.insert(option.name);
                        });
 }
+
+/// Adds --require-closed, the same as --holes refuse under the name that it had.
+void add_require_closed(CLI::App& app, certify::PreparationOptions& options);
 
 /// A library's words about options as command lines spell these: "{max-bodies}" as "--max-bodies".
 std::string with_dashes(const std::string& text);

@@ -33,23 +33,6 @@ void write_together(const std::vector<std::pair<std::string, std::function<void(
   }
 }
 
-std::optional<std::vector<std::size_t>> parse_counts(const std::string& text) {
-  std::vector<std::size_t> counts;
-  const char *at = text.data(), *end = at + text.size();
-  for (bool more = true; more;) {
-    std::size_t n = 0;
-    const auto [next, error] = std::from_chars(at, end, n);
-    if (error != std::errc() || n < 4 || n > 1ULL << 40) return std::nullopt;
-    counts.push_back(n);
-    more = next != end;
-    if (more && *next != ',') return std::nullopt;
-    at = next + (more ? 1 : 0);
-  }
-  std::sort(counts.begin(), counts.end(), std::greater<>());
-  if (std::adjacent_find(counts.begin(), counts.end()) != counts.end()) return std::nullopt;
-  return counts;
-}
-
 std::vector<std::string> level_files(const std::string& name,
                                      const std::vector<std::size_t>& counts) {
   const bool named = name.find(kCountInName) != std::string::npos;

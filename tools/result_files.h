@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,10 +11,6 @@ namespace kaboum::tools {
 /// Calls the functions in order, each of which writes the file of its name (an empty name: none).
 /// If one throws, the files written before are taken back.
 void write_together(const std::vector<std::pair<std::string, std::function<void()>>>& files);
-
-/// "20000,10000,5000", in any order, as falling numbers; nullopt unless they are from 4 on and all
-/// different.
-std::optional<std::vector<std::size_t>> parse_counts(const std::string& text);
 
 /// The file of each level: `name` with {vertices} replaced by its number.
 /// @throws Error{InvalidArgument} when there are several levels and no {vertices}, or the other way

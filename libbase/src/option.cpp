@@ -9,6 +9,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 
 namespace kaboum {
 namespace {
@@ -40,11 +41,41 @@ std::string alternatives(const std::vector<std::string>& words) {
   return out;
 }
 
+/// Integers with commas between them.
+std::optional<std::vector<std::size_t>> parsed_counts(std::string_view text) {
+  std::vector<std::size_t> counts;
+  for (bool more = true; more;) {
+    const std::size_t comma = text.find(',');
+    const auto count = parsed<std::size_t>(text.substr(0, comma));
+    if (!count) return std::nullopt;
+    counts.push_back(*count);
+    more = comma != std::string_view::npos;
+    if (more) text.remove_prefix(comma + 1);
+  }
+  return counts;
+}
+
+std::string counts_flaw(const OptionDescription& option, const std::string& value) {
+  auto counts = parsed_counts(value);
+  bool sound = counts.has_value();
+  if (sound) {
+    std::ranges::sort(*counts);
+    sound = std::ranges::adjacent_find(*counts) == counts->end() &&
+            static_cast<double>(counts->front()) >= option.low &&
+            static_cast<double>(counts->back()) <= option.high;
+  }
+  const std::string range = range_words(option);
+  return sound ? ""
+               : "must be a whole number" + (range.empty() ? "" : ", " + range) +
+                     ", or different ones separated by commas, without blanks, not " + value;
+}
+
 std::string limits_flaw(const OptionDescription& option, const std::string& value, bool whole) {
   const std::string range = range_words(option);
   return std::string("must be ") + (whole ? "a whole number" : "a number") +
          (range.empty()                    ? ""
           : range.starts_with("at least ") ? ", " + range
+          : range.starts_with("between ")  ? " " + range
                                            : " from " + range) +
          (whole ? "" : ", without a unit") + ", not " + value;
 }
@@ -58,6 +89,8 @@ std::string value_words(const OptionDescription& option) {
       return {};
     case Kind::Count:
       return "N";
+    case Kind::Counts:
+      return "N[,N...]";
     case Kind::Number:
       return "X";
     case Kind::Length:
@@ -71,12 +104,13 @@ std::string value_words(const OptionDescription& option) {
 }
 
 std::string range_words(const OptionDescription& option) {
-  if (option.kind != Kind::Count && option.kind != Kind::Number) return {};
+  const bool whole = option.kind == Kind::Count || option.kind == Kind::Counts;
+  if (!whole && option.kind != Kind::Number) return {};
   const auto digits = [&](double limit) {
-    return option.kind == Kind::Count ? std::to_string(static_cast<std::size_t>(limit))
-                                      : number_text(limit);
+    return whole ? std::to_string(static_cast<std::size_t>(limit)) : number_text(limit);
   };
   if (std::isinf(option.low)) return {};
+  if (option.between) return "between " + digits(option.low) + " and " + digits(option.high);
   if (std::isinf(option.high)) return "at least " + digits(option.low);
   return digits(option.low) + " to " + digits(option.high);
 }
@@ -105,10 +139,13 @@ std::string flaw_of(const OptionDescription& option, const std::string& value) {
                          static_cast<double>(*count) <= option.high;
       return sound ? "" : limits_flaw(option, value, true);
     }
+    case Kind::Counts:
+      return counts_flaw(option, value);
     case Kind::Number: {
       const auto number = parsed<double>(value);
-      const bool sound =
-          number && std::isfinite(*number) && *number >= option.low && *number <= option.high;
+      const bool sound = number && std::isfinite(*number) &&
+                         (option.between ? *number > option.low && *number < option.high
+                                         : *number >= option.low && *number <= option.high);
       return sound ? "" : limits_flaw(option, value, false);
     }
     case Kind::Length:
@@ -131,6 +168,12 @@ namespace option_text {
 
 std::string of(bool value) { return value ? "true" : "false"; }
 std::string of(std::size_t value) { return std::to_string(value); }
+std::string of(const std::vector<std::size_t>& value) {
+  std::string out;
+  for (const std::size_t count : value)
+    out.append(out.empty() ? "" : ",").append(std::to_string(count));
+  return out;
+}
 std::string of(double value) { return Length{value}.text(); }
 std::string of(const Length& value) { return value.text(); }
 std::string of(const std::string& value) { return value; }
@@ -138,6 +181,10 @@ std::string of(const std::string& value) { return value; }
 void parse(const std::string& text, bool& value) { value = text == "true"; }
 void parse(const std::string& text, std::size_t& value) {
   value = parsed<std::size_t>(text).value_or(0);
+}
+void parse(const std::string& text, std::vector<std::size_t>& value) {
+  value = parsed_counts(text).value_or(std::vector<std::size_t>());
+  std::ranges::sort(value, std::greater<>());
 }
 void parse(const std::string& text, double& value) { value = parsed<double>(text).value_or(0); }
 void parse(const std::string& text, Length& value) {

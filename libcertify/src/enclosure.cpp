@@ -129,35 +129,6 @@ void store_enclosure(const CacheFolder& cache, const std::string& key,
   cache.store(kEnclosureEntry, key, content);
 }
 
-}  // namespace
-
-std::string EnclosureRequest::parameters() const {
-  std::string out = "--cost " + std::to_string(static_cast<int>(mesh.cost)) + " --effort " +
-                    std::to_string(static_cast<int>(mesh.effort)) + " --precision " +
-                    std::to_string(static_cast<int>(mesh.numbers));
-  const auto add = [&](const std::string& text) { out += " " + text; };
-  const auto number = [](double x) { return Length{x}.text(); };
-  if (mesh.epsilon) add("--epsilon " + mesh.epsilon->text());
-  for (const std::size_t n : mesh.vertices) add("--vertices " + std::to_string(n));
-  if (mesh.ratio) add("--ratio " + number(*mesh.ratio));
-  if (mesh.as_printed) add("--as-printed");
-  if (mesh.keep_convex) add("--keep-convex");
-  if (mesh.max_work) add("--max-work " + number(*mesh.max_work));
-  if (mesh.sharp_angle) add("--sharp-angle " + number(*mesh.sharp_angle));
-  if (mesh.decide) add("--verify");
-  add("--holes " + std::to_string(static_cast<int>(preparation.holes)));
-  if (preparation.drop_sheets) add("--drop-sheets");
-  if (preparation.keep_orientation) add("--keep-orientation");
-  if (!wrap) return out;
-  add(wrap->where_needed ? "wrapped where needed" : "--prepare wrap");
-  if (wrap->offset) add("--offset " + wrap->offset->text());
-  if (wrap->seal) add("--seal " + wrap->seal->text());
-  add("clearance " + number(wrap->clearance));
-  return out;
-}
-
-namespace {
-
 /// @param because  a wrap is needed for this reason; empty: as far as is known it is not
 std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const EnclosureRequest& request,
                                           const MeshHooks& hooks, const std::string& because) {

@@ -8,7 +8,6 @@
 
 #include "given_solid.h"
 #include "mesh_certifier.h"
-#include "mesh_options.h"
 
 namespace kaboum::certify {
 namespace {
@@ -17,7 +16,7 @@ namespace {
 std::vector<bmesh::DecimateResult> decimate(const geom::Prepared& original,
                                             const MeshRequest& request, const MeshPlan& plan,
                                             const MeshHooks& hooks) {
-  bmesh::DecimateOptions options = options_of(request, plan);
+  bmesh::DecimateOptions options = search_options(request, plan);
   options.record_steps = request.record_steps;
   if (hooks.progress)
     options.progress = [&, start = original.solid.mesh().vertices.size()](std::size_t vertices) {

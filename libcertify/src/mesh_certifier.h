@@ -13,6 +13,9 @@ namespace kaboum::certify {
 /// @throws Error{InvalidInput} when the original would enclose nothing by itself.
 void require_extent(const geom::Prepared& original);
 
+/// The options of the search; targets and callbacks apart.
+bmesh::DecimateOptions search_options(const MeshRequest& request, const MeshPlan& plan);
+
 /// Certifies candidates for one request, finest first. Whatever made them: with
 /// MeshRequest::decide no claim is made that libverify refutes.
 class MeshCertifier {

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "mesh_certifier.h"
-#include "mesh_options.h"
 
 namespace kaboum::certify {
 namespace {
@@ -65,7 +64,7 @@ geom::Prepared prepare_mesh(const geom::Mesh& mesh, const geom::PrepareOptions& 
   return prepared;
 }
 
-bmesh::DecimateOptions options_of(const MeshRequest& request, const MeshPlan& plan) {
+bmesh::DecimateOptions search_options(const MeshRequest& request, const MeshPlan& plan) {
   bmesh::DecimateOptions d;
   d.direction = request.direction;
   d.cost = request.cost;
@@ -103,8 +102,8 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request) {
     if (plan.shortage && request.may_be_double()) plan.precision = bmesh::Precision::Double;
   }
   plan.effort = request.effort;
-  plan.effort = bmesh::possible_effort(original.solid, options_of(request, plan));
-  plan.work = bmesh::work_allowed(original.solid, options_of(request, plan));
+  plan.effort = bmesh::possible_effort(original.solid, search_options(request, plan));
+  plan.work = bmesh::work_allowed(original.solid, search_options(request, plan));
   return plan;
 }
 

@@ -7,8 +7,9 @@ namespace {
 
 using Mode = PreparationOptions::Mode;
 
-std::vector<Option<PreparationOptions>> table(bool may_stay_open) {
+std::vector<Option<PreparationOptions>> table(PreparedFor use) {
   using R = PreparationOptions;
+  const bool may_stay_open = use != PreparedFor::Bodies, wraps = use != PreparedFor::Preparing;
   std::vector<std::pair<std::string, geom::Holes>> holes{{"fill", geom::Holes::Fill},
                                                          {"refuse", geom::Holes::Refuse}};
   if (may_stay_open) holes.insert(holes.begin() + 1, {"keep", geom::Holes::Keep});
@@ -19,14 +20,16 @@ std::vector<Option<PreparationOptions>> table(bool may_stay_open) {
           [](auto& r) -> auto& { return r.drop_sheets; }),
       choice<R>(
           {.name = "holes",
-           .text = std::string(
-                       "Holes of an open mesh. fill: they are closed with triangles, and the "
-                       "claims are about the solid so closed, and about every input triangle; ") +
-                   (may_stay_open ? "keep: its border stays where it is, nothing is enclosed, and "
-                                    "the exit code is 1 (with {direction} any, which claims "
-                                    "nothing, 0); "
-                                  : "") +
-                   "refuse: an error"},
+           .text =
+               std::string(
+                   "Holes of an open mesh. fill: they are closed with triangles, and the "
+                   "claims are about the solid so closed, and about every input triangle; ") +
+               (may_stay_open ? "keep: its border stays where it is, nothing is enclosed, and "
+                                "the exit code is 1"
+                              : "") +
+               (use == PreparedFor::Bounding ? " (with {direction} any, which claims nothing, 0)"
+                                             : "") +
+               (may_stay_open ? "; " : "") + "refuse: an error"},
           [](auto& r) -> auto& { return r.holes; }, holes),
       option<R>(
           {.name = "keep-orientation",
@@ -35,16 +38,18 @@ std::vector<Option<PreparationOptions>> table(bool may_stay_open) {
       choice<R>(
           {.name = "prepare",
            .text =
-               std::string(
-                   "How the triangles are given a solid. auto: inconsistent triangles and "
-                   "parts that are inside out are turned, copies and walls dropped, holes "
-                   "filled, and a mesh that this does not do for is wrapped; strict: the same, "
-                   "but open meshes are refused; wrap: a closed mesh is made round all "
-                   "triangles, whatever they are like, and its solid counts; off: the file's "
-                   "own orientation, and open meshes ") +
+               std::string("How the triangles are given a solid. auto: inconsistent triangles and "
+                           "parts that are inside out are turned, copies and walls dropped, holes "
+                           "filled") +
+               (wraps ? ", and a mesh that this does not do for is wrapped" : "") +
+               "; strict: the same, but open meshes are refused; wrap: a closed mesh is made round "
+               "all triangles, whatever they are like, and its solid counts; off: the file's own "
+               "orientation, and open meshes " +
                (may_stay_open ? "stay open" : "are refused") +
-               ". Of STEP and IGES, auto is wrap for what encloses, so that the exact faces are "
-               "inside, too; else what is claimed is about the triangles that stand for them"},
+               (wraps ? ". Of STEP and IGES, auto is wrap for what encloses, so that the exact "
+                        "faces are inside, too; else what is claimed is about the triangles that "
+                        "stand for them"
+                      : "")},
           [](auto& r) -> auto& { return r.mode; },
           std::vector<std::pair<std::string, Mode>>{{"auto", Mode::Auto},
                                                     {"strict", Mode::Strict},
@@ -76,9 +81,11 @@ geom::PrepareOptions PreparationOptions::preparing() const {
   return out;
 }
 
-const std::vector<Option<PreparationOptions>>& preparation_options(bool may_stay_open) {
-  static const std::vector<Option<PreparationOptions>> open = table(true), closed = table(false);
-  return may_stay_open ? open : closed;
+const std::vector<Option<PreparationOptions>>& preparation_options(PreparedFor use) {
+  static const std::vector<Option<PreparationOptions>> bodies = table(PreparedFor::Bodies),
+                                                       bounding = table(PreparedFor::Bounding),
+                                                       preparing = table(PreparedFor::Preparing);
+  return use == PreparedFor::Bodies ? bodies : use == PreparedFor::Bounding ? bounding : preparing;
 }
 
 std::string contradiction(const PreparationOptions& options, const std::set<std::string>& stated) {
@@ -94,10 +101,8 @@ std::string contradiction(const PreparationOptions& options, const std::set<std:
   if (other.empty() && options.mode == Mode::Wrap)
     other = first_of({"drop-sheets", "keep-orientation"});
   if (other.empty()) return {};
-  std::string mode;
-  for (const Option<PreparationOptions>& option : preparation_options(false))
-    if (option.name == "prepare") mode = option.value(options).value_or("");
-  return "{prepare} " + mode + " cannot be joined with {" + other + "}";
+  return "{prepare} " + value_of(preparation_options(PreparedFor::Bodies), "prepare", options) +
+         " cannot be joined with {" + other + "}";
 }
 
 }  // namespace kaboum::certify

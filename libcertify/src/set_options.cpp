@@ -132,7 +132,8 @@ std::vector<Option<R>> table() {
        .high = 1e9},
       [](auto& r) -> auto& { return r.request.scale; }));
   for (Option<R>& o : options_of_part<R>(
-           preparation_options(false), [](auto& r) -> auto& { return r.preparation; }))
+           preparation_options(PreparedFor::Bodies),
+           [](auto& r) -> auto& { return r.preparation; }))
     out.push_back(std::move(o));
   std::vector<std::pair<std::string, std::string>> units;
   units.reserve(kLengthUnits.size());

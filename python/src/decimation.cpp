@@ -1,13 +1,14 @@
 // Bounding meshes: kaboum.decimate, as bmesh-decimate.
 
-#include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/certify/mesh_options.h>
 
 #include <filesystem>
 
 #include "arguments.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
 
 namespace kaboum::python {
@@ -16,24 +17,6 @@ namespace {
 using certify::CertifiedMesh;
 using certify::MeshCertificate;
 
-constexpr std::array<std::pair<const char*, bmesh::Direction>, 3> kDirections{
-    {{"outer", bmesh::Direction::Outer},
-     {"inner", bmesh::Direction::Inner},
-     {"any", bmesh::Direction::Any}}};
-constexpr std::array<std::pair<const char*, bmesh::Cost>, 6> kCosts{
-    {{"distance", bmesh::Cost::Distance},
-     {"mean", bmesh::Cost::Mean},
-     {"planes", bmesh::Cost::Planes},
-     {"planes-adapted", bmesh::Cost::PlanesAdapted},
-     {"planes-diagonal", bmesh::Cost::PlanesDiagonal},
-     {"triangles", bmesh::Cost::Triangles}}};
-constexpr std::array<std::pair<const char*, bmesh::Effort>, 3> kEfforts{
-    {{"fast", bmesh::Effort::Fast},
-     {"normal", bmesh::Effort::Normal},
-     {"best", bmesh::Effort::Best}}};
-using Numbers = certify::MeshRequest::Numbers;
-constexpr std::array<std::pair<const char*, Numbers>, 3> kNumbers{
-    {{"auto", Numbers::Auto}, {"float", Numbers::Float}, {"double", Numbers::Double}}};
 constexpr std::array<std::pair<const char*, bmesh::Stop>, 4> kStops{
     {{"vertices", bmesh::Stop::VertexTarget},
      {"epsilon", bmesh::Stop::ErrorBound},
@@ -62,6 +45,12 @@ struct BoundingMesh {
     return {kept, &kept->artefact()};
   }
 };
+
+std::string direction_of(const BoundingMesh& m) {
+  certify::MeshOptions options;
+  options.request.direction = m.certificate().direction;
+  return value_of(certify::mesh_options(), "direction", options);
+}
 
 py::list claims_of(const BoundingMesh& m) {
   py::list out;
@@ -129,10 +118,7 @@ It may be given wherever a mesh is expected.)")
       .def_property_readonly(
           "faces", [](const BoundingMesh& m) { return faces_of(m.mesh()); },
           "m x 3 uint32, a view that cannot be written.")
-      .def_property_readonly(
-          "direction",
-          [](const BoundingMesh& m) { return name_of(kDirections, m.certificate().direction); },
-          "'outer', 'inner' or 'any'.")
+      .def_property_readonly("direction", &direction_of, "'outer', 'inner' or 'any'.")
       .def_property_readonly(
           "stop", [](const BoundingMesh& m) { return name_of(kStops, m.certificate().stop); },
           "Why it has no fewer vertices: 'vertices', 'epsilon', 'exhausted' or 'out of work'.")
@@ -171,26 +157,32 @@ It may be given wherever a mesh is expected.)")
       .def("write", &write, py::arg("path"),
            "Writes the certified file; another extension: the same coordinates in that format.")
       .def("__repr__", [](const BoundingMesh& m) {
-        return std::string("<kaboum.BoundingMesh (") +
-               name_of(kDirections, m.certificate().direction) + ") of " +
+        return std::string("<kaboum.BoundingMesh (") + direction_of(m) + ") of " +
                std::to_string(m.certificate().vertices) + " vertices>";
       });
 }
 
-/// One number or several.
-std::vector<std::size_t> counts_of(const py::object& vertices, bool& several) {
-  several = false;
-  if (vertices.is_none()) return {};
-  if (PyIndex_Check(vertices.ptr()) != 0) return {vertices.cast<std::size_t>()};
-  several = true;
-  return vertices.cast<std::vector<std::size_t>>();
+/// What is asked for, and the format of the bytes.
+struct DecimateOptions {
+  certify::MeshOptions mesh;
+  std::string format = "ply";
+};
+
+const std::vector<Option<DecimateOptions>>& decimate_options() {
+  static const std::vector<Option<DecimateOptions>> options = [] {
+    auto out = options_of_part<DecimateOptions>(
+        certify::mesh_options(), [](auto& r) -> auto& { return r.mesh; });
+    out.push_back(option<DecimateOptions>(
+        {.name = "output-format", .text = "Format of `bytes`"},
+        [](auto& r) -> auto& { return r.format; }));
+    return out;
+  }();
+  return options;
 }
 
-std::vector<BoundingMesh> decimated(const py::object& mesh,
-                                    const certify::MeshPreparation& preparation,
-                                    const certify::MeshRequest& request, int threads,
-                                    const py::object& progress) {
-  Watch watch(progress);
+std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshOptions& options,
+                                    const RunKeywords& running) {
+  Watch watch(running.progress);
   std::shared_ptr<const geom::Prepared> original;
   std::string name = "the mesh";
   std::vector<std::string> notes;
@@ -202,27 +194,17 @@ std::vector<BoundingMesh> decimated(const py::object& mesh,
     if (!value.source.empty()) name = value.source;
     notes = value.notes;
   }
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     const certify::MeshHooks hooks{.progress = watch.hook(), .found = {}, .prepared = {}};
+    const certify::MeshRequest& request = options.request;
     certify::BoundedMesh made;
     if (original) {
       made.series = certify::certify_meshes(*original, request, hooks);
       notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());
     } else {
-      using Wrap = certify::MeshPreparation::Wrap;
-      certify::MeshPreparation asked = preparation;
-      // Of STEP and IGES the exact faces are what is enclosed.
-      if (value.deviation > 0 && request.direction == bmesh::Direction::Outer &&
-          asked.wrap == Wrap::WhereNeeded)
-        asked.wrap = Wrap::Always;
-      asked.wrapping.clearance = value.deviation;
-      if (request.direction != bmesh::Direction::Any) {
-        using Diagonal = geom::PrepareOptions::Diagonal;
-        asked.options.quads = value.bent_quads;
-        asked.options.diagonal =
-            request.direction == bmesh::Direction::Outer ? Diagonal::Outward : Diagonal::Inward;
-      }
-      made = certify::bound_mesh(*value.mesh, request, asked, hooks);
+      made = certify::bound_mesh(
+          *value.mesh, request, certify::preparation_of(options, value.bent_quads, value.deviation),
+          hooks);
       for (std::string& text : certify::notes_of(made)) notes.push_back(std::move(text));
     }
     if (made.series.meshes.empty()) throw certify::TooCoarse(name);
@@ -233,50 +215,18 @@ std::vector<BoundingMesh> decimated(const py::object& mesh,
   });
 }
 
-constexpr std::array<std::pair<const char*, certify::MeshPreparation::Wrap>, 4> kPreparations{
-    {{"auto", certify::MeshPreparation::Wrap::WhereNeeded},
-     {"strict", certify::MeshPreparation::Wrap::Never},
-     {"wrap", certify::MeshPreparation::Wrap::Always},
-     {"off", certify::MeshPreparation::Wrap::Never}}};
-
-py::object decimate(const py::object& mesh, const py::object& vertices,
-                    const std::optional<double>& ratio, const py::object& epsilon,
-                    const std::string& direction, const std::string& cost,
-                    const std::string& effort, const std::optional<double>& max_work,
-                    bool as_printed, const std::string& precision, double sharp_angle,
-                    bool keep_convex, const std::string& prepare, const py::object& offset,
-                    const py::object& seal, bool drop_sheets, const std::string& holes,
-                    bool keep_orientation, bool verify, bool measure,
-                    const std::string& output_format, int threads, const py::object& progress) {
-  certify::MeshRequest r;
-  bool several = false;
-  r.vertices = counts_of(vertices, several);
-  r.ratio = ratio;
-  r.epsilon = length_of(epsilon, "epsilon");
-  if (r.vertices.empty() && !r.ratio && !r.epsilon)
-    throw Error(ErrorCode::InvalidArgument, "give at least one of vertices, ratio and epsilon");
-  r.direction = value_of(kDirections, direction, "direction");
-  r.cost = value_of(kCosts, cost, "cost");
-  r.effort = value_of(kEfforts, effort, "effort");
-  r.max_work = max_work;
-  r.as_printed = as_printed;
-  r.numbers = value_of(kNumbers, precision, "precision");
-  if (cost.starts_with("planes") || sharp_angle != bmesh::kSharpAngle) r.sharp_angle = sharp_angle;
-  r.keep_convex = keep_convex;
-  r.decide = verify;
-  r.measure = measure;
-  r.format = *format_of(output_format, "output_format");
-  r.comment = "bmesh-decimate " KABOUM_VERSION;
-  certify::MeshPreparation preparation;
-  preparation.wrap = value_of(kPreparations, prepare, "prepare");
-  preparation.options = {.drop_sheets = drop_sheets,
-                         .holes = prepare == "strict" ? geom::Holes::Refuse
-                                  : prepare == "off"  ? geom::Holes::Keep
-                                                      : holes_of(holes, true),
-                         .keep_orientation = keep_orientation || prepare == "off"};
-  preparation.wrapping.offset = length_of(offset, "offset");
-  preparation.wrapping.seal = length_of(seal, "seal");
-  std::vector<BoundingMesh> made = decimated(mesh, preparation, r, threads, progress);
+py::object decimate(const py::object& mesh, const py::kwargs& given) {
+  py::dict keywords = given;
+  const bool several =
+      keywords.contains("vertices") && py::isinstance<py::sequence>(keywords["vertices"]);
+  DecimateOptions options;
+  const std::set<std::string> stated = take_options(decimate_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords, false);
+  require_all_taken("decimate", keywords, keywords_of(decimate_options()));
+  require_none(certify::contradiction(options.mesh, stated));
+  options.mesh.request.format = *format_of(options.format, "output_format");
+  options.mesh.request.comment = "bmesh-decimate " KABOUM_VERSION;
+  std::vector<BoundingMesh> made = decimated(mesh, options.mesh, running);
   if (several) return py::cast(std::move(made));
   return py::cast(std::move(made.front()));
 }
@@ -289,46 +239,9 @@ Options and defaults are those of bmesh-decimate (docs/algorithms/bounding-mesh.
 Parameters
 ----------
 mesh : mesh
-    Prepared first, unless it is a `Prepared`.
-vertices : int or sequence of int, optional
-    Stop at this many vertices. Several, falling, give a list: each result encloses (inner: is
-    enclosed by) the ones before.
-ratio : float, optional
-    Stop at this share of the vertices, between 0 and 1.
-epsilon : float or str, optional
-    Keep every point of either surface this near to the other: a length, or a percentage of the
-    diagonal such as '0.5%'. The first of the three that is reached stops.
-direction : str
-    'outer', 'inner', or 'any', which claims nothing.
-cost : str
-    'distance', 'mean', 'planes', 'planes-adapted', 'planes-diagonal' or 'triangles'.
-effort : str
-    'fast', 'normal' or 'best'.
-max_work : float, optional
-    End after work of about so many seconds; the result does not depend on the machine.
-precision : str
-    'auto', 'float' or 'double'.
-sharp_angle : float
-    Edges sharper than this resist spikes (costs 'planes...' only). [degrees]
-keep_convex : bool
-    Convex in, convex out, exactly.
-prepare : str
-    'auto', 'strict', 'wrap' or 'off': how the triangles get a solid. 'auto' wraps the mesh where some
-    triangle would not be enclosed otherwise, or there is no solid.
-offset, seal : float or str, optional
-    Of a wrap, as for `wrap`.
-drop_sheets, holes, keep_orientation
-    As for `kaboum.prepare`.
-verify : bool
-    Decide all claims anew, exactly and by independent means.
-measure : bool
-    Certified brackets of distances, which epsilon and verify measure anyway.
-output_format : str
-    Of `bytes`.
-threads : int
-    0: one per core. The result is the same for any number.
-progress : callable, optional
-    Called with what is being done; what it raises ends the work, as Ctrl-C does.
+    Prepared first, unless it is a `Prepared`. Several numbers of vertices give a list, the largest
+    number first.
+{keywords}
 
 Returns
 -------
@@ -345,17 +258,11 @@ Error
 
 void bind_decimation(py::module_& module) {
   bind_class(module);
-  module.def(
-      "decimate", &decimate, py::arg("mesh"), py::kw_only(), py::arg("vertices") = py::none(),
-      py::arg("ratio") = py::none(), py::arg("epsilon") = py::none(),
-      py::arg("direction") = "outer", py::arg("cost") = "distance", py::arg("effort") = "normal",
-      py::arg("max_work") = py::none(), py::arg("as_printed") = false,
-      py::arg("precision") = "auto", py::arg("sharp_angle") = 90.0, py::arg("keep_convex") = false,
-      py::arg("prepare") = "auto", py::arg("offset") = py::none(), py::arg("seal") = py::none(),
-      py::arg("drop_sheets") = false, py::arg("holes") = "fill",
-      py::arg("keep_orientation") = false, py::arg("verify") = false, py::arg("measure") = false,
-      py::arg("output_format") = "ply", py::arg("threads") = 0, py::arg("progress") = py::none(),
-      kDoc);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text =
+      document("decimate", "mesh: object", keywords_of(decimate_options()), "object", kDoc, false);
+  module.def("decimate", &decimate, py::arg("mesh"), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -1,5 +1,6 @@
 // The tables of options, for the typed stub, the reference page and tests of both.
 
+#include <kaboum/certify/mesh_options.h>
 #include <kaboum/certify/set_options.h>
 
 #include "request_options.h"
@@ -12,6 +13,7 @@ void bind_option_tables(py::module_& module) {
       "_option_tables",
       [] {
         py::dict out;
+        out["decimate"] = table_of(keywords_of(certify::mesh_options()));
         out["decompose"] = table_of(keywords_of(certify::set_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
         return out;

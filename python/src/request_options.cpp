@@ -33,6 +33,8 @@ const char* type_words(Kind kind) {
       return "bool";
     case Kind::Count:
       return "int";
+    case Kind::Counts:
+      return "int or sequence of int";
     case Kind::Number:
       return "float";
     case Kind::Length:
@@ -42,6 +44,25 @@ const char* type_words(Kind kind) {
       break;
   }
   return "str";
+}
+
+std::string text_of_counts(const OptionDescription& option, const py::object& value) {
+  const auto is_count = [](const py::handle& one) {
+    return PyBool_Check(one.ptr()) == 0 && PyIndex_Check(one.ptr()) != 0;
+  };
+  const auto digits = [](const py::handle& one) -> std::string {
+    return py::str(py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr())));
+  };
+  if (is_count(value)) return digits(value);
+  const char* what = "an int or a sequence of them";
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value))
+    refuse(option, what, value);
+  std::string out;
+  for (const py::handle one : value) {
+    if (!is_count(one)) refuse(option, what, value);
+    out.append(out.empty() ? "" : ",").append(digits(one));
+  }
+  return out;
 }
 
 /// A default as Python writes it.
@@ -88,11 +109,13 @@ std::string entry_of(const Keyword& keyword) {
          (keyword.initial ? "" : ", optional") + "\n" + wrapped(text, 4);
 }
 
-constexpr const char* kRunEntries =
+constexpr const char* kCacheEntry =
     R"(no_cache : bool
     Neither use nor store results of earlier runs ($KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else
     ~/.cache/kaboum).
-threads : int
+)";
+constexpr const char* kRunEntries =
+    R"(threads : int
     0: one per core. The result is the same for any number.
 progress : callable, optional
     Called with what is being done; what it raises ends the work, as Ctrl-C does.
@@ -120,6 +143,9 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
         refuse(option, "an int", value);
       text = py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
       break;
+    case Kind::Counts:
+      text = text_of_counts(option, value);
+      break;
     case Kind::Number:
       if (!is_number(value)) refuse(option, "a number", value);
       text = option_text::of(value.cast<double>());
@@ -140,7 +166,7 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
   return text;
 }
 
-RunKeywords take_run_keywords(py::dict& keywords) {
+RunKeywords take_run_keywords(py::dict& keywords, bool cached) {
   RunKeywords out;
   const auto take = [&](const char* name) -> py::object {
     return keywords.attr("pop")(name, py::none());
@@ -148,7 +174,7 @@ RunKeywords take_run_keywords(py::dict& keywords) {
   const auto wrong = [](const char* name, const char* type) {
     return py::type_error(std::string(name) + " must be " + type);
   };
-  if (const py::object value = take("no_cache"); !value.is_none()) {
+  if (const py::object value = cached ? take("no_cache") : py::none(); !value.is_none()) {
     if (!py::isinstance<py::bool_>(value)) throw wrong("no_cache", "True or False");
     out.no_cache = value.cast<bool>();
   }
@@ -177,15 +203,18 @@ void require_none(const std::string& contradiction) {
 
 std::string document(const std::string& function, const std::string& positional,
                      const std::vector<Keyword>& keywords, const std::string& result,
-                     const std::string& text) {
+                     const std::string& text, bool cached) {
   std::string signature = function + "(" + positional + ", *";
   std::string entries;
   for (const Keyword& keyword : keywords) {
     signature += ", " + with_underscores(keyword.option.name) + ": object = " + literal(keyword);
     entries += entry_of(keyword);
   }
-  signature +=
-      ", no_cache: bool = False, threads: int = 0, progress: object = None) -> " + result + "\n\n";
+  if (cached) {
+    signature += ", no_cache: bool = False";
+    entries += kCacheEntry;
+  }
+  signature += ", threads: int = 0, progress: object = None) -> " + result + "\n\n";
   entries += kRunEntries;
   const std::string place = "{keywords}\n";
   const std::size_t at = text.find(place);

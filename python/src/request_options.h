@@ -39,9 +39,10 @@ std::string with_underscores(const std::string& name);
 /// @throws Error{InvalidArgument} naming the keyword: a value of another type, or a wrong one
 std::optional<std::string> text_of(const OptionDescription& option, const py::object& value);
 
-/// Takes no_cache, threads and progress out of keywords.
+/// Takes threads and progress out of keywords, and no_cache.
+/// @param cached  whether there is no_cache
 /// @throws py::type_error on other types
-RunKeywords take_run_keywords(py::dict& keywords);
+RunKeywords take_run_keywords(py::dict& keywords, bool cached = true);
 
 /// @throws py::type_error naming a keyword that nothing took, and one like it
 void require_all_taken(const char* function, const py::dict& keywords,
@@ -75,9 +76,10 @@ std::set<std::string> take_options(const std::vector<Option<Request>>& options, 
 /// place of "{keywords}".
 /// @param positional  parameters before the keywords: "mesh: object"
 /// @param result      the type of what is returned
+/// @param cached      whether there is no_cache
 std::string document(const std::string& function, const std::string& positional,
                      const std::vector<Keyword>& keywords, const std::string& result,
-                     const std::string& text);
+                     const std::string& text, bool cached = true);
 
 /// The table of a function's keywords, for stub and reference: a list of dicts.
 py::list table_of(const std::vector<Keyword>& keywords);

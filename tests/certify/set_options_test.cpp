@@ -5,6 +5,7 @@
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/certify/set_options.h>
 
+#include "support/other_option_value.h"
 #include "support/shapes.h"
 
 namespace kaboum::certify {
@@ -50,32 +51,13 @@ TEST(SetOptions, RecordsKeepTheirWords) {
             "--seal 2");
 }
 
-/// A value that is not the default.
-std::string other_value(const Option<SetOptions>& o) {
-  switch (o.kind) {
-    case OptionDescription::Kind::Flag:
-      return "true";
-    case OptionDescription::Kind::Count:
-      return std::to_string(static_cast<std::size_t>(o.low) + 1);
-    case OptionDescription::Kind::Number:
-      return option_text::of(0.5 * (o.low + std::min(o.high, 1.0)));
-    case OptionDescription::Kind::Length:
-      return "0.125%";
-    case OptionDescription::Kind::Choice:
-      return default_of(o) == o.choices.front() ? o.choices.back() : o.choices.front();
-    case OptionDescription::Kind::Text:
-      break;
-  }
-  return "another";
-}
-
 TEST(SetOptions, EachIsRecordedReadBackAndPartOfTheKey) {
   const geom::Mesh mesh = test::box({1, 2, 3}, 1);
   for (const Option<SetOptions>& o : set_options()) {
     SetOptions plain, changed;
     const bool of_wrap = o.name == "offset" || o.name == "seal";
     if (of_wrap) plain.preparation.mode = changed.preparation.mode = PreparationOptions::Mode::Wrap;
-    const std::string value = other_value(o);
+    const std::string value = test::other_value(o);
     ASSERT_EQ(flaw_of(o, value), "") << o.name << " " << value;
     o.assign(changed, value);
     EXPECT_EQ(o.value(changed), value) << o.name;

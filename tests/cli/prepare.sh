@@ -24,7 +24,7 @@ expect 3 'prepare wrap' "$P" open.off -o none.off --prepare strict
 expect 3 'prepare wrap' "$P" sheet.off -o none.off
 expect 3 '' "$P" crossing.off -o none.off --prepare strict
 expect 1 '' "$P" open.off -o kept.off --prepare off
-expect 2 'prepare auto' "$P" open.off -o none.off --seal 1%
+expect 2 '--seal needs --prepare wrap' "$P" open.off -o none.off --seal 1%
 expect 2 '' "$P" open.off -o none.off --prepare wrap --seal 0
 expect 2 '' "$P" open.off -o none.off --prepare other
 

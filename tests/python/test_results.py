@@ -127,7 +127,7 @@ def test_distances_of_cubes():
 @pytest.mark.parametrize("options", [
     {}, {"epsilon": 0}, {"epsilon": -1}, {"epsilon": "5"+"%%"}, {"epsilon": True}, {"epsilon": float("nan")},
     {"vertices": 100, "direction": "outside"}, {"ratio": 2.0}, {"vertices": 100, "threads": -1},
-    {"vertices": 100, "progress": 5}, {"vertices": 100, "output_format": "x3d"}, {"vertices": [100, 200]},
+    {"vertices": 100, "progress": 5}, {"vertices": 100, "output_format": "x3d"}, {"vertices": [100, 100]},
 ])
 def test_options_that_contradict(ring, options):
     with pytest.raises(kaboum.Error) as error:

@@ -20,6 +20,7 @@ struct OptionDescription {
   enum class Kind {
     Flag,    ///< stated or not
     Count,   ///< an integer
+    Counts,  ///< different integers, the largest first: "20000,10000"
     Number,  ///< a finite number
     Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "0.5%"
     Choice,  ///< one of `choices`
@@ -33,6 +34,7 @@ struct OptionDescription {
   std::string values = {};  ///< placeholder of a value in usage: "SECONDS"; empty: by its kind
   double low = -std::numeric_limits<double>::infinity();  ///< least count or number
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
+  bool between = false;  ///< a number lies between the limits and is none of them
   /// Default in words; empty: that of the request, if it has one.
   std::string otherwise = {};
   /// Part of each record, its default too.
@@ -63,6 +65,7 @@ std::string flaw_of(const OptionDescription& option, const std::string& value);
 namespace option_text {
 std::string of(bool value);
 std::string of(std::size_t value);
+std::string of(const std::vector<std::size_t>& value);
 std::string of(double value);
 std::string of(const Length& value);
 std::string of(const std::string& value);
@@ -70,6 +73,7 @@ std::string of(const std::string& value);
 /// @pre flaw_of finds nothing.
 void parse(const std::string& text, bool& value);
 void parse(const std::string& text, std::size_t& value);
+void parse(const std::string& text, std::vector<std::size_t>& value);
 void parse(const std::string& text, double& value);
 void parse(const std::string& text, Length& value);
 void parse(const std::string& text, std::string& value);
@@ -103,6 +107,8 @@ constexpr OptionDescription::Kind kind_of() {
     return Kind::Flag;
   else if constexpr (std::is_same_v<T, std::size_t>)
     return Kind::Count;
+  else if constexpr (std::is_same_v<T, std::vector<std::size_t>>)
+    return Kind::Counts;
   else if constexpr (std::is_same_v<T, double>)
     return Kind::Number;
   else if constexpr (std::is_same_v<T, Length>)
@@ -112,8 +118,8 @@ constexpr OptionDescription::Kind kind_of() {
 }
 }  // namespace option_detail
 
-/// An option whose value is a member of the request: a bool, size_t, double, Length or string, or
-/// an optional one.
+/// An option whose value is a member of the request: a bool, size_t, double, Length, string or
+/// vector of size_t, or an optional one. An empty vector states nothing.
 /// @param member  of a request, const or not: a reference to the value
 template <class Request, class Member>
 Option<Request> option(OptionDescription description, Member member) {
@@ -126,6 +132,9 @@ Option<Request> option(OptionDescription description, Member member) {
             if constexpr (Content::optional) {
               if (!stored) return std::nullopt;
               return option_text::of(*stored);
+            } else if constexpr (std::is_same_v<Stored, std::vector<std::size_t>>) {
+              if (stored.empty()) return std::nullopt;
+              return option_text::of(stored);
             } else {
               return option_text::of(stored);
             }
@@ -181,6 +190,15 @@ template <class Request>
 std::optional<std::string> default_of(const Option<Request>& option) {
   static const Request plain{};
   return option.value(plain);
+}
+
+/// The value of the option of that name as text; empty where there is none.
+template <class Request>
+std::string value_of(const std::vector<Option<Request>>& options, std::string_view name,
+                     const Request& request) {
+  for (const Option<Request>& option : options)
+    if (option.name == name) return option.value(request).value_or(std::string());
+  return {};
 }
 
 /// The options of a request that are not as by default, in one line: the record of what a result

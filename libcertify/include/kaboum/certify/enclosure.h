@@ -29,7 +29,7 @@ struct EnclosureRequest {
   /// these are enclosed. False: what is claimed is about the triangles.
   bool hold_exact_faces = true;
 
-  /// As bmesh-decimate spells what the result depends on.
+  /// What the result depends on, as records have it; for keys of caches.
   [[nodiscard]] std::string parameters() const;
 };
 

@@ -33,9 +33,15 @@ struct PreparationOptions {
   [[nodiscard]] bool holds_exact_faces() const { return mode == Mode::Auto || mode == Mode::Wrap; }
 };
 
+/// What a mesh is prepared for.
+enum class PreparedFor {
+  Bodies,     ///< a set of convex bodies: open meshes are refused
+  Bounding,   ///< a bounding mesh: it may be open, like its input
+  Preparing,  ///< the prepared mesh itself; it is wrapped only where that is asked for
+};
+
 /// The options of preparation: drop-sheets, holes, keep-orientation, prepare, offset, seal.
-/// @param may_stay_open  whether a result may be made of an open mesh
-const std::vector<Option<PreparationOptions>>& preparation_options(bool may_stay_open);
+const std::vector<Option<PreparationOptions>>& preparation_options(PreparedFor use);
 
 /// Why the options do not go together, with names as OptionDescription::text has them; empty where
 /// they do.

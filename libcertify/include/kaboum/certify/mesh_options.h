@@ -1,0 +1,42 @@
+#pragma once
+
+#include <kaboum/base/option.h>
+#include <kaboum/certify/enclosure.h>
+#include <kaboum/certify/mesh.h>
+#include <kaboum/certify/preparation_options.h>
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kaboum::certify {
+
+/// What a user states of a bounding mesh. A request follows from it.
+struct MeshOptions {
+  /// Distances are measured and claims decided only where that is stated.
+  MeshOptions() { request.measure = request.decide = false; }
+
+  MeshRequest request;  ///< all but `format`, `comment` and `record_steps`
+  PreparationOptions preparation;
+};
+
+/// The options of a bounding mesh.
+const std::vector<Option<MeshOptions>>& mesh_options();
+
+/// Why the options do not go together, with names as OptionDescription::text has them; empty where
+/// they do.
+/// @param stated  names of those that a user stated
+std::string contradiction(const MeshOptions& options, const std::set<std::string>& stated);
+
+/// How an input is given its solid for a bounding mesh.
+/// @param bent_quads  of the input, as io::ReadResult has them; steps that are recorded start from
+///   the file's own triangles
+/// @param deviation   of its exact faces [length]; 0: the triangles are meant
+MeshPreparation preparation_of(const MeshOptions& options,
+                               const std::vector<std::uint32_t>& bent_quads, double deviation);
+
+/// The request for a mesh that encloses that of a file.
+EnclosureRequest enclosure_request_of(const MeshOptions& options);
+
+}  // namespace kaboum::certify
