@@ -60,29 +60,7 @@ int make_scene(const tools::SceneOptions& o) {
   std::vector<std::string> inputs;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const scene::NamedFile& file : *files) inputs.push_back(file.file);
-  if (inputs.empty())
-    throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
-  if (!o.scene.ends_with(".json") && !o.scene.ends_with(".yaml") && !o.scene.ends_with(".yml"))
-    throw Error(ErrorCode::InvalidArgument,
-                o.scene + ": a scene's name ends in .json, .yaml or .yml");
-  if (!o.force && std::filesystem::exists(o.scene))
-    throw Error(ErrorCode::InvalidArgument,
-                o.scene + " exists; --force replaces it, with all that was edited in it");
-  const std::filesystem::path folder = std::filesystem::path(o.scene).replace_extension();
-  std::error_code error;
-  if (!o.force && std::filesystem::exists(folder, error) &&
-      !std::filesystem::is_empty(folder, error))
-    throw Error(ErrorCode::InvalidArgument,
-                folder.string() + ", where the sets of " + o.scene +
-                    " go, is there already, perhaps of another scene; --force writes into it");
-  // Lengths in URDFs are metres; an arm that is a thousand times too small is free of everything.
-  if (!o.robots.empty() && o.unit != "m")
-    throw Error(ErrorCode::InvalidArgument,
-                "--unit " + o.unit +
-                    ": URDFs are in m, and so are scenes with robots; bring the "
-                    "meshes of objects into m with --scale");
-  if (o.inner_links && o.robots.empty())
-    throw Error(ErrorCode::InvalidArgument, "--inner-links: no robot is asked for (--robot)");
+  maker.replace = o.force;
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
   if (o.inner_links) maker.options.inner_links.emplace();  // all

@@ -55,9 +55,42 @@ Json pose_json(const SceneMaker& maker, const std::string& name) {
   return out;
 }
 
+/// Refuses what contradicts itself, or would replace something.
+void require_sound(const SceneMaker& maker) {
+  if (maker.robots.empty() && maker.objects.empty() && maker.regions.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "nothing is asked for: give a robot, an object or a region");
+  require_free_place(maker.scene, maker.replace);
+  // Lengths in URDFs are metres; an arm that is a thousand times too small is free of everything.
+  if (!maker.robots.empty() && maker.options.sets.unit != "m")
+    throw Error(ErrorCode::InvalidArgument,
+                "unit " + maker.options.sets.unit +
+                    ": URDFs are in m, and so are scenes with robots; bring the meshes of objects "
+                    "into m (scale)");
+  if (maker.options.inner_links && maker.robots.empty())
+    throw Error(ErrorCode::InvalidArgument, "inner sets of links: no robot is asked for");
+}
+
 }  // namespace
 
+void require_free_place(const fs::path& scene, bool replace) {
+  const std::string name = scene.string();
+  if (!name.ends_with(".json") && !name.ends_with(".yaml") && !name.ends_with(".yml"))
+    throw Error(ErrorCode::InvalidArgument, name + ": a scene's name ends in .json, .yaml or .yml");
+  if (replace) return;
+  std::error_code error;
+  if (fs::exists(scene, error))
+    throw Error(ErrorCode::InvalidArgument,
+                name + " exists; replacing it (force) loses all that was edited in it");
+  const fs::path folder = fs::path(scene).replace_extension();
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
+    throw Error(ErrorCode::InvalidArgument,
+                folder.string() + ", where the sets of " + name +
+                    " go, is there already, perhaps of another scene; force writes into it");
+}
+
 MadeScene make_scene(const SceneMaker& maker) {
+  require_sound(maker);
   std::set<std::string> names;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)

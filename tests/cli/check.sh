@@ -275,7 +275,7 @@ expect 2 'is used twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cub
 for option in --path --configuration --configurations; do expect 2 'is empty' "$BIN/kaboum-check" near.json $option ''; done
 sed 's/"unit": "m"/"unit": "mm"/' near.json >mm.json
 expect 3 'URDFs are in m' "$BIN/kaboum-check" mm.json
-expect 2 'cell.json exists; --force' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
+expect 2 'cell.json exists; replacing it (force)' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
 expect 2 'ends in .json' "$BIN/kaboum-scene" make cell --object box=meshes/cube.off
 expect 2 'URDFs are in m' "$BIN/kaboum-scene" make bad.json --unit mm --robot arm=arm.urdf --object box=meshes/cube.off
 # Files that state their unit, and others: a set is in the unit that it says.

@@ -41,7 +41,8 @@ struct SceneMaker {
   std::map<std::string, geom::Transform> places;  ///< of what is named; the origin for the others
   std::map<std::string, double> scales;           ///< of objects' and regions' meshes
   bool inner = false;                             ///< inner sets of objects as well
-  SceneSetOptions options;                        ///< of everything
+  bool replace = false;     ///< a scene that exists, with all that was edited in it
+  SceneSetOptions options;  ///< of everything
 };
 
 /// What was written, and what a user should know of it.
@@ -55,7 +56,9 @@ struct MadeScene {
 
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem
 /// beside it, then the scene.
-/// @throws Error naming the file; Error{InvalidArgument} where a place is of nothing.
+/// @throws Error naming the file; Error{InvalidArgument} where a place is of nothing, where the
+/// scene
+///   or its folder is there already, or its unit is not that of a robot.
 MadeScene make_scene(const SceneMaker& maker);
 
 }  // namespace kaboum::scene
