@@ -31,30 +31,31 @@ Json object_of(const std::string& text, const std::string& name,
   Json out = parsed(text, name);
   if (!out.is_object())
     throw Error(ErrorCode::InvalidArgument, name + ": an object of members is expected");
-  for (const std::string& member : own)
-    if (out.contains(member))
-      throw Error(ErrorCode::InvalidArgument,
-                  name + ": '" + member + "' follows from the sets and cannot be stated");
+  const auto stated =
+      std::ranges::find_if(own, [&](const std::string& member) { return out.contains(member); });
+  if (stated != own.end())
+    throw Error(ErrorCode::InvalidArgument,
+                name + ": '" + *stated + "' follows from the sets and cannot be stated");
   return out;
 }
-
-struct AddedRobot {
-  std::string name;
-  std::shared_ptr<const robot::RobotFile> file;
-  certify::CertifiedRobot made;
-  Json members;
-};
-
-/// An object, or a region, which has an inner set only.
-struct AddedThing {
-  std::string name;
-  std::optional<SceneSet> outer, inner;
-  Json members;
-};
 
 }  // namespace
 
 struct SceneDraft::State {
+  struct AddedRobot {
+    std::string name;
+    std::shared_ptr<const robot::RobotFile> file;
+    certify::CertifiedRobot made;
+    Json members;
+  };
+
+  /// An object, or a region, which has an inner set only.
+  struct AddedThing {
+    std::string name;
+    std::optional<SceneSet> outer, inner;
+    Json members;
+  };
+
   Json base;
   fs::path file = {};  ///< where it was read or written last
   bool was_read = false;
