@@ -14,15 +14,12 @@ struct WrapValue {
   std::vector<std::string> notes;
 
   /// Keeps what it looks into.
-  [[nodiscard]] std::shared_ptr<const geom::Mesh> mesh() const {
-    return {made, &made->artefact()};
-  }
+  [[nodiscard]] std::shared_ptr<const geom::Mesh> mesh() const { return {made, &made->artefact()}; }
 };
 
-WrapValue wrap(const py::object &mesh, const py::object &offset,
-               const py::object &seal, const py::object &epsilon,
-               const std::string &precision, int threads,
-               const py::object &progress) {
+WrapValue wrap(const py::object& mesh, const py::object& offset, const py::object& seal,
+               const py::object& epsilon, const std::string& precision, int threads,
+               const py::object& progress) {
   const MeshValue value = mesh_of(mesh, "mesh");
   if (precision != "float" && precision != "double")
     refuse_name("precision", precision, {"float", "double"});
@@ -37,13 +34,13 @@ WrapValue wrap(const py::object &mesh, const py::object &offset,
   Watch watch(progress);
   request.progress = watch.hook();
   return run(threads, [&] {
-    return WrapValue{std::make_shared<certify::CertifiedWrap>(
-                         certify::certify_wrap(*value.mesh, request)),
-                     value.notes};
+    return WrapValue{
+        std::make_shared<certify::CertifiedWrap>(certify::certify_wrap(*value.mesh, request)),
+        value.notes};
   });
 }
 
-constexpr const char *kDoc =
+constexpr const char* kDoc =
     R"(A closed mesh whose solid holds every triangle of the input, whatever they are like.
 
 Decided exactly by what shares nothing with the search, as `mesh-prepare --prepare wrap`
@@ -70,45 +67,41 @@ Raises
 Error
     'invalid_input' where there is nothing to wrap, or it would be farther than `epsilon`.)";
 
-} // namespace
+}  // namespace
 
-void bind_wraps(py::module_ &module) {
-  py::class_<WrapValue>(module, "Wrap",
-                        "A closed mesh that was decided to hold all triangles.")
+void bind_wraps(py::module_& module) {
+  py::class_<WrapValue>(module, "Wrap", "A closed mesh that was decided to hold all triangles.")
       .def_property_readonly(
-          "vertices", [](const WrapValue &w) { return vertices_of(w.mesh()); },
+          "vertices", [](const WrapValue& w) { return vertices_of(w.mesh()); },
           "n x 3 float64, a view that cannot be written. [length]")
       .def_property_readonly(
-          "faces", [](const WrapValue &w) { return faces_of(w.mesh()); },
+          "faces", [](const WrapValue& w) { return faces_of(w.mesh()); },
           "m x 3 uint32, a view that cannot be written.")
       .def_property_readonly(
           "report",
-          [](const WrapValue &w) {
+          [](const WrapValue& w) {
             return py::module_::import("json").attr("loads")(
                 certify::to_json(w.made->certificate()));
           },
           "A dict, as in mesh-prepare's report: 'offset', 'seal', distances.")
       .def_property_readonly(
           "distance",
-          [](const WrapValue &w) {
-            const certify::WrapCertificate &c = w.made->certificate();
+          [](const WrapValue& w) {
+            const certify::WrapCertificate& c = w.made->certificate();
             return py::make_tuple(c.farthest_lower, c.farthest_upper);
           },
           "Certified bracket of the largest distance of its points from the "
           "triangles. [length]")
       .def_property_readonly(
-          "notes", [](const WrapValue &w) { return w.notes; },
-          "What a user should know.")
-      .def("__repr__", [](const WrapValue &w) {
-        return "<kaboum.Wrap of " +
-               std::to_string(w.made->artefact().vertices.size()) +
-               " vertices, " +
-               std::to_string(w.made->artefact().triangles.size()) + " faces>";
+          "notes", [](const WrapValue& w) { return w.notes; }, "What a user should know.")
+      .def("__repr__", [](const WrapValue& w) {
+        return "<kaboum.Wrap of " + std::to_string(w.made->artefact().vertices.size()) +
+               " vertices, " + std::to_string(w.made->artefact().triangles.size()) + " faces>";
       });
-  module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(),
-             py::arg("offset") = py::none(), py::arg("seal") = py::none(),
-             py::arg("epsilon") = py::none(), py::arg("precision") = "float",
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kDoc);
+  module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(), py::arg("offset") = py::none(),
+             py::arg("seal") = py::none(), py::arg("epsilon") = py::none(),
+             py::arg("precision") = "float", py::arg("threads") = 0,
+             py::arg("progress") = py::none(), kDoc);
 }
 
-} // namespace kaboum::python
+}  // namespace kaboum::python

@@ -68,11 +68,9 @@ def test_poses(six):
 @pytest.mark.parametrize("keywords, says", [
     ({"pose": [0, 0]}, "pose"), ({}, "give pose"), ({"pose": [0, 0, 1], "pose_of": [0] * 6}, "give pose"),
     ({"pose_of": [0] * 5}, "pose_of must have a value for each"), ({"pose": [0, 0, 1], "tip": "nose"}, "nose"),
-    ({"pose": [0, 0, float("nan")]}, "not finite"), ({"pose": [0, 0, 2**53 + 1]}, "pose"), ({"pose": "x"}, "row of numbers"),
+    ({"pose": [0, 0, float("nan")]}, "not finite"), ({"pose": np.array([0, 0, 2**53 + 1])}, "pose"), ({"pose": "x"}, "row of numbers"),
     ({"pose": [0, 0, 1], "free_heading": True}, "five axes"), ({"pose": np.ones((4, 4))}, "last row"),
 ])
 def test_what_is_refused(six, keywords, says):
-    if "pose" in keywords and keywords["pose"] == [0, 0, 2**53 + 1]:
-        keywords = {"pose": np.array([0, 0, 2**53 + 1])}  # no double
     with pytest.raises(kaboum.Error, match=says):
         kaboum.inverse_kinematics(six, **keywords)
