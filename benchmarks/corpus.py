@@ -28,11 +28,11 @@ import tempfile
 
 FORMATS = {".off", ".obj", ".ply", ".stl", ".wrl", ".dae", ".glb", ".3mf"}
 CASES = {
-    "outer": ("bmesh-decimate", ["--ratio", "0.1"], "--outer"),
-    "inner": ("bmesh-decimate", ["--ratio", "0.1", "--direction", "inner"], "--inner"),
-    "cover": ("bcd-decompose", ["--no-cache", "--epsilon", "2%"], "--cover"),
-    "cover-fast": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--effort", "fast"], "--cover"),
-    "inside": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--direction", "inner"], "--inner"),
+    "outer": ("bmesh-decimate", ["--ratio", "0.1"], ["mesh", "--outer"]),
+    "inner": ("bmesh-decimate", ["--ratio", "0.1", "--direction", "inner"], ["mesh", "--inner"]),
+    "cover": ("bcd-decompose", ["--no-cache", "--epsilon", "2%"], ["cover"]),
+    "cover-fast": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--effort", "fast"], ["cover"]),
+    "inside": ("bcd-decompose", ["--no-cache", "--epsilon", "2%", "--direction", "inner"], ["mesh", "--inner"]),
 }
 SLOW = 60  # seconds of CPU
 FACTOR = 10
@@ -90,9 +90,9 @@ def judge(tools, mesh, case, work, seconds):
     row["triangles"] = facts["input"].get("triangles", 0)
     epsilon = "2%" if tool == "bcd-decompose" else recorded_epsilon(facts)
     if facts.get("preparation", {}).get("wrap"):  # whatever the file's solid: each of its triangles is inside
-        command = [tools / "bound-verify", relation, mesh, result, "--raw"]
+        command = [tools / "bound-verify", *relation, mesh, result, "--raw"]
     else:
-        command = [tools / "bound-verify", relation, mesh, result, "--prepare"]
+        command = [tools / "bound-verify", *relation, mesh, result, "--prepare"]
         command += ["--drop-sheets"] if "--drop-sheets" in options else []
         command += ["--epsilon", epsilon] if epsilon else []
     code, used, out, err = run(command, seconds)
@@ -108,7 +108,7 @@ def triangles_of(tools, mesh):
     """Of the file as it is read; None when it cannot be read."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
-        run([tools / "bound-verify", "--outer", mesh, mesh, "--claims", "surface", "--max-contacts", "1",
+        run([tools / "bound-verify", "mesh", "--outer", mesh, mesh, "--claims", "surface", "--max-contacts", "1",
              "--report", report, "--quiet"], 60)
         return json.loads(report.read_text())["original"]["triangles"] if report.exists() else None
 

@@ -37,20 +37,20 @@ bmesh-decimate bracket.obj -o planes.off --ratio 0.1 --cost planes --effort fast
 bmesh-decimate bracket.obj --vertices 400,200,100 -o level-{vertices}.stl --progressive level.pm
 bmesh-decimate --from level.pm --vertices 150 -o level-150.stl
 bmesh-replay bracket.obj inner.log inner.ply
-bound-verify --outer bracket.obj outer.stl --report verdict.json
-bound-verify --inner bracket.obj inner.ply
-bound-verify --outer bracket.obj inner.ply
-bound-verify --progressive bracket.obj level.pm
+bound-verify mesh --outer bracket.obj outer.stl --report verdict.json
+bound-verify mesh --inner bracket.obj inner.ply
+bound-verify mesh --outer bracket.obj inner.ply
+bound-verify progressive bracket.obj level.pm
 bcd-decompose bracket.obj -o cover.glb --no-cache --epsilon 2% --report cover.json
 bcd-decompose bracket.obj -o fast.obj --no-cache --epsilon 1% --effort fast
 bcd-decompose bracket.obj -o budget.glb --no-cache --max-bodies 8
 bcd-decompose bracket.obj -o inside.glb --no-cache --epsilon 3% --direction inner
-bound-verify --cover bracket.obj cover.glb --epsilon 2.1%
-bound-verify --cover bracket.obj inside.glb
+bound-verify cover bracket.obj cover.glb --epsilon 2.1%
+bound-verify cover bracket.obj inside.glb
 bcd-decompose arm.urdf -o safe-arm --no-cache --epsilon 2%
-bound-verify --robot arm.urdf safe-arm/arm.urdf
+bound-verify robot arm.urdf safe-arm/arm.urdf
 sweep-approx arm.urdf --path motion.csv -o swept.glb --epsilon 0.01 --report swept.json
-bound-verify --sweep arm.urdf motion.csv swept.glb
+bound-verify sweep arm.urdf motion.csv swept.glb
 hausdorff-eval bracket.obj outer.stl --report distance.json
 hausdorff-eval bracket.obj outer.stl --solid
 kaboum-plan solve stacked.kpl problem.kpl --search astar -o plan.json
@@ -64,7 +64,7 @@ REAL = {
 REAL_RUNS = """
 bmesh-decimate forearm.stl -o forearm-outer.stl --epsilon 1%
 bcd-decompose forearm.stl -o forearm.glb --no-cache --epsilon 1% --effort fast
-bound-verify --cover forearm.stl forearm.glb --prepare
+bound-verify cover forearm.stl forearm.glb --prepare
 """
 VOLATILE = re.compile(r"second|time|resource|cpu|memory|mega|_s$|rss|threads|version|tool")
 

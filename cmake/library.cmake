@@ -1,13 +1,14 @@
 # kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ... HEADERS_OF ... ALONE ...)
-# A static library with the alias and exported target kaboum::<name>, a component of the package; headers
+# A library (static, or with BUILD_SHARED_LIBS shared) with the alias and exported target kaboum::<name>, a component of the package; headers
 # in include/. HEADERS_OF are libraries of which only this one's sources include something: who uses the
 # installed library needs none of them. ALONE are sources that use names others give to something else: they
 # are never compiled together with others (KABOUM_UNITY).
 function(kaboum_add_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF;ALONE" ${ARGN})
-  add_library(kaboum_${name} STATIC ${arg_SOURCES})
+  add_library(kaboum_${name} ${arg_SOURCES})
   add_library(kaboum::${name} ALIAS kaboum_${name})
-  set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name}
+  set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN"
                         POSITION_INDEPENDENT_CODE ON
                         UNITY_BUILD ${KABOUM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
@@ -20,7 +21,7 @@ function(kaboum_add_library name)
     PUBLIC ${arg_PUBLIC}
     PRIVATE $<BUILD_INTERFACE:kaboum_options> ${arg_HEADERS_OF} ${arg_PRIVATE})
   install(TARGETS kaboum_${name} EXPORT kaboum-${name}
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   kaboum_add_component(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()
@@ -53,6 +54,9 @@ function(kaboum_add_tool name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${KABOUM_UNITY} UNITY_BUILD_BATCH_SIZE 8
                         RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_link_libraries(${name} PRIVATE kaboum_options ${arg_LIBRARIES})
+  if(BUILD_SHARED_LIBS)
+    set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  endif()
   kaboum_compile_quickly(${name})
   if(KABOUM_UNITY)
     target_precompile_headers(${name} REUSE_FROM kaboum_cli)

@@ -1,4 +1,7 @@
 # Manual pages and completions, made of what the tools print with --help; and what else is installed for users.
+if(NOT KABOUM_BUILD_TOOLS)
+  return()
+endif()
 get_property(_tools GLOBAL PROPERTY KABOUM_TOOLS)
 find_package(Python3 3.9 COMPONENTS Interpreter QUIET)
 if(Python3_Interpreter_FOUND AND NOT KABOUM_SANITIZE AND NOT KABOUM_COVERAGE)

@@ -147,7 +147,7 @@ class Sets:
         original, here = self.closed, self.call.folder / f"{name}.obj"
         limit = [] if reach is None else ["--epsilon", f"{1.01 * reach:.6g}"]
         code = self.call(f"{name}-verdict", self.call.programs / "bound-verify",
-                         [original, here, "--cover", *limit, "--report", f"{name}-verdict-report.json"],
+                         ["cover", original, here, *limit, "--report", f"{name}-verdict-report.json"],
                          [original, here], [f"{name}-verdict-report.json"], (0, 1, 7))
         return "—" if code is None else self.call.report(f"{name}-verdict-report.json")["verdict"]
 

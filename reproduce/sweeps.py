@@ -74,12 +74,12 @@ def _sweeps(call, robot, title, goal, document):
     step, swept = f"{short}-verify", call.folder / f"{short}-balanced.glb"
     if swept.is_file():
         code = call(step, call.programs / "bound-verify",
-                    ["--sweep", robot, path, swept, "--report", f"{step}-report.json"], [robot, path, swept],
+                    ["sweep", robot, path, swept, "--report", f"{step}-report.json"], [robot, path, swept],
                     [f"{step}-report.json"], (0, 1, 7))
         if code is not None:
             report = call.report(f"{step}-report.json")
             document.paragraph(
-                f"bound-verify --sweep, for the links' original meshes and the whole motion: {report['verdict']}; of "
+                f"bound-verify sweep, for the links' original meshes and the whole motion: {report['verdict']}; of "
                 f"{report['samples']:,} places sampled the farthest from the bodies is "
                 f"{1000 * report['largest_found']['distance']:.3f} mm away.")
 

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/log.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
 
 #include <CLI/CLI.hpp>
@@ -60,6 +61,10 @@ void read(tools::DecimationCase& run) {
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   apply(run.input, o.unit, o.input);
   for (const std::string& text : run.input.notes) note(run, text);
+  if (const std::string text =
+          certify::warning_of(run.request().epsilon, geom::bounding_box(run.input.mesh).diagonal());
+      !text.empty())
+    note(run, text);
   if (o.records() && !run.input.bent_quads.empty())
     note(run,
          "quads that are not plane stay split as they are read, for the steps start from there: "
@@ -97,9 +102,6 @@ void bound(tools::DecimationCase& run) {
 bool say_plan(tools::DecimationCase& run) {
   const tools::DecimationOptions& o = run.asked;
   const certify::MeshPlan& plan = run.series().plan;
-  if (plan.epsilon && *plan.epsilon > 0.1 * plan.diagonal)
-    say(run, "note: epsilon is " + tools::formatted(100 * *plan.epsilon / plan.diagonal) +
-                 "% of the diagonal, which bounds hardly anything; 1% is written --epsilon 1%");
   const auto& shortage = run.series().shortage;
   if (shortage && !say_shortage(run, *shortage)) return false;
   if (o.stated.contains("effort") && plan.effort != run.request().effort)

@@ -2,7 +2,8 @@
 #include "verify_commands.h"
 
 #include <CLI/CLI.hpp>
-#include "verify_flags.h"
+#include <iostream>
+
 #include "verify_mesh.h"
 #include "verify_progressive.h"
 #include "verify_robot.h"
@@ -48,6 +49,7 @@ int verify_robot(const VerifyOptions& o) {
   robot.drop_sheets = o.drop_sheets;
   robot.max_contacts = o.max_contacts;
   robot.max_work = o.max_work;
+  robot.exact_points = o.exact_points;
   return tools::verify_robot(robot, o.common);
 }
 
@@ -82,31 +84,23 @@ int decide(const VerifyOptions& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool command = argc > 1 && tools::is_command(argv[1]);
   CLI::App app(
       "Decides from files alone, in exact arithmetic, whether what was made of a mesh, a robot or "
-      "a "
-      "motion keeps its promise. By a command, whose own --help has its options:\n"
+      "a motion keeps its promise. Each command's own --help has its options:\n"
       "\n"
       "  bound-verify mesh --outer ORIGINAL RESULT    a mesh encloses the original\n"
       "  bound-verify mesh --inner ORIGINAL RESULT    a mesh is enclosed by it\n"
       "  bound-verify cover ORIGINAL SET              convex bodies cover a mesh\n"
       "  bound-verify robot ORIGINAL RESULT           a robot's shapes hold another's\n"
       "  bound-verify sweep ROBOT PATH SWEPT          convex bodies hold a motion\n"
-      "  bound-verify progressive ORIGINAL FILE       all levels of a progressive file\n"
-      "\n"
-      "Or by a flag, with the same options: bound-verify --cover ORIGINAL SET.",
+      "  bound-verify progressive ORIGINAL FILE       all levels of a progressive file",
       "bound-verify");
   VerifyOptions options;
-  if (command) {
-    tools::add_commands(app, options);
-  } else {
-    tools::add_flags(app, options);
+  tools::add_commands(app, options);
+  app.footer(tools::kVerifyExitCodes);
+  if (const std::string command = tools::command_instead(argc, argv); !command.empty()) {
+    std::cerr << "bound-verify: " << command << " (see bound-verify --help)\n";
+    return tools::kUsage;
   }
-  app.footer(std::string("A file that is called like a command is given as ./NAME.\n\n") +
-             tools::kVerifyExitCodes);
-  return tools::run(app, argc, argv, [&] {
-    if (!command) tools::require_meaning(app, options);
-    return decide(options);
-  });
+  return tools::run(app, argc, argv, [&] { return decide(options); });
 }

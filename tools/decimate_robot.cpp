@@ -127,9 +127,24 @@ std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
   return out;
 }
 
+/// Meshes are counted once, however many links have them.
+RobotCounts counts_of(const Run& run) {
+  RobotCounts counts{.links = shapes_by_link(run).size(), .meshes = run.made.meshes.size()};
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    if (!mesh.flaw.empty()) {
+      ++counts.kept;
+      continue;
+    }
+    ++counts.bodies;
+    counts.vertices += mesh.made.enclosure.certificate().vertices;
+  }
+  return counts;
+}
+
 Json decimated_report(const Run& run, const RobotWriter& output) {
   Json report = report_of(output), links = Json::array();
-  std::size_t before = 0, after = 0, at = 0;
+  const RobotCounts counts = counts_of(run);
+  std::size_t before = 0, at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
     Json link{{"link", run.robot.robot.links[shapes.front().link].name},
               {"shapes", shapes.size()},
@@ -150,14 +165,12 @@ Json decimated_report(const Run& run, const RobotWriter& output) {
     }
     links.push_back(std::move(link));
   }
-  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
-    if (!mesh.flaw.empty()) continue;
-    before += mesh.made.enclosure.certificate().vertices_in;
-    after += mesh.made.enclosure.certificate().vertices;
-  }
-  report.update({{"meshes", run.made.meshes.size()},
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
+    if (mesh.flaw.empty()) before += mesh.made.enclosure.certificate().vertices_in;
+  report.update({{"meshes", counts.meshes},
+                 {"meshes_kept", counts.kept},
                  {"vertices_in", before},
-                 {"vertices", after},
+                 {"vertices", counts.vertices},
                  {"links", std::move(links)},
                  {"stop", run.code() == kDone    ? "done"
                           : run.code() == kLimit ? "limit"
@@ -178,7 +191,6 @@ PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
   out.shapes = shapes.size();
   out.verdict = verdict;
   for (const robot::LinkShape& shape : shapes) {
-    ++out.bodies;
     if (!shape.mesh) continue;
     const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
     if (!mesh.flaw.empty()) {
@@ -188,6 +200,7 @@ PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
     const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
     const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
     out.meshes.push_back(mesh.mesh.file.filename().string());
+    ++out.bodies;
     out.vertices += c.vertices;
     out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
     if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
@@ -206,7 +219,9 @@ void write_page(const Run& run, const RobotWriter& output) {
                  .unit = "the robot's unit",
                  .files = output.documents(),
                  .notes = run.notes.lines(),
-                 .links = {}};
+                 .links = {},
+                 .counts = counts_of(run),
+                 .made = "meshes"};
   std::size_t at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
     page.links.push_back(page_link(run, shapes, run.verdicts[at++]));
@@ -262,9 +277,11 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   run.verdicts = verdicts(run.made);
   say_meshes(run);
   write(run, output);
+  const RobotCounts counts = counts_of(run);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
-                          counted(run.made.meshes.size(), "mesh", "meshes") + " of " +
-                          counted(shapes_by_link(run).size(), "link", "links"));
+                          counted(counts.bodies, "mesh", "meshes") + " of " +
+                          counted(counts.links, "link", "links") +
+                          (counts.kept > 0 ? ", from " + counts.of_meshes() : std::string()));
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   say(output, o.common.quiet, run.notes);
   if (!o.robot.html.empty()) write_page(run, output);

@@ -184,29 +184,19 @@ std::string formatted(double x) {
 }
 
 bool say_shortage(const DecimationCase& run, const certify::Float32Shortage& shortage) {
-  std::string why, remedy = "move the mesh towards the origin";
-  if (shortage.vertices == 0) {
-    why = "float32 numbers are " + formatted(shortage.spacing) +
-          " apart at these coordinates, more than " + formatted(shortage.limit) +
-          " (a millionth of the diagonal, or a hundredth of epsilon)";
-  } else {
-    why = std::to_string(shortage.vertices) + (shortage.vertices == 1 ? " vertex" : " vertices") +
-          " without a certified float32 position";
-    if (!run.original().solid.closed()) {
-      why +=
-          ": an open mesh's border stays where it is, and its coordinates are no float32 numbers";
-      remedy = "round the input's coordinates to float32 first, or close its holes";
-    }
-  }
+  const std::string why = reason_of(shortage);
   if (run.request().may_be_double()) {
     log(run.asked.common.quiet, "note: " + why + ": writing double");
     return true;
   }
-  log(false, "bmesh-decimate: " + run.asked.input + ": " + why +
-                 "; nothing is written. Write .ply, .obj, .off or (--output-format) stl-ascii, "
-                 "which hold doubles" +
-                 (run.asked.value("precision") == "auto" ? "" : ", with --precision double") +
-                 "; or " + remedy);
+  log(false,
+      "bmesh-decimate: " + run.asked.input + ": " + why +
+          "; nothing is written. Write .ply, .obj, .off or (--output-format) stl-ascii, "
+          "which hold doubles" +
+          (run.asked.value("precision") == "auto" ? "" : ", with --precision double") + "; or " +
+          remedy_of(shortage) +
+          (run.made.why_not_wrapped.empty() ? ""
+                                            : ". Nor is it wrapped: " + run.made.why_not_wrapped));
   return false;
 }
 

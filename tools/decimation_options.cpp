@@ -28,7 +28,7 @@ void describe_results(CLI::App& app, DecimationOptions& o) {
       ->type_name("FILE");
   app.add_option("--progressive", o.progressive,
                  "Also write the mesh, all steps and the levels of --vertices to this file: any "
-                 "number of vertices can be taken from it later, and bound-verify --progressive "
+                 "number of vertices can be taken from it later, and bound-verify progressive "
                  "checks it")
       ->type_name("FILE");
   app.add_option("--from", o.from,

@@ -147,17 +147,25 @@ RobotCheck check_of(const Run& run, const RobotWriter& output) {
                          run.o.set.preparation, epsilon, run.verdicts);
 }
 
-Json robot_report(const Run& run, const RobotWriter& output) {
-  std::size_t bodies = 0, vertices = 0;
+RobotCounts counts_of(const Run& run) {
+  RobotCounts counts{.links = run.verdicts.size(), .meshes = run.bodies().meshes.size()};
+  for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
+    if (!mesh.held) ++counts.kept;
   for (const certify::CertifiedLink& link : run.made.links) {
-    bodies += link.artefact().bodies.size();
+    counts.bodies += link.artefact().bodies.size();
     for (const geom::ConvexBody& body : link.artefact().bodies)
-      vertices += body.hull.vertices.size();
+      counts.vertices += body.hull.vertices.size();
   }
+  return counts;
+}
+
+Json robot_report(const Run& run, const RobotWriter& output) {
+  const RobotCounts counts = counts_of(run);
   Json report = report_of(output);
-  report.update({{"bodies", bodies},
-                 {"vertices", vertices},
-                 {"meshes", run.bodies().meshes.size()},
+  report.update({{"bodies", counts.bodies},
+                 {"vertices", counts.vertices},
+                 {"meshes", counts.meshes},
+                 {"meshes_kept", counts.kept},
                  {"links", links_report(run, output.link_files())},
                  {"stop", run.code() == kDone ? "done" : "epsilon not reached"},
                  {"verdict", name_of(outcome_of(run.verdicts))},
@@ -203,7 +211,8 @@ void write_page(const Run& run, const RobotWriter& output) {
                  .unit = run.request.set.unit,
                  .files = output.documents(),
                  .notes = run.notes.lines(),
-                 .links = {}};
+                 .links = {},
+                 .counts = counts_of(run)};
   for (const certify::LinkVerdict& link : run.verdicts) page.links.push_back(page_link(run, link));
   io::write_file(run.o.robot.html, to_html(page));
 }
@@ -232,10 +241,10 @@ int decompose_robot(const DecomposeOptions& o) {
     output.add_document(".srdf", run.pairs->srdf);
   }
   write(run, output);
+  const RobotCounts counts = counts_of(run);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
-                          counted(run.made.bodies.artefact().size(), "body", "bodies") + " of " +
-                          counted(run.verdicts.size(), "link", "links") + ", from " +
-                          counted(run.bodies().meshes.size(), "mesh", "meshes"));
+                          counted(counts.bodies, "body", "bodies") + " of " +
+                          counted(counts.links, "link", "links") + ", from " + counts.of_meshes());
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   say(output, o.common.quiet, run.notes);
   if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));

@@ -15,7 +15,8 @@
 namespace kaboum::tools {
 namespace {
 
-struct Taken {
+/// A mesh taken from a progressive file.
+struct ExtractedLevel {
   std::size_t requested;
   std::string file;
   bmesh::Extracted extracted;
@@ -50,14 +51,14 @@ const char* name_of(bmesh::Direction direction) {
 }
 
 Json report(const ExtractOptions& o, const bmesh::Progressive& p, const std::string& sha256,
-            const std::vector<Taken>& all) {
+            const std::vector<ExtractedLevel>& all) {
   Json r{{"from",
           {{"file", o.from},
            {"sha256", sha256},
            {"made_by", p.log.tool},
            {"input_sha256", p.log.input_sha256},
            {"direction", name_of(p.log.direction)}}}};
-  for (const Taken& t : all) {
+  for (const ExtractedLevel& t : all) {
     Json entry{{"vertices", t.requested},
                {"reached", t.extracted.reached},
                {"is_level", t.extracted.level},
@@ -86,10 +87,10 @@ int extract_levels(const ExtractOptions& o) {
   const std::string sha256 = o.common.report.empty() ? std::string() : io::sha256(bytes);
   const bmesh::Progressive p = bmesh::parse_progressive(bytes, o.from);
   bytes = {};
-  std::vector<Taken> all;
+  std::vector<ExtractedLevel> all;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    Taken& t =
-        all.emplace_back(Taken{counts[i], files[i], bmesh::extract(p, counts[i], o.from), {}});
+    ExtractedLevel& t = all.emplace_back(
+        ExtractedLevel{counts[i], files[i], bmesh::extract(p, counts[i], o.from), {}});
     const bool double_precision = p.double_precision || !is_float32(t.extracted.mesh);
     if (double_precision && !io::holds_double(format)) {
       const std::string levels = float32_levels(p, o.from);
@@ -106,11 +107,12 @@ int extract_levels(const ExtractOptions& o) {
   writes.emplace_back(o.common.report,
                       [&] { write_report(o.common, "bmesh-decimate", report(o, p, sha256, all)); });
   writes.emplace_back(o.depfile, [&] { write_depfile(o.depfile, files, {o.from}); });
-  for (const Taken& t : all) writes.emplace_back(t.file, [&t] { io::write_file(t.file, t.bytes); });
+  for (const ExtractedLevel& t : all)
+    writes.emplace_back(t.file, [&t] { io::write_file(t.file, t.bytes); });
   write_together(writes);
 
   int code = kDone;
-  for (const Taken& t : all) {
+  for (const ExtractedLevel& t : all) {
     const std::size_t vertices = t.extracted.mesh.vertices.size();
     log(o.common.quiet, t.file + ": " + std::to_string(p.base.vertices.size()) + " → " +
                             std::to_string(vertices) + " vertices, " + name_of(p.log.direction) +

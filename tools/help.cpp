@@ -166,10 +166,11 @@ void wrap_help(CLI::App& app) { set_formatter(app, std::make_shared<WrappedHelp>
 std::string explain_unknown(const CLI::App& app, int argc, char** argv) {
   std::vector<const CLI::App*> apps{&app};
   for (const CLI::App* sub : app.get_subcommands()) apps.push_back(sub);
-  // Groups of options are commands without a name.
-  for (const CLI::App* group :
-       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
-    apps.push_back(group);
+  // Groups of options are commands without a name, of this one and of those that were given.
+  for (std::size_t i = 0, count = apps.size(); i < count; ++i)
+    for (const CLI::App* group :
+         apps[i]->get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
+      apps.push_back(group);
   if (app.get_require_subcommand_min() > 0 && app.get_subcommands().empty())
     if (std::string why = explain_command(app, argc, argv); !why.empty()) return why;
   std::vector<std::string> known;

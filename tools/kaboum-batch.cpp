@@ -31,7 +31,8 @@ struct Options {
 
 void describe(CLI::App& app, Options& o) {
   app.add_option("INPUT", o.inputs,
-                 "Folders (all meshes and robots in them), lists of files (.txt, a line each), or "
+                 "Folders (all meshes and robots in them but results of batches), lists of files "
+                 "(.txt, a line each), or "
                  "files")
       ->required()
       ->type_name("DIR|LIST|FILE");
@@ -188,7 +189,8 @@ int run(const Options& o) {
   std::optional<batch::Shard> shard;
   if (!o.shard.empty()) shard = batch::parse_shard(o.shard);
   const std::vector<batch::Job> jobs =
-      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output, shard});
+      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output, shard,
+                        [&](const std::string& text) { tools::log(o.common.quiet, text); }});
   batch::Journal journal(
       {o.output, shard, o.summary}, jobs,
       [&](const auto& job, const auto& record) { return holds(job, record, o); });

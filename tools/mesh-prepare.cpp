@@ -1,5 +1,6 @@
 // Gives the triangles of a file a solid, or wraps them, and says what it changed where.
 #include <kaboum/base/error.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/geom/float32.h>
@@ -96,11 +97,17 @@ void wrap(PrepareCase& run, bool doubles) {
   certify::WrapRequest request;
   request.offset = o.preparation.offset;
   request.seal = o.preparation.seal;
-  if (!o.epsilon.empty())
-    request.farthest = parse_length(o.epsilon)->of(geom::bounding_box(run.input.mesh).diagonal());
+  if (!o.epsilon.empty()) {
+    const double diagonal = geom::bounding_box(run.input.mesh).diagonal();
+    const Length epsilon = parse_length(o.epsilon).value();
+    if (const std::string text = certify::warning_of(epsilon, diagonal); !text.empty())
+      note(run, text);
+    request.farthest = epsilon.of(diagonal);
+  }
   request.clearance = run.input.deviation;
   request.quads = run.input.bent_quads;
   request.float32 = !doubles || all_float32(run.input.mesh);
+  request.may_be_double = doubles;
   certify::CertifiedWrap made;
   {
     Progress progress(o.common.quiet);

@@ -6,8 +6,6 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
-#include "prepared_original.h"
-
 namespace kaboum::tools {
 namespace {
 
@@ -31,6 +29,15 @@ MeshInput read(const std::string& path, const std::string& format, const char* o
     out.notes.push_back(std::to_string(r.collapsed_triangles) +
                         " triangles with repeated corners bound nothing and are left out");
   return out;
+}
+
+geom::PrepareOptions options_of(const MeshInput& original, bool drop_sheets) {
+  geom::PrepareOptions options;
+  options.drop_sheets = drop_sheets;
+  options.holes = geom::Holes::Fill;
+  options.quads = original.quads;
+  options.diagonal = original.diagonal;
+  return options;
 }
 
 }  // namespace
@@ -60,8 +67,8 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
     if (out.is_set && o.relation == verify::Relation::Outer)
       throw Error(ErrorCode::InvalidArgument,
                   o.approximation +
-                      " is a set of convex bodies: ask with --cover whether it covers "
-                      "the original");
+                      " is a set of convex bodies: bound-verify cover decides whether it "
+                      "covers the original");
     if (out.is_set) {
       out.mesh = verify::sum_of(out.set);
       out.sha256 = io::sha256(details.bytes);
@@ -75,29 +82,29 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
   return out;
 }
 
-void prepare(MeshInput& original, bool drop_sheets) {
-  geom::PrepareOptions options;
-  options.drop_sheets = drop_sheets;
-  options.holes = geom::Holes::Fill;
-  options.quads = original.quads;
-  options.diagonal = original.diagonal;
-  geom::Prepared prepared = geom::prepare(original.mesh, options);
-  geom::PreparationReport& report = prepared.report;
-  original.mesh = prepared.solid.mesh();
-  original.notes.insert(original.notes.end(), report.notes.begin(), report.notes.end());
-  original.filled_triangles = prepared.solid.filled_triangles();
-  original.dropped_sheets = report.dropped_sheets;
-  original.source = std::move(report.source);
+void prepare(MeshInput& original, verify::Relation relation, bool drop_sheets) {
+  verify::Subject subject =
+      verify::prepared_subject(original.mesh, options_of(original, drop_sheets));
+  if (!subject.refusal.empty() && relation == verify::Relation::Inner)
+    throw Error(ErrorCode::InvalidInput, subject.refusal);
+  if (relation == verify::Relation::Cover && (subject.has_more || !subject.refusal.empty()))
+    original.measured = verify::measured_mesh(subject, original.mesh);
+  original.mesh = std::move(subject.mesh);
+  original.filled_triangles = subject.filled_triangles;
+  original.dropped_sheets = subject.report.dropped_sheets;
+  original.notes.insert(original.notes.end(), subject.report.notes.begin(),
+                        subject.report.notes.end());
+  if (!subject.refusal.empty())
+    original.notes.push_back("every triangle is judged as it is, for which solid they bound " +
+                             ("cannot be told (" + subject.refusal) + ")");
+  original.subject = std::move(subject);
 }
 
 std::string change_by_preparing(const MeshInput& original) {
   for (const bool drop_sheets : {false, true}) {
-    MeshInput prepared;
-    prepared.mesh = original.mesh;
-    prepared.quads = original.quads;
-    prepared.diagonal = original.diagonal;
+    geom::PreparationReport prepared;
     try {
-      prepare(prepared, drop_sheets);
+      prepared = geom::prepare(original.mesh, options_of(original, drop_sheets)).report;
     } catch (const Error&) {  // it cannot be prepared
       continue;
     }

@@ -4,6 +4,7 @@
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/verify/exact_points.h>
+#include <kaboum/verify/subject.h>
 
 #include <optional>
 #include <string>
@@ -23,10 +24,12 @@ struct MeshInput {
   double deviation = 0;          ///< of exact faces from the triangles; 0: there are none [length]
   std::string about_exact = {};  ///< what is to be known where the triangles stand for exact faces
   std::optional<verify::ExactPoints> exact = {};  ///< of these, where they are looked at
-  std::vector<std::uint32_t> source;  ///< per triangle, if prepared: its index in the file
   /// How preparing splits quads that are not plane: as the programs that make results do.
   std::vector<std::uint32_t> quads = {};
   geom::PrepareOptions::Diagonal diagonal = geom::PrepareOptions::Diagonal::AsGiven;
+  // If prepared: of what claims are, but for its mesh, and what distances of a cover are from.
+  std::optional<verify::Subject> subject = {};
+  std::optional<verify::MeasuredMesh> measured = {};
 };
 
 /// A mesh, or a set: `mesh` is the sum of its bodies then.
@@ -41,9 +44,11 @@ MeshInput read_original(const VerifyMeshOptions& options);
 /// @throws Error naming the file; where the claims mean nothing for a set.
 ApproximationInput read_approximation(const VerifyMeshOptions& options);
 
-/// The original as the tools prepare it, without holes.
-/// @throws Error as prepare_original.
-void prepare(MeshInput& original, bool drop_sheets);
+/// The original as the tools prepare it, without holes; where preparing refuses it and they wrap
+/// it, as it is, with a note: all of its triangles are to be enclosed all the same.
+/// @throws Error as prepare_original where sheets were to be dropped, and of inner claims, which
+///   need a solid
+void prepare(MeshInput& original, verify::Relation relation, bool drop_sheets);
 
 /// What preparing would change of the original; empty if nothing.
 std::string change_by_preparing(const MeshInput& original);

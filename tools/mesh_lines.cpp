@@ -123,8 +123,16 @@ double diagonal_of(const geom::Mesh& mesh) {
 }
 
 std::optional<std::uint32_t> triangle_in_file(const MeshCase& run, std::uint32_t triangle) {
-  const std::vector<std::uint32_t>& source = run.original.source;
-  if (run.inner() || source.empty()) return triangle;
+  const auto& subject = run.original.subject;
+  if (run.inner() || !subject) return triangle;
+  if (run.verdict.surface_of_all) {
+    const std::size_t others = subject->refusal.empty() ? 0 : 2 * run.original.quads.size();
+    const std::size_t count = subject->triangles.triangles.size() - others;
+    if (triangle < count) return triangle;
+    return run.original.quads[(triangle - count) / 2];  // split the other way
+  }
+  if (!subject->refusal.empty()) return triangle;
+  const std::vector<std::uint32_t>& source = subject->report.source;
   if (triangle >= source.size()) return std::nullopt;
   return source[triangle];
 }
@@ -203,9 +211,10 @@ std::string last_line(const MeshCase& run) {
 
 std::vector<std::string> notes_on(const MeshCase& run) {
   std::vector<std::string> lines;
+  const bool both_ways = run.original.subject && run.original.subject->both_ways;
   for (const auto& [mesh, name] : {std::pair{&run.original.mesh, "the original"},
                                    std::pair{&run.approximation.mesh, "the approximation"}})
-    if (geom::signed_volume(*mesh) < 0)
+    if (geom::signed_volume(*mesh) < 0 && !(both_ways && mesh == &run.original.mesh))
       lines.push_back(
           std::string(name) +
           " is inside out: its volume is negative, so that its solid is empty or nearly so");

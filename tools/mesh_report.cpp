@@ -106,6 +106,8 @@ void add_preparation(const MeshCase& run, Json& original) {
   if (run.asked.prepare) {
     original["filled_triangles"] = run.original.filled_triangles;
     original["dropped_sheet_triangles"] = run.original.dropped_sheets;
+    if (!run.original.subject->refusal.empty())
+      original["cannot_be_prepared"] = run.original.subject->refusal;
     return;
   }
   const auto& found = run.inside_out;

@@ -18,8 +18,8 @@
 namespace kaboum::tools {
 namespace {
 
-const std::map<std::string, plan::Language> kLanguages = {
-    {"kpl", plan::Language::Kpl}, {"pddl", plan::Language::Pddl}, {"xml", plan::Language::Xml}};
+const std::map<std::string, plan::Language> kLanguages = {{"kpl", plan::Language::Kpl},
+                                                          {"pddl", plan::Language::Pddl}};
 
 plan::Text read(const std::string& file, const std::string& format, const char* option) {
   const std::vector<char> bytes = io::read_file(file);
@@ -32,8 +32,8 @@ plan::Text read(const std::string& file, const std::string& format, const char* 
 plan::Language language_of(const std::string& file, const std::string& name, const char* option) {
   if (const auto known = kLanguages.find(name); known != kLanguages.end()) return known->second;
   if (const auto guessed = plan::language_from_name(file)) return *guessed;
-  throw Error(ErrorCode::InvalidArgument, file + ": cannot tell the language from the name; give " +
-                                              option + " kpl, pddl or xml");
+  throw Error(ErrorCode::InvalidArgument,
+              file + ": cannot tell the language from the name; give " + option + " kpl or pddl");
 }
 
 PlanTexts read_texts(const PlanOptions& o) {

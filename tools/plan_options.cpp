@@ -7,15 +7,15 @@
 namespace kaboum::tools {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {
-  app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl, .xml), or - for stdin")
+  app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl), or - for stdin")
       ->required()
       ->type_name("FILE");
   app.add_option("--input-format", o.input_format,
                  "Language of DOMAIN (and PROBLEM) [by extension]")
-      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+      ->check(CLI::IsMember({"kpl", "pddl"}))
       ->type_name("NAME");
   app.add_option("--problem-format", o.problem_format, "Language of PROBLEM [by extension]")
-      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+      ->check(CLI::IsMember({"kpl", "pddl"}))
       ->type_name("NAME");
 }
 
@@ -121,14 +121,14 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
 
 CLI::App* add_convert_command(CLI::App& app, PlanOptions& o) {
   CLI::App* v =
-      app.add_subcommand("convert", "Translate a domain (and problem) between kpl, PDDL and XML");
+      app.add_subcommand("convert", "Translate a domain (and problem) between kpl and PDDL");
   add_inputs(*v, o);
   add_problem(*v, o);
   v->add_option("-o,--output", o.output, "Where to; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
-  v->add_option("--output-format", o.output_format, "kpl, pddl or xml [by extension]")
-      ->check(CLI::IsMember({"kpl", "pddl", "xml"}))
+  v->add_option("--output-format", o.output_format, "kpl or pddl [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl"}))
       ->type_name("NAME");
   add_common_options(*v, o.common);
   return v;

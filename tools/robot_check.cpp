@@ -61,6 +61,8 @@ RobotCheck check_of(const std::string& original, const std::string& result,
     out.command += " --prepare=wrap";
   else if (preparation.mode != Mode::Off)
     out.command += " --prepare";
+  // What is claimed then is about the triangles that stand for exact faces.
+  if (!preparation.holds_exact_faces()) out.command += " --exact-points 0";
   if (options.visual()) out.command += " --visual";
   if (preparation.drop_sheets) out.command += " --drop-sheets";
   if (!options.links.empty()) {

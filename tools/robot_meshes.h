@@ -14,7 +14,9 @@ namespace kaboum::tools {
 class RobotMeshes {
  public:
   /// @param packages  folders that package:// URIs are looked up in.
-  explicit RobotMeshes(std::vector<std::string> packages) : packages_(std::move(packages)) {}
+  /// @param exact_points  how densely points of the exact faces of CAD files are looked at; 0: not
+  RobotMeshes(std::vector<std::string> packages, std::size_t exact_points)
+      : packages_(std::move(packages)), exact_points_(exact_points) {}
 
   /// The file of a mesh, where there is only one that may be meant. @throws Error naming it.
   const verify::MeshFile& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot);
@@ -28,6 +30,7 @@ class RobotMeshes {
   const verify::MeshFile& read(const std::string& path);
 
   std::vector<std::string> packages_;
+  std::size_t exact_points_;
   std::map<std::string, verify::MeshFile> files_;
   std::map<std::pair<std::string, std::string>, const verify::MeshFile*>
       named_;  // robot, reference

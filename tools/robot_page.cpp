@@ -101,6 +101,14 @@ void add_row(std::string& page, const PageLink& link) {
 
 }  // namespace
 
+std::string RobotCounts::of_meshes() const {
+  std::string text = std::to_string(meshes) + (meshes == 1 ? " mesh" : " meshes");
+  if (kept > 0)
+    text += ", of which " + std::to_string(kept) + (kept == 1 ? " stays" : " stay") + " as " +
+            (kept == 1 ? "it was" : "they were");
+  return text;
+}
+
 std::string epsilon_of(const std::string& link, const certify::LinkEpsilons& own,
                        const std::optional<Length>& of_all) {
   const auto found = own.find(link);
@@ -120,25 +128,25 @@ std::string to_html(const RobotPage& p) {
           ": <code>" + escape_xml(p.check.command) + "</code></p>\n";
   page +=
       "<table><thead><tr><th>link</th><th>original</th><th>result</th><th "
-      "class=\"n\">bodies</th><th class=\"n\">vertices</th><th class=\"n\">epsilon</th><th "
+      "class=\"n\">" +
+      escape_xml(p.made) +
+      "</th><th class=\"n\">vertices</th><th class=\"n\">epsilon</th><th "
       "class=\"n\">within</th><th class=\"n\">time [s]</th><th>verdict</th></tr></thead><tbody>\n";
-  std::size_t bodies = 0, vertices = 0;
   double reach = 0, seconds = 0;
   std::vector<certify::LinkVerdict> verdicts;
   for (const PageLink& link : p.links) {
     add_row(page, link);
-    bodies += link.bodies;
-    vertices += link.vertices;
     reach = std::max(reach, link.reach);
     seconds += link.seconds.value_or(0);
     verdicts.push_back(link.verdict);
   }
   page += "</tbody><tfoot><tr>";
-  cell(page, std::to_string(p.links.size()) + (p.links.size() == 1 ? " link" : " links"));
+  cell(page, std::to_string(p.counts.links) + (p.counts.links == 1 ? " link" : " links") + ", " +
+                 p.counts.of_meshes());
   cell(page, "");
   cell(page, "");
-  cell(page, std::to_string(bodies), "n");
-  cell(page, std::to_string(vertices), "n");
+  cell(page, std::to_string(p.counts.bodies), "n");
+  cell(page, std::to_string(p.counts.vertices), "n");
   cell(page, "");
   cell(page, number(reach), "n");
   cell(page, number(seconds), "n");

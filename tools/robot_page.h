@@ -28,6 +28,17 @@ struct PageLink {
   geom::Mesh original, result;
 };
 
+/// What a robot that was made consists of: terminal, report and page give these numbers.
+struct RobotCounts {
+  std::size_t links = 0;             ///< with shapes
+  std::size_t meshes = 0, kept = 0;  ///< of the robot; of these, that stay as they were
+  std::size_t bodies = 0;            ///< that were made, of primitive shapes too; of meshes: meshes
+  std::size_t vertices = 0;          ///< of what was made
+
+  /// "4 meshes", or "4 meshes, of which 1 stays as it was".
+  [[nodiscard]] std::string of_meshes() const;
+};
+
 /// What is said of the robot.
 struct RobotPage {
   std::string robot, source, tool;  ///< name; file; program and version
@@ -35,6 +46,8 @@ struct RobotPage {
   std::string unit = "m";
   std::vector<std::string> files, notes;
   std::vector<PageLink> links;
+  RobotCounts counts;
+  std::string made = "bodies";  ///< of what a link consists
 };
 
 /// A link's epsilon as it was asked for: its own, else that of all; empty: none.

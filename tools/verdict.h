@@ -25,8 +25,7 @@ std::string in_words(const verify::Bracket& bracket);
 
 /// End of a verdict where triangles stand for exact faces, of which no point was looked at.
 inline constexpr const char* kOfTriangles =
-    "; of the triangles, which stand for exact faces: of these nothing is said (bound-verify mesh "
-    "and cover look at points of them)";
+    "; of the triangles, which stand for exact faces: of these nothing is said";
 
 /// All digits.
 std::string point(const geom::Vec3& p);

@@ -2,9 +2,9 @@
 #include "verify_commands.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace kaboum::tools {
 namespace {
@@ -108,6 +108,7 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
   add_epsilon(*c, o, kOfEachMesh);
   add_preparation(*c, o, "each mesh of ORIGINAL");
   add_links(*c, o);
+  add_exact_points(*c, o);
   add_limits(*c, o);
   add_geometry(*c, o, "ORIGINAL");
   add_common_options(*c, o.common);
@@ -159,10 +160,28 @@ void add_progressive_command(CLI::App& app, VerifyOptions& o) {
 
 }  // namespace
 
-bool is_command(const std::string& name) {
-  static constexpr std::array<std::string_view, 5> kCommands{"mesh", "cover", "robot", "sweep",
-                                                             "progressive"};
-  return std::find(kCommands.begin(), kCommands.end(), name) != kCommands.end();
+std::string command_instead(int argc, const char* const* argv) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kCommands{
+      {{"--outer", "mesh --outer ORIGINAL RESULT"},
+       {"--inner", "mesh --inner ORIGINAL RESULT"},
+       {"--cover", "cover ORIGINAL SET"},
+       {"--robot", "robot ORIGINAL RESULT"},
+       {"--sweep", "sweep ROBOT PATH SWEPT"},
+       {"--progressive", "progressive ORIGINAL FILE"}}};
+  const auto starts = [](std::string_view command, std::string_view word) {
+    return command.starts_with(word) && command.substr(word.size()).starts_with(' ');
+  };
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--") break;
+    for (const auto& [flag, command] : kCommands) {
+      if (i == 1 && starts(command, word)) return {};
+      if (word == flag)
+        return "a command is to come first: instead of " + std::string(flag) + ", bound-verify " +
+               std::string(command);
+    }
+  }
+  return {};
 }
 
 void add_commands(CLI::App& app, VerifyOptions& options) {

@@ -10,8 +10,9 @@ class App;
 
 namespace kaboum::tools {
 
-/// Whether bound-verify has a command of that name.
-bool is_command(const std::string& name);
+/// What to say where a command was meant by a flag (bound-verify --cover ORIGINAL SET); empty where
+/// a command comes first, or there is no such flag.
+std::string command_instead(int argc, const char* const* argv);
 
 /// The commands mesh, cover, robot, sweep and progressive, each with the options that mean
 /// something for it.

@@ -17,8 +17,6 @@ namespace {
 using verify::Answer;
 
 void require_possible(const VerifyMeshOptions& o, const CommonOptions& common) {
-  if (o.approximation.empty())
-    throw Error(ErrorCode::InvalidArgument, "ORIGINAL and APPROXIMATION are required");
   require_apart({{"--report", common.report}, {"--witness", o.witness}},
                 {o.original, o.approximation});
   require_witness_format(o.witness);
@@ -31,7 +29,7 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
   if (const geom::Provenance& made = run.approximation.set.provenance;
       made.source_sha256 == run.original.sha256)
     io::require_recorded_scale(o.approximation, made.parameters, o.unit.scale);
-  if (o.prepare) naming(o.original, [&] { prepare(run.original, o.drop_sheets); });
+  if (o.prepare) naming(o.original, [&] { prepare(run.original, o.relation, o.drop_sheets); });
   const double margin = run.approximation.set.margin;
   if (run.inner() && margin > 0)
     throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " + number(margin) +
@@ -91,7 +89,9 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       o.max_contacts,
                                       o.max_work,
                                       [&](const std::string& what) { progress.show(what); },
-                                      points_of(run)};
+                                      points_of(run),
+                                      run.original.subject ? &*run.original.subject : nullptr,
+                                      run.original.measured ? &*run.original.measured : nullptr};
   run.verdict = verify::decide(question, [&](const verify::MeshVerdict& enclosure) {
     run.verdict = enclosure;
     say(lines_of_enclosure(run));  // at once: a distance may take long

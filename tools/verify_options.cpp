@@ -36,8 +36,8 @@ void add_claims(CLI::App& app, VerifyOptions& o, const std::vector<std::string>&
       ->type_name("NAME");
 }
 
-CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& o, const char* what) {
-  return app.add_option("--epsilon", o.epsilon, what)->type_name("LENGTH");
+void add_epsilon(CLI::App& app, VerifyOptions& o, const char* what) {
+  app.add_option("--epsilon", o.epsilon, what)->type_name("LENGTH");
 }
 
 /// @param what  is prepared: "ORIGINAL"
@@ -97,12 +97,11 @@ void add_limits(CLI::App& app, VerifyOptions& o) {
       ->type_name("SECONDS");
 }
 
-CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& o) {
-  return app
-      .add_option("--exact-points", o.exact_points,
-                  "Of STEP and IGES: how densely points of the exact faces are looked at, which "
-                  "refute where they stick out; parts of each interval between knots of an edge, "
-                  "and of a face in each direction; 0: the triangles alone are judged")
+void add_exact_points(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--exact-points", o.exact_points,
+                 "Of STEP and IGES: how densely points of the exact faces are looked at, which "
+                 "refute where they stick out; parts of each interval between knots of an edge, "
+                 "and of a face in each direction; 0: the triangles alone are judged")
       ->check(CLI::Range(std::size_t{0}, std::size_t{10'000}).description(""))
       ->capture_default_str()
       ->type_name("N");
@@ -110,14 +109,14 @@ CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& o) {
 
 void add_unit(CLI::App& app, VerifyOptions& o) { add_unit_options(app, o.unit, "ORIGINAL"); }
 
-CLI::Option* add_set(CLI::App& app, VerifyOptions& o) {
-  return app.add_flag("--set", o.set,
-                      "With --inner: APPROXIMATION is a set of convex bodies (known anyway of "
-                      "folders and of containers)");
+void add_set(CLI::App& app, VerifyOptions& o) {
+  app.add_flag("--set", o.set,
+               "With --inner: APPROXIMATION is a set of convex bodies (known anyway of "
+               "folders and of containers)");
 }
 
-CLI::Option* add_links(CLI::App& app, VerifyOptions& o) {
-  return app.add_option("--links", o.links, "Only these links, separated by commas [all]")
+void add_links(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--links", o.links, "Only these links, separated by commas [all]")
       ->type_name("A,B");
 }
 
@@ -133,26 +132,25 @@ void add_geometry(CLI::App& app, VerifyOptions& o, const std::string& of) {
       ->type_name("DIR");
 }
 
-std::vector<CLI::Option*> add_motion(CLI::App& app, VerifyOptions& o) {
-  CLI::Option* gap =
-      app.add_option("--gap", o.gap,
-                     "Parts that move and measure less are not divided further; where they are not "
-                     "known to be inside, the answer is undecided [margin / 10^6]")
-          ->check([](const std::string& s) {
-            const auto length = parse_length(s);
-            return length && !length->percent
-                       ? std::string()
-                       : "must be a positive length, a number above 0 without a unit, not " + s;
-          })
-          ->type_name("LENGTH");
-  CLI::Option* cells =
-      app.add_option("--max-cells", o.max_cells,
-                     "Give up beyond this many parts of a triangle per segment of the path")
-          ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
-          ->capture_default_str()
-          ->type_name("N");
-  CLI::Option* joint = add_joint_option(app, o.joints);
-  return {joint, add_degrees_option(app, o.degrees), gap, cells, add_base_option(app, o.base_pose)};
+void add_motion(CLI::App& app, VerifyOptions& o) {
+  app.add_option("--gap", o.gap,
+                 "Parts that move and measure less are not divided further; where they are not "
+                 "known to be inside, the answer is undecided [margin / 10^6]")
+      ->check([](const std::string& s) {
+        const auto length = parse_length(s);
+        return length && !length->percent
+                   ? std::string()
+                   : "must be a positive length, a number above 0 without a unit, not " + s;
+      })
+      ->type_name("LENGTH");
+  app.add_option("--max-cells", o.max_cells,
+                 "Give up beyond this many parts of a triangle per segment of the path")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  add_joint_option(app, o.joints);
+  add_degrees_option(app, o.degrees);
+  add_base_option(app, o.base_pose);
 }
 
 }  // namespace kaboum::tools

@@ -9,12 +9,9 @@
 
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
-/// The command line of bound-verify, which has two spellings: commands (`bound-verify cover A S`,
-/// verify_commands.h) and flags (`bound-verify --cover A S`, verify_flags.h). Both fill the same
-/// structure.
+/// What the commands of bound-verify (verify_commands.h) are asked.
 namespace kaboum::tools {
 
 /// What bound-verify is asked: one relation of files.
@@ -53,22 +50,22 @@ inline constexpr const char* kVerifyExitCodes =
 
 void add_claims(CLI::App& app, VerifyOptions& options, const std::vector<std::string>& names);
 /// @param what  it decides
-CLI::Option* add_epsilon(CLI::App& app, VerifyOptions& options, const char* what);
+void add_epsilon(CLI::App& app, VerifyOptions& options, const char* what);
 /// --prepare and --drop-sheets. @param what  is prepared
 void add_preparation(CLI::App& app, VerifyOptions& options, const std::string& what);
 /// --unit and --scale.
 void add_unit(CLI::App& app, VerifyOptions& options);
-CLI::Option* add_set(CLI::App& app, VerifyOptions& options);
+void add_set(CLI::App& app, VerifyOptions& options);
 void add_witness(CLI::App& app, VerifyOptions& options);
 void add_input_format(CLI::App& app, VerifyOptions& options);
 /// @param of  the file
 void add_approximation_format(CLI::App& app, VerifyOptions& options, const std::string& of);
 void add_limits(CLI::App& app, VerifyOptions& options);
-CLI::Option* add_exact_points(CLI::App& app, VerifyOptions& options);
-CLI::Option* add_links(CLI::App& app, VerifyOptions& options);
+void add_exact_points(CLI::App& app, VerifyOptions& options);
+void add_links(CLI::App& app, VerifyOptions& options);
 /// --geometry, --visual and --package-path. @param of  the robot
 void add_geometry(CLI::App& app, VerifyOptions& options, const std::string& of);
 /// --joint, --degrees, --gap and --max-cells.
-std::vector<CLI::Option*> add_motion(CLI::App& app, VerifyOptions& options);
+void add_motion(CLI::App& app, VerifyOptions& options);
 
 }  // namespace kaboum::tools

@@ -70,6 +70,17 @@ Json shape_json(const verify::ShapeVerdict& s) {
     json["limited"] = s.limited;
     json["triangles_left_out"] = s.left_out;
   }
+  if (const auto& points = s.exact_points) {
+    Json& claim = json["claims"]["exact_points"];
+    claim = {{"answer", name_of(points->answer)}, {"reason", points->reason},
+             {"points", points->points},          {"outside", points->outside},
+             {"faces_outside", points->faces},    {"rounding", points->rounding}};
+    if (points->outside > 0) {
+      claim["farthest"] = points->farthest;
+      claim["at"] = {points->at.x(), points->at.y(), points->at.z()};
+      claim["face"] = points->face + 1;
+    }
+  }
   if (s.sticks_out) {
     json["sticks_out_lower"] = s.sticks_out->lower;
     if (std::isfinite(s.sticks_out->upper)) json["sticks_out_upper"] = s.sticks_out->upper;
@@ -99,7 +110,7 @@ class RobotVerifier {
         epsilon_(epsilon_of(o_.epsilon)),
         original_(robot::read_robot(o_.original)),
         result_(robot::read_robot(o_.result)),
-        meshes_(o_.packages),
+        meshes_(o_.packages, o_.exact_points),
         progress_(common.quiet) {}
 
   int run() {
@@ -129,7 +140,11 @@ class RobotVerifier {
                             o_.links.empty() ? original_.robot.links.size() : o_.links.size(),
                             bare_) +
         except_sheets(dropped_in(verdict)) +
-        (verdict.answer == Answer::Verified && has_exact_faces(verdict) ? kOfTriangles : ""));
+        (verdict.answer == Answer::Verified && has_exact_faces(verdict)
+             ? o_.exact_points > 0 ? "; of the triangles, which stand for exact faces; no point of "
+                                     "these that was looked at sticks out"
+                                   : kOfTriangles
+             : ""));
     return exit_code(verdict.answer);
   }
 
@@ -190,6 +205,7 @@ class RobotVerifier {
   }
 
   void note_on_unprepared(const verify::ShapeVerdict& shape) {
+    if (!shape.is_judged) return;
     if (const auto found = geom::find_inside_out(shape.file->mesh); found && found->refusal.empty())
       notes_.add(shape.file->path, text_of(*found));
     if (shape.answer == Answer::Verified) return;
@@ -279,8 +295,6 @@ class RobotVerifier {
 }  // namespace
 
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
-  if (options.result.empty())
-    throw Error(ErrorCode::InvalidArgument, "--robot takes ORIGINAL and APPROXIMATION, two URDFs");
   const ThreadLimit threads(common.threads);
   return RobotVerifier(options, common).run();
 }

@@ -16,6 +16,7 @@ struct VerifyRobotOptions {
   bool drop_sheets = false;
   std::size_t max_contacts = 0;
   std::optional<double> max_work;
+  std::size_t exact_points = 0;  ///< of CAD files; 0: triangles alone
 };
 
 /// Decides whether the collision shapes of RESULT hold ORIGINAL's shapes, link by link, and both

@@ -7,7 +7,7 @@
 
 namespace kaboum::tools {
 
-/// What `bound-verify --sweep ROBOT PATH SWEPT` is asked.
+/// What `bound-verify sweep ROBOT PATH SWEPT` is asked.
 struct VerifySweepOptions {
   std::vector<std::string> files;  ///< robot, path, swept set
   std::string links, geometry = "collision", gap, claims = "all", witness, set_format;

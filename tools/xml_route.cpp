@@ -23,7 +23,7 @@ std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
       return describe(kind) + meshes;
     case io::XmlKind::RlRobot:
       return "a robot of the Robotics Library (rlkin or rlmdl), not a mesh: sweep-approx and "
-             "bound-verify --sweep take it; other tools take its meshes one by one, the files "
+             "bound-verify sweep take it; other tools take its meshes one by one, the files "
              "beside it that are named like its links (link0.wrl)";
     case io::XmlKind::RlScene:
       return describe(kind) + "; give the mesh that it names by href";

@@ -81,8 +81,8 @@ class Merger {
     return touch(bodies_[a], bodies_[b], solid_);
   }
 
-  template <class Wanted>
-  void propose_pairs(Wanted&& wanted) {
+  template <class Predicate>
+  void propose_pairs(Predicate&& wanted) {
     for (std::uint32_t a = 0; a < bodies_.size(); ++a)
       for (std::uint32_t b = a + 1; b < bodies_.size(); ++b)
         if (wanted(a, b)) fresh_.push_back({a, b});

@@ -174,7 +174,7 @@ void ErrorBoundCertificate::commit(std::span<const std::uint32_t> removed) {
       p = next;
     }
   }
-  for (const Placed& placed : placed_) {
+  for (const CarriedTriangle& placed : placed_) {
     const std::uint32_t p = allocate();
     pieces_[p] = {placed.corner, placed.cuts, head_[placed.carrier]};
     head_[placed.carrier] = p;

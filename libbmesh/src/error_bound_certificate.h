@@ -52,7 +52,7 @@ class ErrorBoundCertificate {
     std::uint32_t cuts;  ///< that led to it, since the beginning
     std::uint32_t next;
   };
-  struct Placed {
+  struct CarriedTriangle {
     std::array<Vec3, 3> corner;
     std::uint32_t cuts;
     std::uint32_t carrier;
@@ -73,8 +73,8 @@ class ErrorBoundCertificate {
   std::vector<PolygonPart> pieces_;
   std::vector<std::uint32_t> head_;  // per current triangle
   std::uint32_t free_ = kNone;
-  std::vector<Placed> placed_;   // of the change under consideration
-  std::vector<char> may_carry_;  // of the new triangles
+  std::vector<CarriedTriangle> placed_;  // of the change under consideration
+  std::vector<char> may_carry_;          // of the new triangles
   std::size_t last_carrier_ = 0;
   int pieces_left_ = 0;
   std::uint32_t hint_ = 0;

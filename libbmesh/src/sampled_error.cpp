@@ -130,7 +130,7 @@ namespace {
 class Between {
  public:
   /// A point of the original, and the place of the triangle it is nearest to.
-  struct Found {
+  struct SurfaceSample {
     double squared;
     Vec3 point;
     std::uint32_t nearest;
@@ -142,15 +142,15 @@ class Between {
 
   /// @param nearest  places of the triangles that the corners are nearest to.
   /// @return the farthest point found, if it is farther than √enough.
-  std::optional<Found> operator()(const std::array<Vec3, 3>& corner,
-                                  const std::array<std::uint32_t, 3>& nearest) {
-    std::optional<Found> farthest;
+  std::optional<SurfaceSample> operator()(const std::array<Vec3, 3>& corner,
+                                          const std::array<std::uint32_t, 3>& nearest) {
+    std::optional<SurfaceSample> farthest;
     pieces_.assign(1, {corner, nearest, 0});
     while (!pieces_.empty()) {
       const SubTriangle p = pieces_.back();
       pieces_.pop_back();
       if (p.halvings == kMostHalvings || covered(p)) continue;
-      const Found middle = halve(p);
+      const SurfaceSample middle = halve(p);
       if (middle.squared > (farthest ? farthest->squared : enough_)) farthest = middle;
     }
     return farthest;
@@ -178,7 +178,7 @@ class Between {
   }
 
   /// Halves the longest side. @return its middle
-  Found halve(const SubTriangle& p) {
+  SurfaceSample halve(const SubTriangle& p) {
     int across = 0;
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -186,7 +186,7 @@ class Between {
       if (squared > longest) longest = squared, across = k;
     }
     const int first = (across + 1) % 3, second = (across + 2) % 3;
-    Found middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
+    SurfaceSample middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
     middle.squared = present_.squared(middle.point, middle.nearest, 0, &steps_);
     for (const int k : {first, second}) {
       SubTriangle half = p;
@@ -220,7 +220,7 @@ void SampledError::refine(std::span<const Vec3> position, const Connectivity& me
   constexpr std::size_t kRun = 1024;
   constexpr std::uint64_t kMostSteps = 100'000'000;  // each; needles and wide fans take far more
   const std::size_t n = mesh_.triangles.size();
-  using Of = std::pair<std::size_t, Between::Found>;  // of a triangle
+  using Of = std::pair<std::size_t, Between::SurfaceSample>;  // of a triangle
   std::vector<std::vector<Of>> found((n + kRun - 1) / kRun);
   parallel_for(std::size_t{0}, found.size(), [&](std::size_t run) {
     Between between(proximity, enough);
@@ -233,7 +233,7 @@ void SampledError::refine(std::span<const Vec3> position, const Connectivity& me
     }
     count(work_, between.steps());
   });
-  const auto add = [&](std::size_t i, const Between::Found& at) {
+  const auto add = [&](std::size_t i, const Between::SurfaceSample& at) {
     const geom::Triangle& t = mesh_.triangles[i];
     const Vec3& a = mesh_.vertices[t[0]];
     const std::uint32_t to = present.index[proximity.triangle(at.nearest)];

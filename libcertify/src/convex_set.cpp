@@ -16,6 +16,7 @@
 
 #include "given_solid.h"
 #include "issuer.h"
+#include "mesh_certifier.h"
 #include "request.h"
 
 namespace kaboum::certify {
@@ -195,7 +196,7 @@ CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks)
   const auto epsilon = r.wanted_epsilon();
   const double whole = epsilon ? epsilon->of(geom::bounding_box(mesh).diagonal()) : 0;
   WrapRequest asked = *r.wrap;
-  asked.float32 = true;
+  asked.float32 = asked.may_be_double = true;
   asked.progress = hooks.progress;
   asked.farthest.reset();
   if (epsilon) asked.farthest = kWrapShare * whole;
@@ -267,6 +268,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   SetRequest asked = request;
   // A flat sheet that is closed by its own fill has no volume.
   const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : geom::prepare;
+  if (asked.wrap) asked.wrap->input_triangles = mesh.triangles.size();
   const GivenSolid given = give_solid(
       mesh, prepare, asked.preparation, asked.wrap,
       [&](const geom::Mesh& triangles) { return wrapped(triangles, asked, hooks); }, because);
@@ -275,6 +277,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   if (!given.why.empty()) note(why_wrapped(given.why));
   if (wrap) note(in_words(wrap->certificate()));
   const geom::Mesh& solid = prepared.solid.mesh();
+  if (outer) require_area(solid);
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
   Search search(prepared.solid, asked, diagonal, hooks);

@@ -4,6 +4,7 @@
 #include <kaboum/base/number_text.h>
 #include <kaboum/base/sha256.h>
 #include <kaboum/certify/enclosure.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
 
 #include <algorithm>
@@ -51,6 +52,8 @@ GivenSolid solid_of(const geom::Mesh& mesh, const EnclosureRequest& request, Mes
         if (epsilon) wrap.farthest = kShareOfWrap * (*epsilon - wrap.clearance);
         if (wrap.farthest && !(*wrap.farthest > 0)) refuse_deviation(wrap.clearance);
         wrap.float32 = rest.numbers != MeshRequest::Numbers::Double;
+        wrap.may_be_double = rest.may_be_double();
+        wrap.input_triangles = mesh.triangles.size();
         wrap.progress = hooks.progress;
         CertifiedWrap made = certify_wrap(triangles, wrap);
         const WrapCertificate& c = made.certificate();
@@ -197,6 +200,17 @@ std::optional<CertifiedEnclosure> certify_enclosure(const geom::Mesh& mesh,
   return made;
 }
 
+namespace {
+
+EnclosedFile with_warning(EnclosedFile file, const std::optional<Length>& epsilon) {
+  const EnclosureCertificate& c = file.enclosure.certificate();
+  if (std::string text = warning_of(epsilon, c.wrap ? c.wrap->diagonal : c.diagonal); !text.empty())
+    file.read_notes.push_back(std::move(text));
+  return file;
+}
+
+}  // namespace
+
 EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format,
                           const EnclosureRequest& asked, const CacheFolder* cache,
                           const MeshHooks& hooks) {
@@ -207,7 +221,9 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
         known ? find_enclosure(*cache, key_of_enclosure(known->mesh_hash + known->sha256, request),
                                request)
               : std::nullopt;
-    if (found) return {known->sha256, known->notes, {}, std::move(*found), true};
+    if (found)
+      return with_warning({known->sha256, known->notes, {}, std::move(*found), true},
+                          asked.mesh.epsilon);
   }
   std::vector<char> bytes;
   io::ReadResult read = io::read_mesh(file, format, &bytes);
@@ -223,7 +239,7 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
     if (auto found = find_enclosure(*cache, key, request)) {
       out.enclosure = std::move(*found);
       out.cached = true;
-      return out;
+      return with_warning(std::move(out), asked.mesh.epsilon);
     }
   }
   auto made = [&] {
@@ -233,10 +249,12 @@ EnclosedFile enclose_file(const fs::path& file, std::optional<io::Format> format
       throw Error(error.code(), file.string() + ": " + error.what());
     }
   }();
-  if (!made) throw TooCoarse(file.string(), "choose a format that holds doubles, as obj");
+  if (!made)
+    throw TooCoarse(file.string(), read.mesh, request.mesh.epsilon, kMeshSpacing,
+                    "choose a format that holds doubles, as obj; or ");
   if (cache != nullptr) store_enclosure(*cache, key, *made);
   out.enclosure = std::move(*made);
-  return out;
+  return with_warning(std::move(out), asked.mesh.epsilon);
 }
 
 }  // namespace kaboum::certify

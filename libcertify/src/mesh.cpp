@@ -50,6 +50,7 @@ MeshSeries certify(const geom::Prepared& original, const MeshRequest& request,
     without_place = std::max(without_place, candidate.unrepresentable);
   if (without_place > 0) {
     series.shortage.emplace().vertices = without_place;
+    series.shortage->keeps_border = !original.solid.closed();
     if (!request.may_be_double()) return series;
   }
   series.meshes =
@@ -60,7 +61,8 @@ MeshSeries certify(const geom::Prepared& original, const MeshRequest& request,
 constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
 
 /// Bounds a wrap. What it takes of epsilon is not there for decimation.
-BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
+/// @param given  triangles of what was read, with which the input begins
+BoundedMesh bound_wrap(const geom::Mesh& input, std::size_t given, const MeshRequest& request,
                        const MeshPreparation& preparation, const MeshHooks& hooks) {
   if (request.direction != bmesh::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
@@ -70,6 +72,7 @@ BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
   MeshRequest rest = request;
   WrapRequest asked = preparation.wrapping;
   asked.farthest.reset();
+  asked.input_triangles = given;
   std::optional<double> epsilon;
   if (request.epsilon) {
     epsilon = request.epsilon->of(geom::bounding_box(input).diagonal()) - asked.clearance;
@@ -81,6 +84,7 @@ BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
     asked.farthest = kShareOfWrap * *epsilon;
   }
   asked.float32 = request.numbers != MeshRequest::Numbers::Double;
+  asked.may_be_double = request.may_be_double();
   asked.progress = hooks.progress;
   const CertifiedWrap wrap = certify_wrap(input, asked);
   BoundedMesh made;
@@ -90,6 +94,13 @@ BoundedMesh bound_wrap(const geom::Mesh& input, const MeshRequest& request,
   if (hooks.prepared) hooks.prepared();
   made.series = certify(made.original, rest, hooks, &input);
   return made;
+}
+
+/// Why vertices have no place, without which there is no result; empty: they have. Sheets that are
+/// closed by their own fill leave them none but their own.
+std::string why_stuck(const MeshSeries& series) {
+  if (!series.meshes.empty() || !series.shortage || series.shortage->vertices == 0) return {};
+  return reason_of(*series.shortage);
 }
 
 bool may_help(const Error& error) {
@@ -131,8 +142,8 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
                        const MeshPreparation& preparation, const MeshHooks& hooks) {
   using Wrap = MeshPreparation::Wrap;
   if (preparation.wrap == Wrap::Always)
-    return bound_wrap(with_other_diagonals(input, preparation.options), request, preparation,
-                      hooks);
+    return bound_wrap(with_other_diagonals(input, preparation.options), input.triangles.size(),
+                      request, preparation, hooks);
   const bool may_wrap =
       preparation.wrap == Wrap::WhereNeeded && request.direction == bmesh::Direction::Outer &&
       preparation.options.holes == geom::Holes::Fill && !preparation.options.keep_orientation;
@@ -160,13 +171,17 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
   } else if (why.empty()) {
     certify_as_prepared();
     const verify::Answer answer = made.surface_answer();
-    if (!may_wrap || answer == verify::Answer::Verified || answer == verify::Answer::Undefined)
+    const std::string stuck = why_stuck(made.series);
+    if (!may_wrap || answer == verify::Answer::Verified ||
+        (answer == verify::Answer::Undefined && stuck.empty()) ||
+        (!stuck.empty() && request.record_steps))
       return made;
     if (request.record_steps) {
       made.why_not_wrapped = "steps start from the input, not from a wrap round it";
       return made;
     }
-    why = answer == verify::Answer::Refuted
+    why = !stuck.empty() ? stuck
+          : answer == verify::Answer::Refuted
               ? "some triangles of the input bound no solid, and would stick out of a result round "
                 "the rest"
               : "whether all triangles of the input are enclosed without is not decided";
@@ -174,16 +189,18 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
   try {
     BoundedMesh wrap = bound_wrap(
         with_fillings(with_other_diagonals(input, preparation.options), made.original.solid),
-        request, preparation, hooks);
+        input.triangles.size(), request, preparation, hooks);
     wrap.why_wrapped = why;
     // Where float32 does not do for the wrap, the result without it stands.
-    if (!wrap.series.meshes.empty() || (made.series.meshes.empty() && !doubtful)) return wrap;
+    if (!wrap.series.meshes.empty() ||
+        (made.series.meshes.empty() && !doubtful && !made.series.shortage))
+      return wrap;
     if (doubtful) certify_as_prepared();
     made.why_not_wrapped = "float32 is too coarse for it";
   } catch (const Error& error) {
     if (!may_help(error)) throw;
     if (doubtful) certify_as_prepared();
-    if (made.series.meshes.empty())
+    if (made.series.meshes.empty() && !made.series.shortage)
       throw Error(ErrorCode::InvalidInput, why + ". Nor is it wrapped: " + error.what());
     made.why_not_wrapped = error.what();
   }

@@ -13,6 +13,9 @@ namespace kaboum::certify {
 /// @throws Error{InvalidInput} when the original would enclose nothing by itself.
 void require_extent(const geom::Prepared& original);
 
+/// @throws Error{InvalidInput} when all triangles are segments or points, exactly.
+void require_area(const geom::Mesh& mesh);
+
 /// The options of the search; targets and callbacks apart.
 bmesh::DecimateOptions search_options(const MeshRequest& request, const MeshPlan& plan);
 

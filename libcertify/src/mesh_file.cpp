@@ -1,6 +1,7 @@
 // Mesh files: read, then certified; errors name them.
 
 #include <kaboum/base/sha256.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/io/file_unit.h>
 
@@ -36,6 +37,25 @@ void say(const std::vector<std::string>& notes, const Hooks& hooks) {
   for (const std::string& text : notes) hooks.note(text);
 }
 
+/// Why float32 does not do for what lies round a mesh.
+std::string words_of(const geom::Mesh& mesh, const std::optional<Length>& epsilon,
+                     const SpacingShares& shares, const std::string& remedy) {
+  const geom::Box3 box = geom::bounding_box(mesh);
+  std::optional<double> length;
+  if (epsilon) length = epsilon->of(box.diagonal());
+  if (const auto shortage = too_coarse(box, length, shares))
+    return reason_of(*shortage) + "; " + remedy + remedy_of(*shortage);
+  return "float32 is too coarse for what lies round it, so far from the origin and for this "
+         "epsilon; " +
+         remedy + "move the mesh to the origin, or allow a larger epsilon";
+}
+
+void warn(const SetRequest& request, const SetCertificate& c, const Hooks& hooks) {
+  const double diagonal = c.wrap ? c.wrap->diagonal : c.diagonal;
+  if (const std::string text = warning_of(request.wanted_epsilon(), diagonal); !text.empty())
+    say({text}, hooks);
+}
+
 bool has_exact_faces(const fs::path& file, std::optional<io::Format> format) {
   if (!format) format = io::format_from_name(file.extension().string());
   return format && io::is_cad(*format);
@@ -56,15 +76,22 @@ std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::F
   say(known->notes, hooks);
   with_unit(request, known->unit, hooks);
   say(set->certificate().notes, hooks);
+  warn(request, set->certificate(), hooks);
   return CertifiedFile{known->sha256, known->notes, {}, {std::move(*set), true}};
 }
 
 }  // namespace
 
-TooCoarse::TooCoarse(const std::string& file, const char* remedy)
+TooCoarse::TooCoarse(const std::string& file)
     : Error(ErrorCode::InvalidInput,
-            file + ": float32 is too coarse so far from the origin (or for this epsilon); " +
-                remedy) {}
+            file +
+                ": float32 is too coarse so far from the origin, or for this epsilon; move the "
+                "mesh to the origin, or allow a larger epsilon") {}
+
+TooCoarse::TooCoarse(const std::string& file, const geom::Mesh& mesh,
+                     const std::optional<Length>& epsilon, const SpacingShares& shares,
+                     const std::string& remedy)
+    : Error(ErrorCode::InvalidInput, file + ": " + words_of(mesh, epsilon, shares, remedy)) {}
 
 CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> format,
                            SetRequest request, const SetCache* cache, const Hooks& hooks) {
@@ -91,7 +118,11 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
                   (file == "-" ? "standard input" : file.string()) + ": " + error.what());
     }
   }();
-  if (!found) throw TooCoarse(file.string());
+  if (!found) {
+    const std::optional<Length> epsilon = request.wanted_epsilon();
+    throw TooCoarse(file.string(), read.mesh, epsilon, epsilon ? kSetSpacing : kMeshSpacing);
+  }
+  warn(request, found->set.certificate(), hooks);
   return {sha256, std::move(read.notes), std::move(read.other_files), std::move(*found)};
 }
 

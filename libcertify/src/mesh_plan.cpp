@@ -3,7 +3,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,17 @@
 namespace kaboum::certify {
 namespace {
 
-/// Neighbouring float32 numbers may be so far apart: of the diagonal, and of epsilon.
-constexpr double kSpacingOfDiagonal = 1e-6, kSpacingOfEpsilon = 1e-2;
 /// No closed mesh has fewer vertices.
 constexpr std::size_t kLeastVertices = 4;
+
+/// Whether three points lie on no line: decided exactly, in three projections.
+bool has_area(const geom::Vec3& a, const geom::Vec3& b, const geom::Vec3& c) {
+  for (int x = 0; x < 3; ++x) {
+    const int y = (x + 1) % 3;
+    if (geom::orient2d(a[x], a[y], b[x], b[y], c[x], c[y]) != geom::Sign::Zero) return true;
+  }
+  return false;
+}
 
 void require(bool condition, const char* message) {
   if (!condition) throw Error(ErrorCode::InvalidArgument, message);
@@ -38,17 +45,15 @@ void require_sound(const MeshRequest& r) {
           "sharp_angle is for the costs of planes only");
 }
 
-std::optional<Float32Shortage> too_coarse(const geom::Box3& box, const MeshPlan& plan) {
-  Float32Shortage shortage;
-  shortage.limit = kSpacingOfDiagonal * plan.diagonal;
-  if (plan.epsilon) shortage.limit = std::min(shortage.limit, *plan.epsilon * kSpacingOfEpsilon);
-  shortage.spacing =
-      geom::float32_spacing(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
-  if (shortage.spacing <= shortage.limit) return std::nullopt;
-  return shortage;
-}
-
 }  // namespace
+
+void require_area(const geom::Mesh& mesh) {
+  for (const auto& [a, b, c] : mesh.triangles)
+    if (has_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) return;
+  throw Error(ErrorCode::InvalidInput,
+              "no triangle has an area: they are segments, and enclose nothing; have a wrap give "
+              "them a thickness (--prepare wrap), or export the mesh with more digits");
+}
 
 // Closed by its own fill, a flat sheet would be certified to lie in a solid that is nothing.
 void require_extent(const geom::Prepared& original) {
@@ -56,6 +61,7 @@ void require_extent(const geom::Prepared& original) {
     throw Error(ErrorCode::InvalidInput,
                 "all triangles lie in one plane and enclose nothing; have a wrap give the sheet a "
                 "thickness (--prepare wrap), or have bcd-decompose cover it");
+  require_area(original.solid.mesh());
 }
 
 geom::Prepared prepare_mesh(const geom::Mesh& mesh, const geom::PrepareOptions& options) {
@@ -98,7 +104,7 @@ MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request) {
   if (request.numbers == MeshRequest::Numbers::Double) {
     plan.precision = bmesh::Precision::Double;
   } else {
-    plan.shortage = too_coarse(box, plan);
+    plan.shortage = too_coarse(box, plan.epsilon);
     if (plan.shortage && request.may_be_double()) plan.precision = bmesh::Precision::Double;
   }
   plan.effort = request.effort;

@@ -53,7 +53,7 @@ CertifiedLink certify_link(const std::vector<robot::LinkBody>& bodies,
 }
 
 /// A link that has shapes, and what its set is to claim.
-struct Wanted {
+struct LinkRecord {
   LinkCertificate certificate;
   geom::Provenance claims;
 };
@@ -64,7 +64,7 @@ CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& 
                              const SetCache* cache, const RobotHooks& hooks) {
   CertifiedRobot out{certify_bodies(robot, request, cache, hooks), {}};
   const BodiesCertificate& made = out.bodies.certificate();
-  std::vector<Wanted> links;
+  std::vector<LinkRecord> links;
   for (const robot::LinkShape& shape : made.shapes) {
     if (links.empty() || links.back().certificate.link != shape.link)
       links.push_back({{shape.link, 0, 0}, origin_of(robot, request, shape.link)});

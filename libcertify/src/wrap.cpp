@@ -121,7 +121,7 @@ CertifiedWrap certify_wrap(const geom::Mesh& given, const WrapRequest& request) 
   geom::require_valid(input);
   geom::require_moderate(input);
   WrapCertificate made;
-  made.input_triangles = given.triangles.size();
+  made.input_triangles = request.input_triangles.value_or(given.triangles.size());
   made.diagonal = geom::bounding_box(input).diagonal();
   if (!(made.diagonal > 0))
     throw Error(ErrorCode::InvalidInput,
@@ -162,6 +162,8 @@ CertifiedWrap certify_wrap(const geom::Mesh& given, const WrapRequest& request) 
   geom::Mesh mesh;
   for (int tried = 1;; ++tried) {
     options.seal = made.seal;
+    if (request.float32 && request.may_be_double)
+      options.float32 = wrap::float32_is_fine(geom::bounding_box(input), options);
     mesh = wrap::wrap(input, options).mesh;
     if (request.progress) request.progress("measuring the wrap");
     measure(mesh, query, made);

@@ -60,7 +60,7 @@ class CcdPairs {
   void place(const geom::Transform& pose) { pose_ = pose; }
 
   bool operator()(const Body& a, const Body& b) const {
-    const Placed still{&a, nullptr}, moved{&b, &pose_};
+    const PosedBody still{&a, nullptr}, moved{&b, &pose_};
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;
@@ -71,23 +71,24 @@ class CcdPairs {
   }
 
  private:
-  struct Placed {
+  /// A body and its pose.
+  struct PosedBody {
     const Body* body;
     const geom::Transform* pose;  ///< none: in its place
   };
 
-  static void write(const Placed& placed, const geom::Vec3& point, ccd_vec3_t* out) {
+  static void write(const PosedBody& placed, const geom::Vec3& point, ccd_vec3_t* out) {
     const geom::Vec3 p = placed.pose != nullptr ? geom::Vec3(*placed.pose * point) : point;
     ccdVec3Set(out, p.x(), p.y(), p.z());
   }
 
   static void center(const void* object, ccd_vec3_t* out) {
-    const auto& placed = *static_cast<const Placed*>(object);
+    const auto& placed = *static_cast<const PosedBody*>(object);
     write(placed, placed.body->center(), out);
   }
 
   static void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-    const auto& placed = *static_cast<const Placed*>(object);
+    const auto& placed = *static_cast<const PosedBody*>(object);
     geom::Vec3 d(direction->v[0], direction->v[1], direction->v[2]);
     if (placed.pose != nullptr) d = placed.pose->linear.transpose() * d;
     write(placed, placed.body->support(d), out);

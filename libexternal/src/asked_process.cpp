@@ -110,15 +110,15 @@ void AskedProcess::fail(const std::string& what, ErrorCode code) {
 
 json AskedProcess::receive(std::string& line, double& seconds) {
   switch (channel_.lines().read_line(line, seconds)) {
-    case LineSocket::Got::Line:
+    case LineSocket::ReadOutcome::Line:
       break;
-    case LineSocket::Got::End:
+    case LineSocket::ReadOutcome::End:
       fail(channel_.end() + " without an answer");
-    case LineSocket::Got::Late:
+    case LineSocket::ReadOutcome::Late:
       channel_.end();
       fail("no answer within " + dump(options_.most_seconds) + " s; it was ended",
            ErrorCode::LimitReached);
-    case LineSocket::Got::TooLong:
+    case LineSocket::ReadOutcome::TooLong:
       channel_.end();
       fail("it answered with a line of more than 16 MiB");
   }

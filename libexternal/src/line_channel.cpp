@@ -99,7 +99,7 @@ LineChannel::LineChannel(const std::string& name, const std::function<void(LineS
 
 LineChannel::~LineChannel() { end(); }
 
-LineSocket::Got LineSocket::read_line(std::string& line, double& seconds) {
+LineSocket::ReadOutcome LineSocket::read_line(std::string& line, double& seconds) {
   Clock clock(seconds);
   std::size_t looked_at = 0;
   for (;;) {
@@ -107,17 +107,17 @@ LineSocket::Got LineSocket::read_line(std::string& line, double& seconds) {
     if (at != std::string::npos) {
       line = buffer_.substr(0, at);
       buffer_.erase(0, at + 1);
-      return Got::Line;
+      return ReadOutcome::Line;
     }
     looked_at = buffer_.size();
-    if (looked_at > kLongestLine) return Got::TooLong;
-    if (!wait_for(socket_, POLLIN, clock)) return Got::Late;
+    if (looked_at > kLongestLine) return ReadOutcome::TooLong;
+    if (!wait_for(socket_, POLLIN, clock)) return ReadOutcome::Late;
     char part[65536];
     const ssize_t got = recv(socket_, part, sizeof part, 0);
     if (got > 0) {
       buffer_.append(part, static_cast<std::size_t>(got));
     } else if (got == 0 || errno != EINTR) {
-      return Got::End;
+      return ReadOutcome::End;
     }
   }
 }

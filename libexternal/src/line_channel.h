@@ -15,9 +15,9 @@ class LineSocket {
   LineSocket(const LineSocket&) = delete;
   LineSocket& operator=(const LineSocket&) = delete;
 
-  enum class Got { Line, End, Late, TooLong };
+  enum class ReadOutcome { Line, End, Late, TooLong };
   /// @param seconds  that are left; less afterwards by what it took.
-  Got read_line(std::string& line, double& seconds);
+  ReadOutcome read_line(std::string& line, double& seconds);
   /// false: the other side takes no more, or not in this time.
   bool write_line(std::string line, double& seconds);
   /// The other side reads the end.

@@ -39,7 +39,7 @@ void require_utf8(const std::string& text, const char* what) {
 bool read(LineSocket& lines, json& message) {
   double seconds = kForever;
   std::string line;
-  if (lines.read_line(line, seconds) != LineSocket::Got::Line) return false;
+  if (lines.read_line(line, seconds) != LineSocket::ReadOutcome::Line) return false;
   message = json::parse(line, nullptr, false);
   return message.is_object();
 }

@@ -293,17 +293,26 @@ class Hollows {
 
 }  // namespace
 
+namespace {
+
+/// Points near the middle of a triangle, on both sides; none of triangles without area.
+std::vector<Vec3> places_beside(const Mesh& mesh, std::uint32_t t) {
+  const auto& [p, q, r] = mesh.triangles[t];
+  const Vec3 &a = mesh.vertices[p], &b = mesh.vertices[q], &c = mesh.vertices[r];
+  const Vec3 normal = (b - a).cross(c - a);
+  const double size = std::sqrt(normal.norm());
+  if (!(size > 0)) return {};
+  const Vec3 at = 0.34 * a + 0.35 * b + 0.31 * c, step = normal * (1e-3 / size);
+  return {at + step, at - step};
+}
+
+}  // namespace
+
 std::optional<Hollow> find_inverted(const Mesh& mesh, const WindingNumber& winding,
                                     std::span<const std::uint32_t> beside,
                                     std::span<const std::uint32_t> part) {
   for (const std::uint32_t t : beside) {
-    const auto& [p, q, r] = mesh.triangles[t];
-    const Vec3 &a = mesh.vertices[p], &b = mesh.vertices[q], &c = mesh.vertices[r];
-    const Vec3 normal = (b - a).cross(c - a);
-    const double size = std::sqrt(normal.norm());
-    if (!(size > 0)) continue;
-    const Vec3 at = 0.34 * a + 0.35 * b + 0.31 * c, step = normal * (1e-3 / size);
-    for (const Vec3& x : {Vec3(at + step), Vec3(at - step)}) {
+    for (const Vec3& x : places_beside(mesh, t)) {
       int number = 0;
       bool on = false;
       winding.crossings(x, [&](std::uint32_t u, int crossing) {
@@ -314,6 +323,38 @@ std::optional<Hollow> find_inverted(const Mesh& mesh, const WindingNumber& windi
       if (!on && number < 0) return Hollow{t, x, false};
     }
   }
+  return {};
+}
+
+std::optional<Hollow> find_pocket(const Mesh& mesh, const WindingNumber& winding,
+                                  std::span<const std::uint32_t> beside,
+                                  std::span<const std::uint32_t> part) {
+  struct Part {
+    bool forward = false;          // winds round some point so
+    std::optional<Hollow> behind;  // the first point outside that it winds round backwards
+  };
+  std::map<std::uint32_t, Part> parts;
+  std::vector<std::uint32_t> order;  // as pockets are found
+  for (const std::uint32_t t : beside) {
+    for (const Vec3& x : places_beside(mesh, t)) {
+      int all = 0, own = 0;
+      bool on = false;
+      winding.crossings(x, [&](std::uint32_t u, int crossing) {
+        on = on || crossing == 0;
+        all += crossing;
+        if (part[u] == part[t]) own += crossing;
+      });
+      if (on) continue;
+      if (all < 0) return Hollow{t, x, false};
+      Part& mine = parts[part[t]];
+      mine.forward = mine.forward || own > 0;
+      if (all > 0 || own >= 0 || mine.behind) continue;
+      mine.behind = Hollow{t, x, false};
+      order.push_back(part[t]);
+    }
+  }
+  for (const std::uint32_t p : order)
+    if (parts[p].forward) return parts[p].behind;
   return {};
 }
 

@@ -377,7 +377,8 @@ class Preparation {
   /// Parts that were open, or that were turned to agree, are judged by themselves: their holes'
   /// fill and the edges that they agree at are guesses. Where one of them winds backwards round a
   /// point, the guess joined bodies against each other; where the point is inside another body,
-  /// that would be hollow. Then the whole, where a surface crosses itself.
+  /// that would be hollow. Then the whole, where a surface crosses itself: a pocket of it within
+  /// another body is hollow as well.
   void find_inverted() {
     if (!closed_ || options_.keep_orientation) return;
     const Guesses guesses = find_guesses(edges_, part_, report_.source, agreed_, opened_);
@@ -399,7 +400,7 @@ class Preparation {
     if (!found) {
       std::vector<std::uint32_t> all(part_.size());
       std::iota(all.begin(), all.end(), 0U);
-      found = geom::find_inverted(mesh_, winding, some_of(all, {}));
+      found = geom::find_pocket(mesh_, winding, some_of(all, {}), part_);
     }
     if (!found) return;
     report_.hollow = found->at;

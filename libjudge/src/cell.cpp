@@ -63,15 +63,15 @@ geom::Transform Cell::pose_of(const CellState& state, std::size_t object) const 
   return product(pose_of(state, place.hold->robot, place.hold->link), place.hold->pose);
 }
 
-std::vector<Cell::Placed> Cell::place(const CellState& state) const {
+std::vector<Cell::PosedThing> Cell::place(const CellState& state) const {
   ensure(state.q.size() == robots_.size() && state.objects.size() == objects_.size(),
          "a state of another cell");
   std::vector<std::vector<geom::Transform>> links;
   for (std::size_t r = 0; r < robots_.size(); ++r)
     links.push_back(places(robots_[r].kinematics, robots_[r].base, state.q[r]));
-  std::vector<Placed> out;
+  std::vector<PosedThing> out;
   for (const Thing& thing : things_) {
-    Placed placed{&thing, {}, {}, thing.robot, nullptr};
+    PosedThing placed{&thing, {}, {}, thing.robot, nullptr};
     if (thing.robot != kNone) {
       placed.at = links[thing.robot][thing.index];
     } else {
@@ -115,7 +115,7 @@ bool Cell::connected(const robot::Robot& robot, std::uint32_t a, std::uint32_t b
   return false;
 }
 
-bool Cell::is_looked_at(const Placed& a, const Placed& b) const {
+bool Cell::is_looked_at(const PosedThing& a, const PosedThing& b) const {
   for (const auto& [x, y] : {std::pair{&a, &b}, std::pair{&b, &a}})
     if (x->hold != nullptr && y->thing->robot == x->hold->robot) {
       const auto link = static_cast<std::uint32_t>(y->thing->index);
@@ -123,7 +123,7 @@ bool Cell::is_looked_at(const Placed& a, const Placed& b) const {
           std::ranges::find(x->hold->touching, link) != x->hold->touching.end())
         return false;
     }
-  const auto number = [&](const Placed& p) {
+  const auto number = [&](const PosedThing& p) {
     return static_cast<std::size_t>(p.thing - things_.data());
   };
   signed char& known = looked_at_[number(a) * things_.size() + number(b)];
@@ -140,10 +140,10 @@ bool Cell::is_looked_at(const Placed& a, const Placed& b) const {
 
 template <typename Wanted>
 std::optional<Meeting> Cell::find(const CellState& state, const Wanted& wanted) const {
-  const std::vector<Placed> all = place(state);
+  const std::vector<PosedThing> all = place(state);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const Placed &a = all[i], &b = all[j];
+      const PosedThing &a = all[i], &b = all[j];
       if (!wanted(a, b)) continue;
       const double reach = a.thing->radius + b.thing->radius;
       if ((a.center - b.center).squaredNorm() > reach * reach || !is_looked_at(a, b)) continue;
@@ -154,7 +154,7 @@ std::optional<Meeting> Cell::find(const CellState& state, const Wanted& wanted) 
 }
 
 std::optional<Meeting> Cell::find_meeting(const CellState& state, std::size_t robot) const {
-  return find(state, [&](const Placed& a, const Placed& b) {
+  return find(state, [&](const PosedThing& a, const PosedThing& b) {
     return robot == kNone ? a.mover != kNone || b.mover != kNone
                           : a.mover == robot || b.mover == robot;
   });
@@ -162,7 +162,7 @@ std::optional<Meeting> Cell::find_meeting(const CellState& state, std::size_t ro
 
 std::optional<Meeting> Cell::find_meeting_of(const CellState& state, std::size_t object) const {
   const Thing* thing = &things_[objects_.at(object)];
-  return find(state, [&](const Placed& a, const Placed& b) {
+  return find(state, [&](const PosedThing& a, const PosedThing& b) {
     return a.thing == thing || b.thing == thing;
   });
 }

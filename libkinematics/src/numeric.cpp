@@ -118,9 +118,9 @@ bool same(const Arm& arm, const std::vector<double>& a, const std::vector<double
 }
 
 /// Calls found(solution) for every start that leads to one, until it returns true.
-template <class Found>
+template <class Callback>
 void from_starts(const Arm& arm, const Transform& target, const NumericOptions& options,
-                 const Found& found) {
+                 const Callback& found) {
   if (!options.first.empty() && options.first.size() != arm.axes.size())
     throw Error(ErrorCode::InvalidArgument, std::to_string(options.first.size()) +
                                                 " values to start from for an arm with " +

@@ -286,32 +286,32 @@ class ConstraintSampler::Impl {
 
   /// Joints for the tools that are where they should be, and the check of all.
   bool finish(Sample& sample) {
-    Found worst = Found::Within;
+    Solvability worst = Solvability::Within;
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];
       if (forms_[i])
         worst = std::min(worst, choose_moving(i));
       else if (options_.limits && !within_limits(robot.arm, joints_[i]))
-        worst = std::min(worst, Found::Outside);
-      if (worst == Found::None) return false;
+        worst = std::min(worst, Solvability::Outside);
+      if (worst == Solvability::None) return false;
     }
     ++tally_.reached;
-    if (worst != Found::Within) return false;
+    if (worst != Solvability::Within) return false;
     sample.at.joints = joints_;
     for (const Frame& frame : frames_.objects) sample.at.objects.push_back(frame.pose);
     sample.error = error_of(sample.at);
     return sample.error <= options_.bound;
   }
 
-  enum class Found { None, Outside, Within };  ///< joints: none, none within the limits, some
+  enum class Solvability { None, Outside, Within };  ///< joints: none, none within the limits, some
 
   /// Joints for the tool's pose, else for poses to which the constraints let it move.
-  Found choose_moving(std::size_t i) {
+  Solvability choose_moving(std::size_t i) {
     Transform& pose = frames_.tools[i].pose;
     const auto place = [&](const FrameId& id) { return pose_of(id); };
-    Found best = choose(i);
+    Solvability best = choose(i);
     const int motions = motions_[i].empty() ? 0 : options_.motions;
-    for (int k = 0; k < motions && best != Found::Within; ++k) {
+    for (int k = 0; k < motions && best != Solvability::Within; ++k) {
       pose = motions_[i].moved(pose, place, balls_[i], random_);
       best = std::max(best, choose(i));
     }
@@ -319,7 +319,7 @@ class ConstraintSampler::Impl {
   }
 
   /// One of the solutions within the limits, each as likely as any other.
-  Found choose(std::size_t i) {
+  Solvability choose(std::size_t i) {
     ++tally_.solved;
     const ClosedForm& form = *forms_[i];
     std::vector<double>& q = joints_[i];
@@ -327,19 +327,20 @@ class ConstraintSampler::Impl {
     for (std::size_t k = 0; k < q.size(); ++k) options.reference[k] = q[k];  // random values
     const Solutions found =
         solve(form, inverse(problem_.robots[i].base) * frames_.tools[i].pose, options);
-    if (found.empty()) return Found::None;
+    if (found.empty()) return Solvability::None;
     const std::size_t first = random_.index(found.size());
     for (std::size_t n = 0; n < found.size(); ++n) {
       const Solution& s = found[(first + n) % found.size()];
-      if (!options_.limits) return q.assign(s.q.begin(), s.q.begin() + q.size()), Found::Within;
+      if (!options_.limits)
+        return q.assign(s.q.begin(), s.q.begin() + q.size()), Solvability::Within;
       // Of whole turns, those near the random start.
       const std::vector<double> start = q;
       if (auto near = nearest_copy(form.arm, {s.q.data(), q.size()}, start)) {
         q = std::move(*near);
-        return Found::Within;
+        return Solvability::Within;
       }
     }
-    return Found::Outside;
+    return Solvability::Outside;
   }
 
   [[nodiscard]] double error_of(const Placement& at) const {

@@ -17,8 +17,8 @@ using plan::Answer;
 using plan::Question;
 
 /// What a call is about, and all that it looks at.
-struct Asked {
-  Asked(Geometry& geometry, const Question& question) : state(geometry, question.state) {}
+struct CallState {
+  CallState(Geometry& geometry, const Question& question) : state(geometry, question.state) {}
   GeometricState state;
 
   [[nodiscard]] Answer not_known() const { return Answer::not_found(state.unknown()); }
@@ -49,7 +49,7 @@ std::string key_of(const Call& call, const Question& question) {
 template <typename Act, typename Value>
 Answer perform(Geometry& geometry, const Question& question, const Call& call, const Act& act,
                const Value& value) {
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_all()) return asked.not_known();
   if (geometry.performed.size() >= kMostKept ||
       geometry.performed.size() * geometry.placed.size() >= kMostDecided) {
@@ -79,7 +79,7 @@ Answer perform(Geometry& geometry, const Question& question, const Call& call, c
 /// Reads the object alone, and says where it is out of reach whatever else there is.
 std::optional<Answer> out_of_reach(Geometry& geometry, const Question& question, std::size_t robot,
                                    std::size_t object) {
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_object(object)) return asked.not_known();
   const world::WorldState& state = asked.state.world();
   Sequence sequence(geometry, question, state, asked.state.mounted());
@@ -118,7 +118,7 @@ Answer reach(Geometry& geometry, const Question& question) {
 Answer grasp(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   asked.state.set_robot(r, configuration_of(question.arguments[2], geometry.world.robots[r]));
   Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
@@ -234,7 +234,7 @@ Answer release(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const world::RobotModel& robot = geometry.world.robots[r];
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   asked.state.set_robot(r, configuration_of(question.arguments[2], robot));
   Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
@@ -262,7 +262,7 @@ Answer is_inside(Geometry& geometry, const Question& question) {
     ++region;
   if (region == world.regions.size())
     throw Error(ErrorCode::InvalidInput, "the scene has no region '" + question.arguments[1] + "'");
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   if (asked.state.world().absent[o])
     return Answer::holds(false, world.objects[o].name + " is away");
@@ -274,7 +274,7 @@ Answer is_inside(Geometry& geometry, const Question& question) {
 Answer collides(Geometry& geometry, const Question& question) {
   const world::Item a{world::Item::kObject, object_named(geometry, question.arguments[0])};
   const world::Item b{world::Item::kObject, object_named(geometry, question.arguments[1])};
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   if (!asked.state.read_object(a.index) || !asked.state.read_object(b.index))
     return asked.not_known();
   world::Scratch scratch;
@@ -292,7 +292,7 @@ Answer swept_collides(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::vector<double> to = configuration_of(question.arguments[1], geometry.world.robots[r]);
   const std::size_t o = object_named(geometry, question.arguments[2]);
-  Asked asked(geometry, question);
+  CallState asked(geometry, question);
   // The other robots are in the world as well, where they are.
   for (std::size_t other = 0; other < geometry.world.robots.size(); ++other)
     if (!asked.state.read_robot(other)) return asked.not_known();

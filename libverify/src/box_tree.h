@@ -45,8 +45,8 @@ class BoxTree {
 
   /// Calls visit(item) for the items whose boxes satisfy `wanted`, in the tree's order. wanted(box)
   /// must hold for every box that contains one for which it holds.
-  template <class Wanted, class Visit>
-  void query(Wanted&& wanted, Visit&& visit) const {
+  template <class Predicate, class Visit>
+  void query(Predicate&& wanted, Visit&& visit) const {
     if (nodes_.empty()) return;
     std::array<std::uint32_t, 96> stack;  // halving 2^32 items takes 32 levels
     std::size_t size = 0;

@@ -31,8 +31,8 @@ struct Part {
   double upper;
 };
 
-/// What was found at a part.
-struct Found {
+/// Bounds of the distance of a part, and where it is that far.
+struct DistanceBounds {
   double lower = 0, upper = 0;
   Vec3 at = Vec3::Zero();
 };
@@ -72,8 +72,8 @@ class Farthest {
     // In blocks, since what the first ones reach makes much of the rest unnecessary.
     const auto look_at = [&](std::span<Part> some) {
       const double known = best.lower;
-      std::vector<Found> found(some.size(),
-                               Found{0, std::numeric_limits<double>::infinity(), Vec3::Zero()});
+      std::vector<DistanceBounds> found(
+          some.size(), DistanceBounds{0, std::numeric_limits<double>::infinity(), Vec3::Zero()});
       allowance.loop(some.size(), [&](std::size_t i) { found[i] = look(some[i], known); });
       for (std::size_t i = 0; i < some.size(); ++i) {
         some[i].upper = std::min(some[i].upper, found[i].upper);
@@ -107,8 +107,8 @@ class Farthest {
   }
 
  private:
-  [[nodiscard]] Found look(const Part& part, double known) const {
-    Found found;
+  [[nodiscard]] DistanceBounds look(const Part& part, double known) const {
+    DistanceBounds found;
     const Vec3 centre = (part.corner[0] + part.corner[1] + part.corner[2]) / 3;
     double radius = 0;
     for (const Vec3& p : part.corner) radius = std::max(radius, (p - centre).norm());
@@ -186,7 +186,7 @@ class Farthest {
   }
 
   /// A point on the surface that is in the solid is on a face that has a part in it.
-  void look_round(const Vec3& p, double known, Found& found) const {
+  void look_round(const Vec3& p, double known, DistanceBounds& found) const {
     const double distance = perhaps_.distance(p);
     if (distance <= std::max(known, found.lower) || !std::isfinite(distance)) return;
     if (to_solid_ && winding_at(meshes_, kOutside, p).value_or(0) >= 1) return;

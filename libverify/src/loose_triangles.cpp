@@ -131,14 +131,15 @@ class BoxLevels {
   }
 
   /// visit(face) for those whose boxes satisfy `wanted`; so does every box round one that does.
-  template <class Wanted, class Visit>
-  void query(const Wanted& wanted, const Visit& visit) const {
+  template <class Predicate, class Visit>
+  void query(const Predicate& wanted, const Visit& visit) const {
     if (!levels_.empty()) query(levels_.size() - 1, 0, wanted, visit);
   }
 
  private:
-  template <class Wanted, class Visit>
-  void query(std::size_t level, std::uint32_t i, const Wanted& wanted, const Visit& visit) const {
+  template <class Predicate, class Visit>
+  void query(std::size_t level, std::uint32_t i, const Predicate& wanted,
+             const Visit& visit) const {
     if (!wanted(levels_[level][i])) return;
     if (level > 0) {
       query(level - 1, 2 * i, wanted, visit);

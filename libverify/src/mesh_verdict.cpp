@@ -21,14 +21,15 @@ void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
   };
   const Inclusion& in = out.inclusion;
   if (in.solid.answer == Answer::Refuted && !in.relative && !in.limited)
-    out.solid_depth = beyond_margin(bracket_solid(q.inner(), q.outer(), in.solid));
+    out.solid_depth = beyond_margin(
+        bracket_solid(out.solid_backwards ? turned(q.inner()) : q.inner(), q.outer(), in.solid));
   if (in.surface.answer != Answer::Refuted) return;
   BracketEffort effort;
   if (in.limited)  // its target is as hard to find
     effort.max_work = q.max_work.value_or(
         usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
   out.surface_depth = beyond_margin(
-      bracket_distance(q.inner(), in.surface.inner_triangles, q.outer(), true, effort));
+      bracket_distance(surface_of(q, out), in.surface.inner_triangles, q.outer(), true, effort));
   // What was left out may stick out farther.
   if (in.limited) out.surface_depth->upper = std::numeric_limits<double>::infinity();
 }
@@ -55,15 +56,22 @@ DistanceVerdict decide_distance(Between between, const geom::Mesh& from, const g
   return out;
 }
 
-DistanceVerdict decide_excess(const MeshQuestion& q, bool to_solid,
+DistanceVerdict decide_excess(const MeshQuestion& q, bool is_closed,
                               const InclusionOptions& options) {
+  const geom::Mesh& to = q.measured != nullptr ? q.measured->mesh : q.original;
+  const bool has_solid = q.measured == nullptr || q.measured->has_solid;
+  const bool to_solid = q.measured != nullptr || is_closed;
   DistanceVerdict out{to_solid ? Between::UnionToSolid : Between::FacetsToSurface,
-                      verify_excess(*q.set, q.original, *q.bound, to_solid, options),
+                      verify_excess(*q.set, to, *q.bound, to_solid, options),
                       {}};
+  if (out.claim.answer == Answer::Refuted && !has_solid) {
+    out.claim.answer = Answer::Undecided;
+    out.claim.reason = "which solid the triangles bound is not known";
+  }
   out.bracket = bracket_of(out.claim);
   if (out.claim.answer == Answer::Verified) return out;
   // Inside the bodies it may be farther: only the lower bound counts.
-  const Bracket found = bracket_all(q.approximation, q.original, to_solid);
+  const Bracket found = bracket_all(q.approximation, to, to_solid);
   if (found.lower > out.bracket.lower) {
     out.bracket.lower = found.lower;
     out.bracket.at = found.at;
@@ -89,7 +97,51 @@ void decide_distances(const MeshQuestion& q, const InclusionOptions& options, Me
   }
 }
 
+Inclusion inclusion_of(const MeshQuestion& q, const geom::Mesh& inner,
+                       const InclusionOptions& options) {
+  return q.relation == Relation::Cover ? verify_cover(inner, *q.set, options).inclusion
+                                       : verify_inclusion(inner, q.outer(), options);
+}
+
+/// What a subject is beside its mesh as it is oriented.
+void decide_the_rest(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
+  if (q.subject == nullptr || q.relation == Relation::Inner) return;
+  Inclusion& all = out.inclusion;
+  const auto add = [&](const Inclusion& more) {
+    all.left_out += more.left_out;
+    all.limited = all.limited || more.limited;
+    all.contacts += more.contacts;
+    all.samples += more.samples;
+  };
+  if (q.subject->both_ways && all.inner_closed && all.solid.answer == Answer::Verified) {
+    const Inclusion back = inclusion_of(q, turned(q.original), options);
+    add(back);
+    out.solid_backwards = back.solid.answer != Answer::Verified;
+    all.solid = back.solid;
+  }
+  InclusionOptions surface = options;
+  surface.surface_only = true;
+  if (q.subject->filled_triangles > 0 && all.surface.answer != Answer::Verified) {
+    const Inclusion own =
+        inclusion_of(q, without_filling(q.original, q.subject->filled_triangles), surface);
+    add(own);
+    all.surface = own.surface;
+  }
+  if (!q.subject->has_more) return;
+  surface.max_work = options.max_work.value_or(
+      usual_work(q.subject->triangles.triangles.size() + q.approximation.triangles.size()));
+  const Inclusion more = inclusion_of(q, q.subject->triangles, surface);
+  add(more);
+  if (worse(all.surface.answer, more.surface.answer) == all.surface.answer) return;
+  out.surface_of_all = true;
+  all.surface = more.surface;
+}
+
 }  // namespace
+
+const geom::Mesh& surface_of(const MeshQuestion& q, const MeshVerdict& verdict) {
+  return verdict.surface_of_all ? q.subject->triangles : q.inner();
+}
 
 const char* name_of(Between between) {
   switch (between) {
@@ -133,10 +185,11 @@ MeshVerdict decide(const MeshQuestion& q,
   options.progress = [&](const std::string& what) { show("deciding: " + what); };
   MeshVerdict out;
   if (q.set != nullptr) out.convex = verify_convexity(*q.set).convex;
-  out.inclusion = q.relation == Relation::Cover
-                      ? verify_cover(q.original, *q.set, options).inclusion
-                      : verify_inclusion(q.inner(), q.outer(), options);
-  out.vacuous = q.claims == Claims::Solid && is_inside_out(q.inner());
+  out.inclusion = inclusion_of(q, q.inner(), options);
+  decide_the_rest(q, options, out);
+  const bool both_ways =
+      q.subject != nullptr && q.subject->both_ways && q.relation != Relation::Inner;
+  out.vacuous = q.claims == Claims::Solid && !both_ways && is_inside_out(q.inner());
   show("measuring what sticks out");
   measure_depths(q, out);
   if (q.exact_points && q.relation != Relation::Inner) {
@@ -163,8 +216,11 @@ geom::Mesh offending_triangles(const MeshQuestion& q, const MeshVerdict& verdict
   };
   std::vector<std::uint32_t> of_inner, of_outer;
   for (const Claim* claim : {&verdict.inclusion.solid, &verdict.inclusion.surface}) {
-    of_inner.insert(of_inner.end(), claim->inner_triangles.begin(), claim->inner_triangles.end());
     of_outer.insert(of_outer.end(), claim->outer_triangles.begin(), claim->outer_triangles.end());
+    if (verdict.surface_of_all && claim == &verdict.inclusion.surface)
+      take(q.subject->triangles, claim->inner_triangles);
+    else
+      of_inner.insert(of_inner.end(), claim->inner_triangles.begin(), claim->inner_triangles.end());
   }
   take(q.inner(), std::move(of_inner));
   take(q.outer(), std::move(of_outer));

@@ -168,11 +168,11 @@ bool Checker::is_usual(std::size_t robot, const std::vector<double>& q) const {
   return true;
 }
 
-std::vector<Checker::Placed> Checker::places(const WorldState& state,
-                                             const std::vector<Item>& items,
-                                             Scratch& scratch) const {
+std::vector<Checker::PosedItem> Checker::places(const WorldState& state,
+                                                const std::vector<Item>& items,
+                                                Scratch& scratch) const {
   place(state, scratch);
-  std::vector<Placed> out;
+  std::vector<PosedItem> out;
   for (const Item& item : items) {
     const auto i = static_cast<std::size_t>(std::ranges::find(items_, item) - items_.begin());
     out.push_back({item, scratch.impl_->set(i)});

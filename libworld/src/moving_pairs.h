@@ -61,7 +61,7 @@ class MovingPairs {
   std::vector<Mover> movers_;
   std::vector<collide::PosedSet> places_;  ///< of the movers
   std::vector<char> placed_;
-  std::vector<Checker::Placed> resting_;
+  std::vector<Checker::PosedItem> resting_;
   std::vector<Pair> pairs_;
   std::vector<collide::Memory> memory_;
   std::vector<sweep::LinkMotion> motions_;

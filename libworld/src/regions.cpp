@@ -12,7 +12,7 @@ collide::Inclusion find_inclusion(const Checker& checker, const WorldState& stat
   const World& world = checker.world();
   if (region >= world.regions.size()) throw Error(ErrorCode::InvalidArgument, "no such region");
   const collide::PosedSet where = detail::place_of(world.regions[region]);
-  for (const Checker::Placed& placed : checker.places(state))
+  for (const Checker::PosedItem& placed : checker.places(state))
     if (placed.item == item) return find_inclusion(placed.place, where, most_pieces);
   throw Error(ErrorCode::InvalidArgument, "no such item");
 }

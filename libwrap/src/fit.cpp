@@ -22,10 +22,10 @@ bool Fit::approach(std::uint32_t v) {
 
 const Foot& Fit::foot_of(std::uint32_t triangle, const Vec3& middle) const {
   if (triangle >= known_.size()) known_.resize(surface_.triangle_count());
-  std::optional<Known>& known = known_[triangle];
+  std::optional<NearestFoot>& known = known_[triangle];
   if (!known || known->middle != middle) {
     const std::uint32_t hint = known ? known->foot.triangle : hint_[surface_.triangle(triangle)[0]];
-    known = Known{middle, obstacle_.foot(middle, hint)};
+    known = NearestFoot{middle, obstacle_.foot(middle, hint)};
   }
   return known->foot;
 }

@@ -67,11 +67,11 @@ class Fit {
   const Obstacle& obstacle_;
   const Room& room_;
   std::vector<std::uint32_t> hint_;  ///< per vertex: a triangle of the input that was near
-  struct Known {
+  struct NearestFoot {
     Vec3 middle;
     Foot foot;
   };
-  mutable std::vector<std::optional<Known>> known_;  ///< per triangle, where it was last
+  mutable std::vector<std::optional<NearestFoot>> known_;  ///< per triangle, where it was last
 };
 
 }  // namespace kaboum::wrap

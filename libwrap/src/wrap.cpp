@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 #include "carving.h"
@@ -38,6 +40,26 @@ double spacing_of(const geom::Box3& box, const WrapOptions& o) {
   return o.float32 ? geom::float32_spacing(most) : std::ldexp(most, -52);
 }
 
+/// A wrap of this seal needs numbers so near to each other.
+double spacing_for(const WrapOptions& o) { return o.seal / 8; }
+
+/// @return what is wrong with coordinates whose numbers are too far apart, and what helps
+std::string too_coarse(const geom::Box3& box, const WrapOptions& o) {
+  const auto number = [](double x) {
+    std::ostringstream s;
+    s << std::setprecision(4) << x;
+    return s.str();
+  };
+  const geom::Box3 moved{(box.min - box.max) / 2, (box.max - box.min) / 2};
+  return std::string("numbers of ") + (o.float32 ? "32" : "64") + " bits are " +
+         number(spacing_of(box, o)) +
+         " apart at these coordinates, and a wrap that closes gaps of " + number(o.seal) +
+         " needs them " + number(spacing_for(o)) + " apart at most; " +
+         (spacing_of(moved, o) <= spacing_for(o) ? "move the mesh to the origin"
+                                                 : "close wider gaps, or allow a larger epsilon") +
+         (o.float32 ? ", or take numbers of 64 bits, in a format that holds them" : "");
+}
+
 void require_fine(const geom::Box3& box, const WrapOptions& o) {
   constexpr double kSmallest = 1e-40, kLargest = 1e40;
   const double diagonal = box.diagonal();
@@ -46,12 +68,8 @@ void require_fine(const geom::Box3& box, const WrapOptions& o) {
         ErrorCode::InvalidInput,
         "the triangles are too small or too large for a wrap: their box has a diagonal of " +
             std::to_string(diagonal) + "; use another unit of length");
-  if (!(8 * spacing_of(box, o) <= o.seal))
-    throw Error(ErrorCode::InvalidInput,
-                o.float32 ? "the coordinates are too large for 32-bit numbers as fine as the wrap "
-                            "needs; move the mesh to the origin, or choose double precision"
-                          : "the coordinates are too large for a wrap so fine; move the mesh to "
-                            "the origin");
+  if (!(spacing_of(box, o) <= spacing_for(o)))
+    throw Error(ErrorCode::InvalidInput, too_coarse(box, o));
 }
 
 /// What is claimed of a wrap by itself, decided for the coordinates that it has.
@@ -62,6 +80,12 @@ void decide_clean(const geom::Mesh& mesh) {
 }
 
 }  // namespace
+
+bool float32_is_fine(const geom::Box3& box, const WrapOptions& options) {
+  WrapOptions o = options;
+  o.float32 = true;
+  return spacing_of(box, o) <= spacing_for(o);
+}
 
 Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   require_sound(input, options);

@@ -561,6 +561,7 @@ def verify_robot(
     drop_sheets: bool = False,
     max_contacts: int = 100000000,
     max_work: float | None = None,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

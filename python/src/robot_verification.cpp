@@ -4,6 +4,7 @@
 #include <kaboum/base/sha256.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/mesh_files.h>
+#include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/robot_verdict.h>
 
 #include <map>
@@ -20,22 +21,34 @@ using verify::Answer;
 /// The mesh files of both robots, each read once.
 class Files {
  public:
-  explicit Files(std::vector<std::string> packages) : packages_(std::move(packages)) {}
+  Files(std::vector<std::string> packages, std::size_t exact_points)
+      : packages_(std::move(packages)), exact_points_(exact_points) {}
 
   const verify::MeshFile& of(const robot::Geometry& mesh, const robot::RobotFile& robot) {
     const std::string path = robot::find_only_mesh(mesh.mesh, robot.path, packages_).string();
     const auto at = files_.find(path);
     if (at != files_.end()) return at->second;
-    std::vector<char> bytes;
-    io::ReadResult read = io::read_mesh(path, {}, &bytes);
-    return files_
-        .emplace(path,
-                 verify::MeshFile{path, sha256(bytes), std::move(read.mesh), std::move(read.notes)})
-        .first->second;
+    verify::MeshFile file{path, {}, {}};
+    try {
+      std::vector<char> bytes;
+      io::ReadResult read = io::read_mesh(path, {}, &bytes);
+      file.sha256 = sha256(bytes);
+      if (exact_points_ > 0 && io::is_cad(read.format))
+        file.exact =
+            verify::read_exact_points(bytes, read.format, path, exact_points_, 1, read.exact_faces);
+      file.mesh = std::move(read.mesh);
+      file.notes = std::move(read.notes);
+    } catch (const Error& error) {
+      if (!verify::is_of_one_mesh(error)) throw;
+      file.sha256 = sha256(io::read_file(path));
+      file.error = error;
+    }
+    return files_.emplace(path, std::move(file)).first->second;
   }
 
  private:
   std::vector<std::string> packages_;
+  std::size_t exact_points_;
   std::map<std::string, verify::MeshFile> files_;
 };
 
@@ -72,7 +85,8 @@ Verdict verdict_of(const verify::RobotVerdict& found) {
   }
   out.claims["links"] = links;
   out.claims["shapes"] = shapes;
-  for (const auto& [file, text] : found.notes) out.notes.push_back(file + ": " + text);
+  for (const auto& [file, text] : found.notes)
+    out.notes.push_back(std::string(file).append(": ").append(text));
   return out;
 }
 
@@ -92,10 +106,10 @@ Verdict verify_robot(const py::object& original, const py::object& result,
                      const std::string& claims, const py::object& epsilon,
                      const std::string& geometry, const py::object& package_path,
                      const py::object& prepare, bool drop_sheets, std::size_t max_contacts,
-                     const std::optional<double>& max_work, int threads,
+                     const std::optional<double>& max_work, std::size_t exact_points, int threads,
                      const py::object& progress) {
   const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
-  Files files(packages_of(package_path));
+  Files files(packages_of(package_path), exact_points);
   verify::RobotQuestion question{
       first.file->robot, second.file->robot,
       [&](const robot::Geometry& mesh, bool of_result) -> const verify::MeshFile& {
@@ -124,7 +138,8 @@ void bind_robot_verification(py::module_& module) {
       py::arg("package_path") = py::tuple(), py::arg("prepare") = false,
       py::arg("drop_sheets") = false,
       py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts,
-      py::arg("max_work") = py::none(), py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
+      py::arg("threads") = 0, py::arg("progress") = py::none(),
       R"(Decides whether the collision shapes of a robot hold the shapes of another, as `bound-verify robot`.
 
 Parameters
@@ -142,7 +157,7 @@ package_path : str or sequence of str
 prepare : bool or str
     Also judge the solid of each mesh as the tools prepare it (True, 'auto'); 'wrap': all that closed
     meshes wind round, whichever way. Every triangle of the file is judged anyway.
-drop_sheets, max_contacts, max_work, threads, progress
+drop_sheets, max_contacts, max_work, exact_points, threads, progress
     As for `verify_mesh`.
 
 Returns

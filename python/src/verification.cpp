@@ -3,6 +3,7 @@
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
+#include <kaboum/verify/subject.h>
 
 #include <cmath>
 
@@ -14,17 +15,6 @@
 namespace kaboum::python {
 namespace {
 
-/// The original as it is, or as the tools prepare it.
-std::shared_ptr<const geom::Mesh> judged(const MeshValue& original, bool prepare, bool drop_sheets,
-                                         std::vector<std::string>& notes) {
-  notes = original.notes;
-  if (!prepare) return original.mesh;
-  auto prepared = std::make_shared<geom::Prepared>(
-      geom::prepare(*original.mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill}));
-  notes.insert(notes.end(), prepared->report.notes.begin(), prepared->report.notes.end());
-  return {prepared, &prepared->solid.mesh()};
-}
-
 struct Asked {
   verify::Relation relation = verify::Relation::Outer;
   verify::Claims claims = verify::Claims::All;
@@ -35,6 +25,26 @@ struct Asked {
   int threads = 0;
   std::size_t exact_points = verify::kPointDensity;
 };
+
+/// The original as it is, or as the tools prepare it.
+std::optional<verify::Subject> subject_of(const MeshValue& original, const Asked& asked,
+                                          std::vector<std::string>& notes) {
+  notes = original.notes;
+  if (!asked.prepare) return std::nullopt;
+  using Diagonal = geom::PrepareOptions::Diagonal;
+  const bool inner = asked.relation == verify::Relation::Inner;
+  verify::Subject out = verify::prepared_subject(
+      *original.mesh, {.drop_sheets = asked.drop_sheets,
+                       .holes = geom::Holes::Fill,
+                       .quads = original.bent_quads,
+                       .diagonal = inner ? Diagonal::Inward : Diagonal::Outward});
+  notes.insert(notes.end(), out.report.notes.begin(), out.report.notes.end());
+  if (out.refusal.empty()) return out;
+  if (asked.relation == verify::Relation::Inner) throw Error(ErrorCode::InvalidInput, out.refusal);
+  notes.push_back("every triangle is judged as it is, for which solid they bound cannot be told (" +
+                  out.refusal + ")");
+  return out;
+}
 
 /// Of a mesh that was read from a file with exact faces, unless it is to enclose.
 std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original, const Asked& asked) {
@@ -82,14 +92,15 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
   Watch watch(progress);
   Verdict out;
   const verify::MeshVerdict found = run(asked.threads, [&] {
-    const auto mesh = judged(original, asked.prepare, asked.drop_sheets, out.notes);
+    const auto subject = subject_of(original, asked, out.notes);
+    const geom::Mesh& mesh = subject ? subject->mesh : *original.mesh;
     const double margin = set != nullptr ? set->margin : 0;
     if (asked.relation == verify::Relation::Inner && margin > 0)
       throw Error(ErrorCode::InvalidInput,
                   "the set's margin enlarges the bodies; an inner set must have none");
     std::optional<double> bound;
     if (asked.epsilon) {
-      bound = asked.epsilon->of(geom::bounding_box(*mesh).diagonal());
+      bound = asked.epsilon->of(geom::bounding_box(mesh).diagonal());
       if (!std::isfinite(*bound) || !(*bound > margin))
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");
@@ -97,8 +108,13 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
     const auto exact = exact_points_of(original, asked);
     std::optional<verify::PointQuestion> points;
     if (exact) points = verify::PointQuestion{exact->points, exact->of_face, exact->rounding};
-    return verify::decide({*mesh, approximation, set, asked.relation, asked.claims, bound,
-                           asked.max_contacts, asked.max_work, watch.hook(), points});
+    std::optional<verify::MeasuredMesh> measured;
+    if (subject && asked.relation == verify::Relation::Cover &&
+        (subject->has_more || !subject->refusal.empty()))
+      measured = verify::measured_mesh(*subject, *original.mesh);
+    return verify::decide({mesh, approximation, set, asked.relation, asked.claims, bound,
+                           asked.max_contacts, asked.max_work, watch.hook(), points,
+                           subject ? &*subject : nullptr, measured ? &*measured : nullptr});
   });
   out.answer = found.answer;
   out.claims = claims_of(found);

@@ -88,7 +88,16 @@ cat >arm.urdf <<'END'
 END
 printf 'j\n0\n1\n' >path.csv
 expect 0 '' "$BIN/bcd-decompose" arm.urdf -o armed --epsilon 5% --effort fast --no-cache
-shows 0 '^verified: .*of the triangles, which stand for exact faces' "$BIN/bound-verify" robot arm.urdf armed/arm.urdf --prepare
+shows 0 '^verified: .*no point of these that was looked at sticks out' "$BIN/bound-verify" robot arm.urdf armed/arm.urdf --prepare --report r.json
+grep -q '"exact_points"' r.json || fail "no points of exact faces: $(cat r.json)"
+# Bodies of the triangles alone: points of the exact faces refute the link, unless they are not looked at.
+sed 's/vase/sphere/' arm.urdf >ball.urdf
+expect 0 '' "$BIN/bcd-decompose" ball.urdf -o strict-ball --prepare strict --epsilon 2% --effort fast --no-cache --report s.json
+grep -q '"check": "bound-verify robot .* --exact-points 0' s.json || fail "the command looks at exact faces: $(grep '"check"' s.json)"
+shows 1 "link 'base': refuted: .*every triangle is inside, but [1-9].* points of its exact faces stick out" \
+  "$BIN/bound-verify" robot ball.urdf strict-ball/ball.urdf --prepare --report r.json
+grep -q '"faces_outside": [1-9]' r.json || fail "no faces outside: $(cat r.json)"
+shows 0 '^verified: .*exact faces: of these nothing is said' "$BIN/bound-verify" robot ball.urdf strict-ball/ball.urdf --prepare --exact-points 0
 expect 0 '' "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.01 --no-cache
 expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --no-cache
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001
@@ -243,6 +252,12 @@ END
 for name in set alone shape bare; do
   expect 3 '#9001 RECTANGULAR_TRIMMED_SURFACE.* no product' "$BIN/mesh-prepare" loose-$name.step -o none.ply
 done
+# The verifier's own reading refuses them as well.
+for name in set alone shape bare; do
+  expect 3 '#9001 .*no part of the file has' "$PARTS" points loose-$name.step 6
+done
+shows 0 ' points of 6 faces' "$PARTS" points parts/box.step 6
+expect 3 '6 exact faces were found' "$PARTS" points parts/box.step 7
 sed "s/PRODUCT_CONTEXT('',/PRODUCT_CONTEXT($(printf '%0200d' 0 | tr 0 '(')/" parts/box.step >deep.step
 expect 3 'more than 100 brackets' "$BIN/mesh-prepare" deep.step -o none.ply
 expect 3 'TESSELLATED_SOLID' "$BIN/mesh-prepare" more/tessellated.step -o none.ply

@@ -6,6 +6,8 @@
 //                                       and between, are as near the triangles as is claimed
 //   cad_parts covers-box MESH           whether the box of the renamed and left out entities is in
 //                                       the mesh's solid
+//   cad_parts points PART FACES         whether the verifier's own reading, without the other one,
+//                                       finds so many exact faces; else why not
 //   cad_parts box MESH 'X Y Z X Y Z'    whether the mesh's box is that
 //   cad_parts check PART.step MESH N E  whether N points of the exact faces lie in the mesh's
 //   solid,
@@ -71,11 +73,13 @@
 #include <gp_Ax3.hxx>
 #include <gp_Circ.hxx>
 
+#include <kaboum/base/error.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/base/random.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/verify/exact_points.h>
 
 #include <algorithm>
 #include <cmath>
@@ -689,16 +693,32 @@ int has_box(const char* file, const char* text) {
 
 }  // namespace
 
+/// The verifier's reading alone: where both are asked, the other one refuses first.
+int list_points(const char* path, const char* faces) {
+  const std::vector<char> bytes = kaboum::io::read_file(path);
+  try {
+    const auto points = kaboum::verify::read_exact_points(bytes, kaboum::io::Format::Step, path, 2,
+                                                          1, std::strtoull(faces, nullptr, 10));
+    std::cout << points.points.size() << " points of " << points.faces << " faces\n";
+    return 0;
+  } catch (const kaboum::Error& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
 int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "make" && argc == 3) return make(argv[2]);
   if (command == "more" && argc == 3) return make_more(argv[2]);
   if (command == "covers-box" && argc == 3) return covers_box(argv[2]);
+  if (command == "points" && argc == 4) return list_points(argv[2], argv[3]);
   if (command == "box" && argc == 4) return has_box(argv[2], argv[3]);
   if (command == "within" && argc == 3) return within(argv[2]);
   if (command == "check" && argc == 6)
     return check(argv[2], argv[3], std::strtoull(argv[4], nullptr, 10), argv[5]);
-  std::cerr << "usage: cad_parts make DIR | more DIR | within PART.step | covers-box MESH | box "
-               "MESH 'X Y Z X Y Z' | check PART.step MESH POINTS EPSILON\n";
+  std::cerr
+      << "usage: cad_parts make DIR | more DIR | within PART.step | covers-box MESH | points PART "
+         "FACES | box MESH 'X Y Z X Y Z' | check PART.step MESH POINTS EPSILON\n";
   return 2;
 }

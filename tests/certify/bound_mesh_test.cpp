@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
+#include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh.h>
 #include <kaboum/verify/inclusion.h>
 
+#include <array>
 #include <random>
+#include <string>
 
 #include "support/arrangement_oracle.h"
 #include "support/shapes.h"
@@ -269,6 +273,104 @@ TEST(BoundMesh, QuadsAreSplitSoThatBothWaysAreBounded) {
         }
       }
     }
+}
+
+// A soup's triangles, closed by their own copies, have no room to move: doubles that are no float32
+// numbers stay where they are. STL holds no others, and the wrap takes the soup's place.
+TEST(BoundMesh, WhatHasNoFloat32PlaceIsWrapped) {
+  MeshRequest request = fast(20);
+  request.format = io::Format::Stl;
+  const Mesh input = soup(5, 1);
+  const BoundedMesh made = bound_mesh(input, request, coarse());
+  ASSERT_EQ(made.series.meshes.size(), 1U) << made.why_not_wrapped;
+  ASSERT_TRUE(made.wrap);
+  EXPECT_NE(made.why_wrapped.find("without a certified float32 position"), std::string::npos)
+      << made.why_wrapped;
+  EXPECT_TRUE(all_inside(input, made.series.meshes[0].artefact()));
+  const BoundedMesh stuck = bound_mesh(input, request, coarse(Wrap::Never));
+  ASSERT_TRUE(stuck.series.shortage && stuck.series.meshes.empty());
+  EXPECT_EQ(remedy_of(*stuck.series.shortage).find("origin"), std::string::npos);
+}
+
+// Where float32 numbers are too far apart for a wrap, it takes doubles if the result may.
+TEST(BoundMesh, FarAwayWrapsTakeDoubles) {
+  const Mesh far = test::translated(soup(5, 1), {1e7, 0, 0});
+  MeshRequest request = fast(20);
+  const BoundedMesh made = bound_mesh(far, request, coarse());
+  ASSERT_EQ(made.series.meshes.size(), 1U);
+  EXPECT_TRUE(made.wrap) << made.why_not_wrapped;
+  EXPECT_TRUE(made.series.meshes[0].certificate().double_precision);
+  EXPECT_EQ(made.surface_answer(), Answer::Verified);
+  request.format = io::Format::Stl;
+  EXPECT_TRUE(bound_mesh(far, request, coarse()).series.meshes.empty());
+}
+
+// What fills holes is wrapped as well, and is none of the input's triangles.
+TEST(BoundMesh, WrapsCountTheInputsTriangles) {
+  const Mesh input = test::merged(
+      {bow_tie(), test::without(test::icosphere(1), [](const Vec3& p) { return p.z() > 0.9; })});
+  const BoundedMesh made = bound_mesh(input, fast(20), coarse());
+  ASSERT_TRUE(made.wrap);
+  EXPECT_EQ(made.wrap->input_triangles, input.triangles.size());
+}
+
+TEST(BoundMesh, SegmentsAreWrapped) {
+  Mesh segments;
+  for (const auto& [x, y, z] : {std::array{0., 0., 0.},
+                                {1., 0., 0.},
+                                {2., 0., 0.},
+                                {0., 1., 1.},
+                                {1., 1., 2.},
+                                {2., 1., 3.}})
+    segments.vertices.emplace_back(x, y, z);
+  segments.triangles = {{0, 1, 2}, {3, 4, 5}};
+  SetRequest request;
+  request.epsilon = kaboum::Length{5, true};
+  request.effort = bcd::Effort::Fast;
+  request.wrap.emplace().where_needed = true;
+  request.preparation.holes = geom::Holes::Fill;
+  const auto made = certify_set(segments, "", request);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->certificate().wrap);
+  request.wrap.reset();
+  try {
+    certify_set(segments, "", request);
+    ADD_FAILURE() << "a set of segments";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
+  }
+}
+
+TEST(Float32Shortage, ItsRemedyHelps) {
+  const auto box = [](double at, double size) {
+    return geom::Box3{Vec3::Constant(at), Vec3::Constant(at + size)};
+  };
+  EXPECT_FALSE(too_coarse(box(0, 1), 1e-3));
+  for (const double at : {0.0, 10.0, 1e3, 1e6})
+    for (const double epsilon : {1e-1, 1e-4, 1e-7, 1e-9}) {
+      SCOPED_TRACE(std::to_string(at) + " " + std::to_string(epsilon));
+      const auto shortage = too_coarse(box(at, 1), epsilon);
+      if (!shortage) continue;
+      const std::string remedy = remedy_of(*shortage);
+      const bool move = remedy.find("origin") != std::string::npos;
+      EXPECT_TRUE(move || shortage->least_epsilon > 0) << remedy;
+      if (move && remedy.find("larger epsilon") == std::string::npos) {
+        EXPECT_FALSE(too_coarse(box(-0.5, 1), epsilon)) << remedy;
+      }
+      const std::size_t least = remedy.find("at least ");
+      if (least != std::string::npos) {
+        EXPECT_FALSE(too_coarse(box(at, 1), std::stod(remedy.substr(least + 9)))) << remedy;
+      }
+    }
+}
+
+TEST(LargeEpsilon, IsWarnedOf) {
+  EXPECT_TRUE(warning_of({}, 2).empty());
+  EXPECT_TRUE(warning_of(kaboum::Length{49, true}, 2).empty());
+  EXPECT_TRUE(warning_of(kaboum::Length{0.9, false}, 2).empty());
+  EXPECT_NE(warning_of(kaboum::Length{95, true}, 2).find("only 2 from corner to corner (95%)"),
+            std::string::npos);
+  EXPECT_FALSE(warning_of(kaboum::Length{1, false}, 2).empty());
 }
 
 }  // namespace

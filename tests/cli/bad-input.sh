@@ -59,8 +59,8 @@ for tool in bmesh-decimate bcd-decompose; do
 done
 expect 4 "no file can be created in '/proc'" "$D" t.off -o /proc/y.off --epsilon 5%
 expect 3 'too long' "$BIN/hausdorff-eval" t.off "$long.off"
-expect 3 'too long' "$BIN/bound-verify" --cover t.off "$long.glb"
-expect 3 'no such file or folder' "$BIN/bound-verify" --cover t.off "$long"
+expect 3 'too long' "$BIN/bound-verify" cover t.off "$long.glb"
+expect 3 'no such file or folder' "$BIN/bound-verify" cover t.off "$long"
 # What is no mesh is answered with a way to one.
 for f in part.step part.STP part.iges robot.urdf.xacro empty.xml; do : >$f; done
 for f in part.step part.STP part.iges; do expect 3 "$f: the file is empty" "$D" $f -o x.off --epsilon 1%; done

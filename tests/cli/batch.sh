@@ -32,6 +32,18 @@ assert all(r["reason"] for r in rows if r["state"] != "done")' || fail "figures 
 "$BIN/bmesh-decimate" in/t3.off -o alone.ply --epsilon 1% --quiet
 cmp -s alone.ply out/results/t3.ply || fail "another result than alone"
 
+# A batch may write where its inputs are: its results are no inputs, neither its own nor another's.
+mkdir beside
+tetrahedron >beside/t.off
+one() { expect 0 '^1 done' "$B" beside --no-pictures "$@" --command bmesh-decimate --epsilon 1%; }
+one -o beside
+expect 0 'results of a batch' "$B" beside -o beside --no-pictures --command bmesh-decimate --epsilon 1%
+one -o beside
+one -o beside/out
+one -o elsewhere
+[ "$(find beside -name '*.ply' | wc -l)" = 2 ] || fail "results: $(find beside -name '*.ply')"
+expect 2 'beside/results/t.ply lies in beside/results, where this batch writes' "$B" beside/results/t.ply -o beside
+
 # Nothing is done twice; what changed is, what failed with --retry, and what was removed.
 lines() { wc -l <out/.kaboum-batch/journal.jsonl; }
 again() { "$B" in -o out --rule 'sub/*: bcd-decompose --epsilon 2%' --quiet "$@" --command bmesh-decimate --epsilon 1%; }
@@ -82,7 +94,7 @@ tetrahedron | sed 's/^1 0 0/9.5 0 0/' >pb/t.off
 touch -d @1 pa/t.off pb/t.off
 expect 0 '1 done; p-out' "$B" pa -o p-out --no-pictures
 expect 0 '1 done; p-out' "$B" pb -o p-out --no-pictures
-"$BIN/bound-verify" --outer pb/t.off p-out/results/t.ply --quiet || fail "the result of another input"
+"$BIN/bound-verify" mesh --outer pb/t.off p-out/results/t.ply --quiet || fail "the result of another input"
 expect 2 'depfile' "$B" back -o x --command bmesh-decimate --ratio 0.5 --depfile=x.d
 
 # A robot is done again when one of its meshes has changed.

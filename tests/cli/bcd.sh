@@ -11,7 +11,7 @@ for key in '"stop": "done"' '"surface": "verified"' '"solid": "verified"' '"cach
 done
 [ -s a.png ] || fail "no picture"
 grep -q "^a.glb: .*bracket" a.d || fail "dependency file"
-shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" a.glb
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" a.glb
 
 # The cache: same bytes; a damaged entry is rebuilt; --no-cache.
 expect 0 'from the cache' "$D" "$BRACKET" -o b.glb --epsilon 3% --effort fast
@@ -50,15 +50,15 @@ for size in 1 3 1; do
   inlined $size >part.wrl
   expect 0 '' "$D" whole.wrl -o "w$size.glb" --epsilon 3% --effort fast --report w.json --depfile w.d
   [ "$(cat w.d)" = "w$size.glb: whole.wrl ./part.wrl" ] || fail "dependency file: $(cat w.d)"
-  shows 0 'verified' "$BIN/bound-verify" --cover whole.wrl "w$size.glb"
+  shows 0 'verified' "$BIN/bound-verify" cover whole.wrl "w$size.glb"
 done
 grep -q '"cached": true' w.json || fail "a file that refers to another is not cached"
 
 # Other formats, and a pipe.
 expect 0 '' "$D" "$BRACKET" -o set.obj --epsilon 3% --effort fast
 expect 0 '' "$D" "$BRACKET" -o folder --epsilon 3% --effort fast
-shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" set.obj
-shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" folder
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" set.obj
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" folder
 "$D" - -o - --input-format obj --output-format obj --epsilon 3% --effort fast --quiet <"$BRACKET" >pipe.obj || fail "pipe"
 [ "$(grep -c '^o ' pipe.obj)" = "$(grep -c '^o ' set.obj)" ] || fail "the pipe gives another number of bodies"
 
@@ -66,7 +66,7 @@ shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" folder
 expect 0 '' "$D" "$BRACKET" -o two.obj --max-bodies 2 --effort fast
 [ "$(grep -c '^o ' two.obj)" -le 2 ] || fail "more bodies than allowed"
 expect 0 'verified exactly' "$D" "$BRACKET" -o pre.glb --epsilon 5% --effort fast --pre-step on --no-cache
-shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" pre.glb --epsilon 5%
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" pre.glb --epsilon 5%
 expect 0 '' "$D" "$BRACKET" -o lean.glb --max-bodies 4 --max-total-vertices 40 --effort fast --report lean.json
 [ "$(sed -n 's/^ *"vertices": \([0-9]*\).*/\1/p' lean.json)" -le 40 ] || fail "more vertices than allowed"
 expect 2 'outer' "$D" "$BRACKET" -o no.glb --max-total-vertices 40 --direction inner
@@ -77,7 +77,7 @@ expect 1 'limits' "$D" "$BRACKET" -o few.glb --max-bodies 2 --epsilon 2% --effor
 for method in clusters voxels; do
   expect 0 'verified exactly' "$D" "$BRACKET" -o m.glb --max-bodies 6 --effort fast --method $method --report m.json
   grep -q "\"method\": \"$method\"" m.json || fail "no method in the report"
-  shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" m.glb
+  shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" m.glb
 done
 expect 2 'method' "$D" "$BRACKET" -o x.glb --direction inner --method voxels
 expect 2 '' "$D" "$BRACKET" -o x.glb --method spheres
@@ -85,7 +85,7 @@ expect 2 '' "$D" "$BRACKET" -o x.glb --method spheres
 # Thick bodies: within epsilon, or said not to be.
 expect 0 'verified exactly' "$D" "$BRACKET" -o thick.glb --epsilon 5% --effort fast --min-thickness 0.005 --report thick.json
 grep -q '"min_thickness"' thick.json || fail "no thickness in the report"
-shows 0 'verified' "$BIN/bound-verify" --cover "$BRACKET" thick.glb --epsilon 5%
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" thick.glb --epsilon 5%
 expect 1 'min-thickness' "$D" "$BRACKET" -o thick.glb --epsilon 3% --effort fast --min-thickness 0.1
 expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --min-thickness 0.1
 expect 2 'pre-step' "$D" "$BRACKET" -o x.glb --direction inner --pre-step on
@@ -99,7 +99,7 @@ expect 2 '' "$D" "$BRACKET" -o x.glb --min-thickness -1
 # Bodies inside.
 expect 0 'inside verified exactly' "$D" "$BRACKET" -o inner.glb --direction inner --epsilon 2% --effort fast --report inner.json
 grep -q '"inside": "verified"' inner.json || fail "no verdict in the report"
-shows 1 'refuted' "$BIN/bound-verify" --cover "$BRACKET" inner.glb
+shows 1 'refuted' "$BIN/bound-verify" cover "$BRACKET" inner.glb
 
 # Valid "no", usage, bad input, output that cannot be written.
 tetrahedron >t.off

@@ -62,7 +62,7 @@ for direction in outer inner; do
     # shellcheck disable=SC2086
     expect 1 'cannot be reached with --cost [a-z-]*: no further contraction is possible at 8' "$D" two.off -o two-out.off --vertices 6 \
       --direction $direction --cost ${method% *} --effort ${method#* }
-    expect 0 '' "$BIN/bound-verify" --$direction two.off two-out.off --quiet
+    expect 0 '' "$BIN/bound-verify" mesh --$direction two.off two-out.off --quiet
   done
 done
 expect 1 'cannot be reached' "$D" two.off -o two-out.off --ratio 0.5
@@ -79,7 +79,7 @@ grep -q warning err.txt && fail "a warning of what is near"
 expect 0 '' "$D" "$BRACKET" -o small.ply --vertices 1000 --effort fast --quiet
 expect 7 'the work allowed has ended' "$D" small.ply -o work.ply --ratio 0.1 --max-work 0.001 --report work.json
 grep -q '"out_of_work": true' work.json && grep -q '"stop": "out of work"' work.json || fail "report of a limit"
-expect 0 '' "$BIN/bound-verify" --outer small.ply work.ply --quiet
+expect 0 '' "$BIN/bound-verify" mesh --outer small.ply work.ply --quiet
 expect 2 '' "$D" small.ply -o x.ply --ratio 0.1 --max-work 0
 expect 0 '' "$D" small.ply -o twice.ply --vertices 150 --quiet
 expect 0 '' "$D" small.ply -o 'once-{vertices}.ply' --vertices 150,149 --quiet
@@ -149,6 +149,13 @@ expect 0 'writing double' "$D" far.off -o far.ply --vertices 4
 expect 0 '' "$D" far.off -o far.off2 --output-format off --vertices 4 --precision double
 expect 2 'float32 only' "$D" far.off -o far.stl --vertices 4 --precision double
 
+# An epsilon as large as the part is mostly one in another unit.
+expect 0 'WARNING: epsilon is 5, and the part is only' "$D" t.off -o large.off --epsilon 5
+expect 0 'WARNING: epsilon' "$BIN/bcd-decompose" t.off -o large.glb --epsilon 95% --effort fast --no-cache
+expect 0 'WARNING: epsilon' "$BIN/mesh-prepare" t.off -o large.off --prepare wrap --epsilon 50%
+expect 0 '' "$D" t.off -o large.off --epsilon 45%
+! grep -q WARNING err.txt || fail "a warning of 45 %"
+
 # The border of an open mesh does not move.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0.1\nv 0 0 1\nf 1 3 2\nf 1 2 4\n' >open.obj
 expect 1 'border stays where it is.*Write .ply, .obj, .off' "$D" open.obj -o x.stl --vertices 4 --holes keep
@@ -163,9 +170,9 @@ expect 0 '1 hole is filled with 4 triangles, 1.7' "$D" open.obj -o filled.ply --
 grep -q '"filled_triangles": 4' filled.json || fail 'no word of the filling in the report'
 grep -q 'with 1 hole filled, its solid the one so closed' filled.json || fail 'the claim does not say of which solid it is'
 shows 0 'its holes filled with 4 triangles that the log adds' "$BIN/bmesh-replay" open.obj filled.log filled.ply
-shows 0 'surface claim: verified' "$BIN/bound-verify" --outer open.obj filled.ply --prepare
+shows 0 'surface claim: verified' "$BIN/bound-verify" mesh --outer open.obj filled.ply --prepare
 expect 0 '' "$D" open.obj -o filled.ply --vertices 4 --progressive filled.pm
-shows 0 'filled with 4 triangles that the file adds' "$BIN/bound-verify" --progressive open.obj filled.pm
+shows 0 'filled with 4 triangles that the file adds' "$BIN/bound-verify" progressive open.obj filled.pm
 expect 0 '' "$D" --from filled.pm --vertices 4 -o again.ply
 cmp -s filled.ply again.ply || fail 'a level of a mesh whose holes are filled is another one'
 for kind in LOG PROGRESSIVE; do printf 'KABOUM-BMESH-%s 2\n0123456789' $kind >"old.$kind"; done
@@ -188,7 +195,7 @@ expect 1 'for the work allowed was done; allow more with --max-work' "$D" soup.o
 grep -q '"surface_triangles_left_out"' soup.json || fail "no number of triangles left out"
 expect 0 'the input is wrapped: some triangles of the input bound no solid' "$D" soup.off -o soup.ply --epsilon 10% --effort fast --report soup.json
 grep -q '"why_wrapped": "some' soup.json || fail "no reason for the wrap: $(cat soup.json)"
-shows 0 'verified' "$BIN/bound-verify" --outer soup.off soup.ply --raw
+shows 0 'verified' "$BIN/bound-verify" mesh --outer soup.off soup.ply --raw
 
 # Usage.
 expect 2 '' "$D"

@@ -52,4 +52,47 @@ cp pipeline/small.off pipeline/t.outer.off
 build t.outer.off.verified >wrong.txt 2>&1 && fail "a smaller mesh is verified"
 absent pipeline/t.outer.off.verified
 rm -f pipeline/*.part
+
+# A box and a sheet, whose triangles stand in both orientations: wrapped, and the verdict is about every triangle.
+cat >pipeline/flap.off <<'END'
+OFF
+11 14 0
+0 0 0
+1 0 0
+0 1 0
+1 1 0
+0 0 1
+1 0 1
+0 1 1
+1 1 1
+1 0.2 0.5
+1.3 0.2 0.5
+1.3 0.8 0.55
+3 0 2 1
+3 1 2 3
+3 4 5 6
+3 5 7 6
+3 0 1 4
+3 1 5 4
+3 2 6 3
+3 3 6 7
+3 0 4 2
+3 2 4 6
+3 1 3 5
+3 3 7 5
+3 8 9 10
+3 8 10 9
+END
+{ sed -n '1,1p' pipeline/flap.off; echo '11 2 0'; sed -n '3,13p;26,27p' pipeline/flap.off; } >pipeline/sheet.off
+cat >pipeline/flap.urdf <<'END'
+<robot name="flap"><link name="base"><collision><geometry><mesh filename="flap.off"/></geometry></collision></link></robot>
+END
+for result in flap.outer.ply flap.bcd.glb sheet.outer.stl sheet.bcd.obj flap.safe; do
+  build "$result.verified" >sheets.txt 2>&1 || fail "$result.verified: $(tail -3 sheets.txt)"
+  grep -q '"verdict": "verified"' "pipeline/$result.verified" || fail "$result is not verified"
+done
+# The sheet alone outside is seen.
+build KABOUM_OUTER_FLAGS=--drop-sheets flap.outer.ply >sheets.txt 2>&1 || fail "without the sheet: $(tail -3 sheets.txt)"
+build KABOUM_OUTER_FLAGS=--drop-sheets flap.outer.ply.verified >sheets.txt 2>&1 && fail "a sheet that is outside is verified"
+absent pipeline/flap.outer.ply.verified
 finish

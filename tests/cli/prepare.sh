@@ -19,7 +19,7 @@ import json
 hole = [r for r in json.load(open("r.json"))["repairs"] if r["kind"].startswith("hole")][0]
 assert abs(hole["size"] - 2 ** 0.5) < 1e-6 and hole["place"] == [0, 0.5, 0.5], hole
 END
-shows 0 'verified' "$V" --outer open.off p.off --raw
+shows 0 'verified' "$V" mesh --outer open.off p.off --raw
 expect 3 'prepare wrap' "$P" open.off -o none.off --prepare strict
 expect 3 'prepare wrap' "$P" sheet.off -o none.off
 expect 3 '' "$P" crossing.off -o none.off --prepare strict
@@ -30,13 +30,13 @@ expect 2 '' "$P" open.off -o none.off --prepare other
 
 for f in closed open sheet crossing; do
   expect 0 'each lies inside, exactly' "$P" $f.off -o w.stl --prepare wrap --seal 4%
-  shows 0 'verified' "$V" --outer $f.off w.stl --raw
+  shows 0 'verified' "$V" mesh --outer $f.off w.stl --raw
   expect 0 '' "$BIN/bmesh-decimate" $f.off -o d.stl --prepare wrap --epsilon 5% --effort fast
-  shows 0 'verified' "$V" --outer $f.off d.stl --raw
+  shows 0 'verified' "$V" mesh --outer $f.off d.stl --raw
 done
 for f in closed open sheet crossing; do
   expect 0 'each lies inside, exactly' "$BIN/bcd-decompose" $f.off -o b.glb --prepare wrap --epsilon 5% --effort fast --no-cache --report r.json
-  shows 0 'verified' "$V" --cover $f.off b.glb --raw
+  shows 0 'verified' "$V" cover $f.off b.glb --raw
   grep -q '"of": "a wrap round all triangles of the input' r.json || fail "what is covered, in $(cat r.json)"
   python3 - <<'END' || fail "epsilon of bodies round a wrap: $(cat r.json)"
 import json
@@ -60,17 +60,17 @@ END
 printf 'OFF\n6 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n0 1 1\n3 0 1 2\n3 0 2 3\n3 0 3 5\n3 0 5 4\n' >bent.off
 for f in tube bent; do
   expect 0 '' "$BIN/bmesh-decimate" $f.off -o plate.ply --prepare wrap --epsilon 3% --effort fast --report r.json
-  shows 0 'verified' "$V" --outer $f.off plate.ply --raw
+  shows 0 'verified' "$V" mesh --outer $f.off plate.ply --raw
   shows 0 'Hausdorff' "$BIN/hausdorff-eval" plate.ply $f.off --at-most 3%
   expect 0 '' "$BIN/bcd-decompose" $f.off -o plate.glb --prepare wrap --epsilon 3% --effort fast --no-cache
-  shows 0 'verified' "$V" --cover $f.off plate.glb --raw --epsilon 3%
+  shows 0 'verified' "$V" cover $f.off plate.glb --raw --epsilon 3%
   expect 0 'holes filled\|hole filled' "$P" $f.off -o full.ply
   expect 1 '' "$BIN/hausdorff-eval" full.ply $f.off --at-most 3%
 done
 expect 3 'have a wrap give the sheets a thickness' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 5% --prepare strict
 for f in sheet crossing; do
   expect 0 'the input is wrapped' "$BIN/bmesh-decimate" $f.off -o auto.ply --epsilon 5% --effort fast
-  shows 0 'verified' "$V" --outer $f.off auto.ply --raw
+  shows 0 'verified' "$V" mesh --outer $f.off auto.ply --raw
 done
 expect 3 'Nor is it wrapped' "$BIN/bmesh-decimate" sheet.off -o none.off --epsilon 1e-9
 # Quads that are not plane: both ways of splitting them are enclosed, and enclose.
@@ -84,13 +84,13 @@ expect 0 '1 polygon is not plane, by up to 0' "$BIN/bmesh-decimate" bent-a.obj -
 for f in bent-a bent-b; do
   for g in bent-a bent-b; do
     expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --vertices 8
-    shows 0 'verified' "$V" --outer $g.obj bent.ply
+    shows 0 'verified' "$V" mesh --outer $g.obj bent.ply
     expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --vertices 8 --direction inner
-    shows 0 'verified' "$V" --inner $g.obj bent.ply
+    shows 0 'verified' "$V" mesh --inner $g.obj bent.ply
     expect 0 '' "$BIN/bcd-decompose" $f.obj -o bent.glb --epsilon 5% --no-cache
-    shows 0 'verified' "$V" --cover $g.obj bent.glb
+    shows 0 'verified' "$V" cover $g.obj bent.glb
     expect 0 '' "$BIN/bmesh-decimate" $f.obj -o bent.ply --prepare wrap --epsilon 5% --effort fast
-    shows 0 'verified' "$V" --outer $g.obj bent.ply --raw
+    shows 0 'verified' "$V" mesh --outer $g.obj bent.ply --raw
   done
 done
 expect 3 'have a wrap give the sheets a thickness' "$BIN/bcd-decompose" sheet.off -o none.glb --no-cache --prepare strict
@@ -110,10 +110,10 @@ expect 2 'direction outer' "$BIN/bcd-decompose" closed.off -o none.glb --prepare
 expect 2 'prepare wrap' "$BIN/bcd-decompose" closed.off -o none.glb --prepare wrap --drop-sheets
 expect 2 'prepare wrap' "$BIN/bcd-decompose" closed.off -o none.glb --seal 1%
 # The other way round it must be refuted; so must a result that is too small.
-"$V" --outer w.stl crossing.off --raw >/dev/null 2>&1 && fail "two triangles hold their wrap"
+"$V" mesh --outer w.stl crossing.off --raw >/dev/null 2>&1 && fail "two triangles hold their wrap"
 expect 0 '' "$P" closed.off -o w.off --prepare wrap --seal 4%
 sed 's/^1 0 0$/1.5 0 0/' closed.off >larger.off
-expect 1 '' "$V" --outer larger.off w.off --raw
+expect 1 '' "$V" mesh --outer larger.off w.off --raw
 # Units are recorded, and not mixed.
 expect 0 '' "$P" closed.off -o p.off --unit mm --report r.json
 grep -q '"unit": "mm"' r.json || fail "no unit in $(cat r.json)"
@@ -126,7 +126,7 @@ cmp w1.stl w2.stl || fail "wraps differ"
 expect 3 "epsilon" "$P" crossing.off -o none.off --prepare wrap --seal 60% --offset 0.1% --epsilon 0.2%
 expect 2 'direction outer' "$BIN/bmesh-decimate" closed.off -o none.off --prepare wrap --epsilon 5% --direction inner
 expect 2 'mesh-prepare first' "$BIN/bmesh-decimate" closed.off -o none.off --prepare wrap --epsilon 5% --log l.log
-expect 2 '' "$V" --outer closed.off w.stl --raw --prepare
+expect 2 '' "$V" mesh --outer closed.off w.stl --raw --prepare
 absent none.off
 # Sizes beyond those that can be worked on, and lengths that have nothing to do with the mesh.
 for size in 1e-100 1e-165 1.7e308; do

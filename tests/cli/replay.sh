@@ -17,12 +17,12 @@ shows 1 'refuted' "$R" "$BRACKET" tight.log outer.stl
 # Progressive files: all levels at once.
 V=$BIN/bound-verify
 "$D" "$BRACKET" -o 'p-{vertices}.stl' --vertices 900,500 --progressive p.pm --quiet || fail "decimation"
-shows 0 'contains that of the level before' "$V" --progressive "$BRACKET" p.pm --report p.json
+shows 0 'contains that of the level before' "$V" progressive "$BRACKET" p.pm --report p.json
 grep -q '"relation": "progressive"' p.json || fail "report"
 "$D" "$BRACKET" --direction inner --vertices 900,500 --effort fast --progressive i.pm --quiet || fail "decimation"
-shows 0 'contained in that of the level before' "$V" --progressive "$BRACKET" i.pm
-expect 2 'joined with --epsilon' "$V" --progressive "$BRACKET" p.pm --epsilon 1%
-expect 3 'not a progressive file' "$V" --progressive "$BRACKET" outer.log
+shows 0 'contained in that of the level before' "$V" progressive "$BRACKET" i.pm
+expect 2 'unknown option --epsilon' "$V" progressive "$BRACKET" p.pm --epsilon 1%
+expect 3 'not a progressive file' "$V" progressive "$BRACKET" outer.log
 # Damaged files are refused by all that read them; that what is wrong in an undamaged one is refuted,
 # the tests of the library see.
 size=$(wc -c <p.pm)
@@ -31,7 +31,7 @@ for at in 27 $((size / 2)) $((size - 16)) $((size - 1)); do
   byte=$(od -An -tu1 -j "$at" -N 1 p.pm | tr -d ' ')
   # shellcheck disable=SC2059
   printf "$(printf '\\%03o' $((byte ^ 1)))" | dd of=mutant.pm bs=1 seek="$at" conv=notrunc 2>/dev/null
-  expect 3 'mutant.pm is damaged' "$V" --progressive "$BRACKET" mutant.pm
+  expect 3 'mutant.pm is damaged' "$V" progressive "$BRACKET" mutant.pm
   expect 3 'mutant.pm is damaged' "$D" --from mutant.pm --vertices 900 -o x.stl
   [ ! -e x.stl ] || fail "a mesh from a damaged file"
 done
@@ -39,7 +39,7 @@ done
 # Another original, a damaged log, missing files.
 tetrahedron >t.off
 expect 3 'another file' "$R" t.off outer.log outer.stl
-expect 3 'from another one' "$V" --progressive t.off p.pm
+expect 3 'from another one' "$V" progressive t.off p.pm
 head -c 1000 outer.log >short.log
 expect 3 'truncated' "$R" "$BRACKET" short.log outer.stl
 printf 'not a log' >no.log

@@ -32,11 +32,11 @@ run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache
 run robot-meshes "$BIN/bmesh-decimate" arm.urdf -o round --ratio 0.9 --effort fast --no-cache
 run sweep "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.2 --no-cache
 run distance "$BIN/hausdorff-eval" box.off wide.off --samples 100
-run verify-outer "$BIN/bound-verify" --outer "$BRACKET" outer.ply
-run verify-cover "$BIN/bound-verify" --cover "$BRACKET" set.glb --epsilon 5%
-run verify-robot "$BIN/bound-verify" --robot arm.urdf safe/arm.urdf
-run verify-sweep "$BIN/bound-verify" --sweep arm.urdf path.csv swept.glb
-run verify-progressive "$BIN/bound-verify" --progressive "$BRACKET" outer.pm
+run verify-outer "$BIN/bound-verify" mesh --outer "$BRACKET" outer.ply
+run verify-cover "$BIN/bound-verify" cover "$BRACKET" set.glb --epsilon 5%
+run verify-robot "$BIN/bound-verify" robot arm.urdf safe/arm.urdf
+run verify-sweep "$BIN/bound-verify" sweep arm.urdf path.csv swept.glb
+run verify-progressive "$BIN/bound-verify" progressive "$BRACKET" outer.pm
 run scene "$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --object box=wide.off --no-cache
 python3 -c 'import json
 cell = json.load(open("cell.json"))
@@ -46,7 +46,7 @@ run pairs "$BIN/kaboum-scene" pairs cell.json
 run state "$BIN/kaboum-check" cell.json --distance
 run motion "$BIN/kaboum-check" cell.json --path path.csv
 run move "$BIN/kaboum-move" cell.json --from 0 --to 1 -o moved.csv --trajectory samples.csv
-expect 1 '' "$BIN/bound-verify" --outer wide.off box.off --report reports/refuted.json
+expect 1 '' "$BIN/bound-verify" mesh --outer wide.off box.off --report reports/refuted.json
 run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'
 (define (domain d) (:requirements :strips) (:predicates (done)) (:action act :parameters () :precondition () :effect (done)))

@@ -35,7 +35,7 @@ for place in ros ros/stack ros/stack/arm-1.2 ros/stack/arm-1.2/ plain plain/arm;
 done
 expect 0 '' decompose_with AMENT_PREFIX_PATH="$WORK/nowhere:$WORK/prefix"
 expect 3 "(out), .*(else)" decompose_with ROS_PACKAGE_PATH=out AMENT_PREFIX_PATH=else
-shows 0 'verified' "$V" --robot $E out/r.urdf --package-path plain/arm
+shows 0 'verified' "$V" robot $E out/r.urdf --package-path plain/arm
 (cd plain/arm && sed 's,t.off,../meshes/t.off,' ../../$E >r.urdf)
 expect 0 '' "$D" plain/arm/r.urdf -o out2 --epsilon 5% --effort fast --quiet
 sed 's/meshes/parts/' $E >else/deep/lost.urdf
@@ -49,9 +49,9 @@ expect 0 '' "$D" else/deep/slash.urdf -o out3 --epsilon 5% --effort fast --quiet
 expect 3 'one of --package-path (ros)' decompose_from ros
 rm ros/stack/COLCON_IGNORE
 sed -i '3s/.*/0.4 0 0/' ros/stack/arm-1.2/meshes/t.off
-expect 3 'is found twice' "$V" --robot $E out/r.urdf --package-path plain --package-path ros
+expect 3 'is found twice' "$V" robot $E out/r.urdf --package-path plain --package-path ros
 printf "[[]]" >pose.json
-expect 3 'is found twice' "$V" --sweep $E pose.json out/bodies --package-path plain --package-path ros
+expect 3 'is found twice' "$V" sweep $E pose.json out/bodies --package-path plain --package-path ros
 
 # Shapes without volume: named with their line, kept, covered.
 cat >flat.urdf <<END
@@ -82,18 +82,18 @@ grep -q "flat.urdf:11: link 'arm': a sphere of radius 0 is a point: it is not co
 grep -q "link 'seen' has no collision shape, only visual ones" err.txt || fail "no bare link: $(cat err.txt)"
 grep -q "'tool'" err.txt && fail "a link without any shape is named"
 grep -q 'cylinder length="0" radius="0.2"' flat/flat.urdf || fail "the disc is gone"
-shows 0 "link 'base': verified: .*2 shapes are as they were" "$V" --robot flat.urdf flat/flat.urdf --report v.json
+shows 0 "link 'base': verified: .*2 shapes are as they were" "$V" robot flat.urdf flat/flat.urdf --report v.json
 grep -q "^verified: 2 of 4 links judged; not 'seen'" out.txt || fail "verdict: $(cat out.txt)"
 grep -q "link 'seen' has no collision shape, only visual ones: nothing of this is judged" err.txt || fail "$(cat err.txt)"
 grep -q "link 'tool' has no collision shape: nothing" err.txt || fail "$(cat err.txt)"
 tr -d ' \n' <v.json | grep -q '"links_without_shapes":\["tool","seen"\],"links_with_other_shapes_only":\["seen"\]' || fail "$(cat v.json)"
-shows 0 "2 of 4 links judged; not 'seen'" "$V" --robot flat.urdf flat/flat.urdf --epsilon 1%
+shows 0 "2 of 4 links judged; not 'seen'" "$V" robot flat.urdf flat/flat.urdf --epsilon 1%
 printf '0\n1\n' >turn.csv
 expect 0 "cylinder of length 0" "$S" flat.urdf --path turn.csv --joint k=0 -o flat.glb
-shows 0 "^verified: 2 of 4 links judged; not 'seen'" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --report v.json
+shows 0 "^verified: 2 of 4 links judged; not 'seen'" "$V" sweep flat.urdf turn.csv flat.glb --joint k=0 --report v.json
 grep -q "flat.urdf:11: .* a point" err.txt || fail "the point is not named: $(cat err.txt)"
 tr -d ' \n' <v.json | grep -q '"links":{"asked":4,"judged":2,"without_shapes":\["tool","seen"\]' || fail "$(cat v.json)"
-shows 0 "2 of 2 links judged" "$V" --sweep flat.urdf turn.csv flat.glb --joint k=0 --links base,arm
+shows 0 "2 of 2 links judged" "$V" sweep flat.urdf turn.csv flat.glb --joint k=0 --links base,arm
 sed 's/length="0"/length="-1"/' flat.urdf >negative.urdf
 expect 3 "negative.urdf:5: link 'base': a cylinder whose size is negative" "$D" negative.urdf -o x
 sed 's/radius="0.2"/radius="wide"/' flat.urdf >word.urdf
@@ -119,21 +119,21 @@ printf 'j,time,k\n0,0,0.5\n# a pause\n0,0,0.5\n1,2.5,0.5\n' >pause.csv
 expect 0 '' "$S" flat.urdf --path pause.csv -o pause.obj
 printf 'j,time,k\n0,0,0.5\n# a pause\n0,2,0.5\n1,1.5,0.5\n' >back.csv
 expect 3 'back.csv: line 5, column 2: time 1.5 is before 2 ' "$S" flat.urdf --path back.csv -o x.glb
-expect 3 'back.csv: line 5, column 2: time 1.5 is before 2 ' "$V" --sweep flat.urdf back.csv pause.obj
+expect 3 'back.csv: line 5, column 2: time 1.5 is before 2 ' "$V" sweep flat.urdf back.csv pause.obj
 printf '{"joints": ["t", "j", "k"], "waypoints": [[1, 0, 0.5], [0, 1, 0.5]]}' >back.json
 expect 3 'back.json: waypoint 2, column 1: t 0 is before 1 ' "$S" flat.urdf --path back.json -o x.glb
 # Degrees: converted where asked for, warned about where likely.
 printf 'j,k\n0,0.5\n90,0.5\n' >degrees.csv
 expect 0 "^WARNING: degrees.csv: line 3, waypoint 2: joint 'j' at 90 radians .* give --degrees" "$S" flat.urdf --path degrees.csv -o wound.obj --ignore-limits
-expect 0 "^WARNING: degrees.csv: line 3" "$V" --sweep flat.urdf degrees.csv wound.obj
+expect 0 "^WARNING: degrees.csv: line 3" "$V" sweep flat.urdf degrees.csv wound.obj
 printf 'j,k\n0,0.5\n1.5707963267948966,0.5\n' >radians.csv
 expect 0 '' "$S" flat.urdf --path radians.csv -o radians.obj
 expect 0 '' "$S" flat.urdf --path degrees.csv -o degrees.obj --degrees
 grep -q WARNING err.txt && fail "a warning about degrees that are given as such"
 for set in radians degrees; do grep -v '^#' $set.obj >$set.txt; done
 cmp -s radians.txt degrees.txt || fail "90 degrees are not a quarter turn"
-shows 0 '^verified' "$V" --sweep flat.urdf degrees.csv degrees.obj --degrees
-shows 1 '^refuted' "$V" --sweep flat.urdf degrees.csv degrees.obj
+shows 0 '^verified' "$V" sweep flat.urdf degrees.csv degrees.obj --degrees
+shows 1 '^refuted' "$V" sweep flat.urdf degrees.csv degrees.obj
 expect 3 "outside its limits, -2 to 2 (radians.*--degrees" "$S" flat.urdf --path degrees.csv -o x.glb
 
 expect 0 '' "$S" flat.urdf --path j.json -o c.obj --joint k=0.5
@@ -154,7 +154,7 @@ printf '{"joints": ["j"],\n "waypoints": [[0], [1,]]}' >comma.json
 expect 3 "comma.json: not JSON at line 2, column 24, near '.*\[1,\]" "$S" flat.urdf --path comma.json -o x.glb --joint k=0.5
 "$S" flat.urdf --path plain.csv -o recorded --quiet
 printf '{\n"unit": m}' >recorded/convex-set.json
-expect 3 'recorded/convex-set.json: not JSON at line 2, column 9.*; write the set again' "$V" --sweep flat.urdf plain.csv recorded
+expect 3 'recorded/convex-set.json: not JSON at line 2, column 9.*; write the set again' "$V" sweep flat.urdf plain.csv recorded
 printf '{"asset": {"version": "2.0"}\n, "meshes": [' >cut.gltf
 expect 3 'cut.gltf: the JSON is cut short: it ends at line 2, column 13; .*get or export it again' "$D" cut.gltf -o x.glb --epsilon 1%
 # Names that are misspelt.
@@ -173,15 +173,15 @@ printf 'Elbow,grip\n0,0\n' >names.csv
 expect 3 "no joint 'Elbow' .*did you mean 'elbow'?" "$S" named.urdf --path names.csv -o x.glb
 expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$D" named.urdf -o x --links uper-arm,hand
 expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$S" named.urdf --path names.json -o x.glb --links uper-arm
-expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$V" --sweep named.urdf names.json a.obj --links uper-arm
+expect 2 "no link 'uper-arm'; did you mean 'upper-arm'?" "$V" sweep named.urdf names.json a.obj --links uper-arm
 expect 2 "no link 'wheel'; it has 'base', 'upper-arm' and 'hand'" "$D" named.urdf -o x --links wheel
 # What sweep-approx writes as a URDF is read as a set.
 expect 0 '' "$S" flat.urdf --path plain.csv -o swept.urdf
-shows 0 '^verified' "$V" --sweep flat.urdf timed.csv swept.urdf
+shows 0 '^verified' "$V" sweep flat.urdf timed.csv swept.urdf
 sed 's/<mesh /<mesh scale="1 1 1.5" /' swept.urdf >scaled.urdf
-expect 3 'moved or scaled' "$V" --sweep flat.urdf timed.csv scaled.urdf
-expect 3 'several links' "$V" --sweep flat.urdf timed.csv flat.urdf
+expect 3 'moved or scaled' "$V" sweep flat.urdf timed.csv scaled.urdf
+expect 3 'several links' "$V" sweep flat.urdf timed.csv flat.urdf
 # Shapes for drawing.
 expect 0 "no visual shape, only collision ones" "$S" flat.urdf --path plain.csv -o seen.glb --visual
-shows 0 '1 of 4 links judged' "$V" --sweep flat.urdf plain.csv seen.glb --visual
+shows 0 '1 of 4 links judged' "$V" sweep flat.urdf plain.csv seen.glb --visual
 finish

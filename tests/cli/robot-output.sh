@@ -100,7 +100,7 @@ grep -q 'near/r.urdf: robot/r.urdf e.yaml' near.d || fail "dependency file: $(ca
 for link in base wrist_1 wrist_2; do
   case $link in base) e=3% ;; wrist_1) e=5% ;; *) e=1% ;; esac
   LC_ALL=C grep -a -q -- "--epsilon $e " "near/links/$link.glb" || fail "$link has not epsilon $e"
-  shows 0 '^verified' "$V" --cover "near/links/$link.glb" "near/links/$link.glb"
+  shows 0 '^verified' "$V" cover "near/links/$link.glb" "near/links/$link.glb"
 done
 shows 1 'refuted' "$V" robot robot/r.urdf near/r.urdf --visual --prepare --epsilon 3%
 shows 0 '^verified' "$V" robot robot/r.urdf near/r.urdf --visual --prepare --epsilon 5%

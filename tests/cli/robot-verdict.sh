@@ -80,6 +80,9 @@ off("line", [(0, 0, 0), (2, 0, 0), (1, 0, 0)], [(0, 1, 2)])
 robot("zero", [("base", [mesh("good.off")]), ("line", [mesh("line.off")]), ("ball", ['<sphere radius="0"/>']), ("flat", ['<box size="0 0 0"/>'])])
 robot("bad", [("base", [mesh("good.off")]), ("broken", [mesh("damaged.stl"), mesh("good.off")]),
               ("nothing", [mesh("empty.off")]), ("sheet", [mesh("sheet.off")])])
+with open(f"{folder}/m/empty.stl", "wb") as f:
+    f.write(b"\0" * 84)
+robot("empty", [("base", [mesh("good.off")]), ("nothing", [mesh("empty.stl")])])
 robot("worst", [("base", [mesh("damaged.stl")])])
 def ring(n, inner, outer):
     """Of rectangular section: not convex."""
@@ -122,13 +125,26 @@ require(html.unescape(rows[-1][1]) == report["sentence"] and (rows[-1][0] == "ye
 for text, name in ((page, "page"), (terminal, "terminal")):
     lines = [l for l in re.split("\n|<br>", text) if re.search("\\bNOT\\b", l) and "dropped on request" not in l]
     require(not held or not lines, f"{name}: a NOT beside exit code 0: {lines[:3]}")
+# All count alike.
+foot = re.findall("<td[^>]*>(.*?)</td>", re.search("<tfoot>(.*?)</tfoot>", page).group(1))
+made = report["bodies"] if "bodies" in report else report["meshes"] - report["meshes_kept"]
+said = re.search(r"urdf: (\d+) \w+ of (\d+) links?(?:, from (\d+) mesh\w*)?(?:, of which (\d+) stay)?", terminal)
+counts = [made, len(report["links"]), report["meshes"] if said.group(3) else None, report["meshes_kept"] or None]
+require([int(n) if n else None for n in said.groups()] == counts, f"terminal: {said.group(0)}, not {counts}")
+require([int(n) for n in re.findall(r"\d+", foot[0])][:2] == [len(report["links"]), report["meshes"]] and foot[3:5] == [str(made), str(report["vertices"])], f"page: {foot}")
+require(report["meshes_kept"] == len({m["file"] for l in report["links"] for m in l.get("meshes", []) if "flaw" in m}), "meshes kept")
 commands = [html.unescape(c) for c in re.findall(r"<code>(.*?)</code>", page)]
 require(len(commands) == 1 and commands[0] == report["check"], f"commands: {commands}")
 for command in commands:
     run = subprocess.run(command, shell=True, capture_output=True, text=True)
     inside = all(l["verdict"] in ("held", "epsilon not reached", "work ended") for l in report["links"])
-    require((run.returncode == 0) == inside, f"{command}: exit {run.returncode}: {run.stdout[-600:]} {run.stderr[-300:]}")
+    require(run.returncode == (0 if inside else code), f"{command}: exit {run.returncode}: {run.stdout[-600:]} {run.stderr[-300:]}")
     require(("exit code above 0" in page) == (not inside), "the page does not say how its command ends")
+    said = dict(re.findall("^link '(.*?)': ([a-z]*): ", run.stdout, re.M))
+    require(len(said) == len(report["links"]), f"links: {run.stdout}")
+    for link in report["links"]:
+        held = link["verdict"] in ("held", "epsilon not reached", "work ended")
+        require(held or said.get(link["link"]) != "verified", f"link '{link['link']}': {run.stdout}")
     if run.returncode == 0:
         said = [l for l in run.stdout.splitlines() if l.startswith("link ")]
         require(len(said) == len(report["links"]) and all(": verified: " in l for l in said), f"links: {run.stdout}")
@@ -169,8 +185,17 @@ for program in 'bcd-decompose --effort fast' bmesh-decimate; do
     grep -q "<collision.*\|filename=\"../it's a robot/m/$kept\"\|filename=\"../it&apos;s a robot/m/$kept\"" out/bad.urdf || fail "$kept is lost"
   done
   [ "$(grep -c '<collision ' out/bad.urdf)" -ge 5 ] || fail "collision shapes are lost: $(cat out/bad.urdf)"
+  [ ! -e out/links/broken.glb ] || fail "a set of a link without one of its shapes"
+  # shellcheck disable=SC2086
+  made 1 "link 'nothing': NOT enclosed, its mesh stays as it was: .*empty.stl" $program "$R/empty.urdf" -o out --epsilon 0.05
+  shows 1 "link 'base': verified: every triangle is inside" bound-verify robot "$R/empty.urdf" out/empty.urdf --prepare --report v.json
+  grep -q "^link 'nothing': refuted: .*empty.stl: it is not held, for it cannot be judged: no triangles" out.txt || fail "the empty mesh: $(cat out.txt)"
+  grep -q '"answer": "verified"' v.json || fail "no link of the report is verified: $(cat v.json)"
 done
-[ ! -e out/links/broken.glb ] || fail "a set of a link without one of its shapes"
+# Another mesh of the result that cannot be read is bad input, and so is a robot of which nothing can be judged.
+sed 's|filename="[^"]*"|filename="m/damaged.stl"|' "$R/empty.urdf" >"$R/other.urdf"
+expect 3 'damaged.stl' bound-verify robot "$R/empty.urdf" "$R/other.urdf" --prepare
+expect 3 'damaged.stl' bound-verify robot "$R/worst.urdf" "$R/worst.urdf" --prepare
 # Where nothing can be made, nothing is written.
 for program in bcd-decompose bmesh-decimate; do
   rm -rf out

@@ -41,18 +41,18 @@ grep -q 'filename="../robot/meshes/seen.dae"' out/r.urdf || fail "the drawing's 
 [ "$(grep -c '<collision ' out/r.urdf)" = "$(($(find out/bodies/bracket -name '*.stl' | wc -l) + 3))" ] || fail "number of bodies"
 grep -q 'rpy="0.3 0 0"' out/r.urdf || fail "pose"
 # The claims hold of the files.
-shows 0 'verified' "$BIN/bound-verify" --cover robot/meshes/t.off out/bodies/t
-shows 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/bodies/bracket
+shows 0 'verified' "$BIN/bound-verify" cover robot/meshes/t.off out/bodies/t
+shows 0 'verified' "$BIN/bound-verify" cover robot/meshes/bracket.obj out/bodies/bracket
 epsilon=$(sed -n 's/.*"epsilon": \([^,]*\).*/\1/p' out/bodies/bracket/*.json)
-shows 0 'distance from the union to the solid: verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj \
+shows 0 'distance from the union to the solid: verified' "$BIN/bound-verify" cover robot/meshes/bracket.obj \
   out/bodies/bracket --prepare --epsilon "$epsilon"
-shows 0 'verified' "$BIN/bound-verify" --cover robot/meshes/bracket.obj out/links/base.glb
+shows 0 'verified' "$BIN/bound-verify" cover robot/meshes/bracket.obj out/links/base.glb
 # In the link's frame the transformed mesh is covered, as far as numbers of 17 digits tell.
 awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
   { x = 0.2 * $1; y = -0.2 * $2; z = 0.5 * $3
     printf "%.17g %.17g %.17g\n", x + 0.1, c * y - s * z, s * y + c * z }' robot/meshes/t.off |
   sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)/3 \1 \3 \2/' >posed.off
-shows 0 'verified' "$BIN/bound-verify" --cover posed.off out/links/arm_1.glb
+shows 0 'verified' "$BIN/bound-verify" cover posed.off out/links/arm_1.glb
 # Files are told apart by their stems alone; whoever loads the URDF finds them.
 [ -z "$(find out -name '*.stl' | sed 's,.*/,,' | sort -f | uniq -di)" ] || fail "two meshes of one name"
 grep -q 'out/r.urdf names its meshes relative to itself (bodies/...), .*RViz and MoveIt need --mesh-prefix' err0.txt ||
@@ -75,51 +75,51 @@ for set in thin/out/links/l.glb out/links/*.glb; do
 done
 awk 'NR < 3 || NR > 6 { print; next } NR == 3 { c = cos(0.3); s = sin(0.3) }
   { printf "%.17g %.17g %.17g\n", $1 + 0.1, c * $2 - s * $3, s * $2 + c * $3 }' thin/plate.off >thin/posed.off
-shows 0 'verified' "$BIN/bound-verify" --cover thin/posed.off thin/out/links/l.glb
+shows 0 'verified' "$BIN/bound-verify" cover thin/posed.off thin/out/links/l.glb
 # All links at once, from the two robots' files.
 V=$BIN/bound-verify
-shows 0 "link 'arm/1': verified: every triangle is inside: 2 meshes in [0-9]* bod.*; 1 shape is as it was" "$V" --robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
+shows 0 "link 'arm/1': verified: every triangle is inside: 2 meshes in [0-9]* bod.*; 1 shape is as it was" "$V" robot robot/r.urdf out/r.urdf --prepare --epsilon 3% --report v.json
 [ "$(grep -c ': verified' out.txt)" = 3 ] || fail "not all shapes: $(cat out.txt)"
 grep -q '"relation": "robot"' v.json || fail "report"
 grep -q 'bodies/t/t-0000.stl' v.json || fail "the report does not name what holds the meshes"
-shows 0 'every triangle is inside' "$V" --robot robot/r.urdf out/r.urdf --claims surface
-shows 1 'refuted: bodies: at least' "$V" --robot robot/r.urdf out/r.urdf --epsilon 0.01%
+shows 0 'every triangle is inside' "$V" robot robot/r.urdf out/r.urdf --claims surface
+shows 1 'refuted: bodies: at least' "$V" robot robot/r.urdf out/r.urdf --epsilon 0.01%
 # What is no longer there, somewhere else, or moves in another way is noticed.
 cp -r out bad
 sed 's,bracket-0001.stl,bracket-0000.stl,' out/r.urdf >bad/r.urdf
 cmp -s out/r.urdf bad/r.urdf && fail "no second body of the base"
-shows 1 "refuted: robot/meshes/bracket.obj: [0-9]* triangles* .* not inside .* by at most" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "refuted: robot/meshes/bracket.obj: [0-9]* triangles* .* not inside .* by at most" "$V" robot robot/r.urdf bad/r.urdf
 sed 's,<collision name="base_1">,<collision name="x"><origin xyz="0 0 1e-9"/>,' out/r.urdf >bad/r.urdf
-shows 7 'the 1 shape of other poses' "$V" --robot robot/r.urdf bad/r.urdf
+shows 7 'the 1 shape of other poses' "$V" robot robot/r.urdf bad/r.urdf
 sed 's/scale="0.2 -0.2 0.5"/scale="0.2 -0.2 0.4"/' out/r.urdf >bad/r.urdf
-shows 7 'no closed mesh of its pose and scale' "$V" --robot robot/r.urdf bad/r.urdf
+shows 7 'no closed mesh of its pose and scale' "$V" robot robot/r.urdf bad/r.urdf
 sed 's/box size="0.2 0.2 0.1"/box size="0.2 0.2 0.11"/' out/r.urdf >bad/r.urdf
-shows 7 'undecided: box.*the result has none of its size' "$V" --robot robot/r.urdf bad/r.urdf
+shows 7 'undecided: box.*the result has none of its size' "$V" robot robot/r.urdf bad/r.urdf
 sed 's,<link name="frame">,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision>,
   s,<link name="frame"/>,<link name="frame"><collision><geometry><sphere radius="9"/></geometry></collision></link>,' \
   out/r.urdf >bad/r.urdf
-shows 0 'verified' "$V" --robot robot/r.urdf bad/r.urdf
-shows 7 "link 'frame': undecided: how far 1 shape" "$V" --robot robot/r.urdf bad/r.urdf --epsilon 3%
+shows 0 'verified' "$V" robot robot/r.urdf bad/r.urdf
+shows 7 "link 'frame': undecided: how far 1 shape" "$V" robot robot/r.urdf bad/r.urdf --epsilon 3%
 # A link that lost its shapes holds nothing, whatever they were; limits are the robot's, too.
 sed '/<collision/,/<\/collision>/d' out/r.urdf >bad/r.urdf
-shows 1 "refuted: robot/meshes/t.off: the result's link has no.*; nor are 2 other shapes" "$V" --robot robot/r.urdf bad/r.urdf
-"$V" --robot robot/r.urdf bad/r.urdf --quiet --report gone.json
+shows 1 "refuted: robot/meshes/t.off: the result's link has no.*; nor are 2 other shapes" "$V" robot robot/r.urdf bad/r.urdf
+"$V" robot robot/r.urdf bad/r.urdf --quiet --report gone.json
 grep -q "the result's link has no shape at all" gone.json || fail "a box that is gone: $(cat gone.json)"
 sed 's/upper="2"/upper="2.5"/' out/r.urdf >bad/r.urdf
-shows 1 "joints: refuted: joint '[a-z]*' has other limits" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "joints: refuted: joint '[a-z]*' has other limits" "$V" robot robot/r.urdf bad/r.urdf
 sed 's/<axis xyz="0 1 0"/<axis xyz="0 0 1"/' out/r.urdf >bad/r.urdf
-shows 1 "joints: refuted: joint 'shoulder'" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "joints: refuted: joint 'shoulder'" "$V" robot robot/r.urdf bad/r.urdf
 sed 's/"frame"/"other"/' out/r.urdf >bad/r.urdf
-shows 1 "no link 'frame'" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "no link 'frame'" "$V" robot robot/r.urdf bad/r.urdf
 sed 's,</robot>,<link name="world"/><joint name="w" type="prismatic"><parent link="world"/><child link="base"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>,' \
   out/r.urdf >bad/r.urdf
-shows 1 "root is 'world'" "$V" --robot robot/r.urdf bad/r.urdf
+shows 1 "root is 'world'" "$V" robot robot/r.urdf bad/r.urdf
 sed 's/rpy="0.3 0 0"/quat_xyzw="0 0 0 1"/' out/r.urdf >bad/r.urdf
-expect 3 'write the rotation as rpy' "$V" --robot robot/r.urdf bad/r.urdf
+expect 3 'write the rotation as rpy' "$V" robot robot/r.urdf bad/r.urdf
 rm -r bad
-expect 3 't.off' "$V" --robot robot/r.urdf robot/meshes/t.off
-expect 2 'two URDFs' "$V" --robot robot/r.urdf
-expect 2 'cannot be joined with --geometry' "$V" --cover robot/meshes/t.off out/bodies/t --geometry visual
+expect 3 't.off' "$V" robot robot/r.urdf robot/meshes/t.off
+expect 2 'RESULT is required' "$V" robot robot/r.urdf
+expect 2 'unknown option --geometry' "$V" cover robot/meshes/t.off out/bodies/t --geometry visual
 # Meshes that are closed only together hold nothing; one that is inside out is not held by anything.
 mkdir -p one
 cp robot/meshes/t.off one/t.off
@@ -140,34 +140,34 @@ one_link one/faces.urdf face3.off face4.off face5.off face6.off
 one_link one/inverse.urdf inverse.off
 one_link one/both.urdf t.off face3.off
 one_link one/face.urdf face3.off
-shows 0 'verified' "$V" --robot one/t.urdf one/t.urdf
-shows 7 'no closed mesh' "$V" --robot one/t.urdf one/faces.urdf
+shows 0 'verified' "$V" robot one/t.urdf one/t.urdf
+shows 7 'no closed mesh' "$V" robot one/t.urdf one/faces.urdf
 grep -q 'face3.off and 3 more meshes: it is not closed' err.txt || fail "the open mesh is not named"
-shows 7 'no closed mesh' "$V" --robot one/face.urdf one/face.urdf
-shows 0 'every triangle is inside: 1 mesh in 1 body' "$V" --robot one/t.urdf one/both.urdf
-shows 0 'as far as open meshes define it' "$V" --robot one/face.urdf one/t.urdf
-expect 7 'inside out' "$V" --robot one/inverse.urdf one/t.urdf --claims solid
-expect 2 'report' "$V" --robot one/t.urdf one/t.urdf --report one/t.off
+shows 7 'no closed mesh' "$V" robot one/face.urdf one/face.urdf
+shows 0 'every triangle is inside: 1 mesh in 1 body' "$V" robot one/t.urdf one/both.urdf
+shows 0 'as far as open meshes define it' "$V" robot one/face.urdf one/t.urdf
+expect 7 'inside out' "$V" robot one/inverse.urdf one/t.urdf --claims solid
+expect 2 'report' "$V" robot one/t.urdf one/t.urdf --report one/t.off
 cp one/t.off one/more.off
 sed '$d' one/t.urdf >one/more.urdf
 cat >>one/more.urdf <<'END'
 </link><link name="m"><collision><geometry><mesh filename="more.off"/></geometry></collision></link>
 <joint name="j" type="fixed"><parent link="l"/><child link="m"/></joint></robot>
 END
-expect 2 'report' "$V" --robot one/t.urdf one/more.urdf --report one/more.off
+expect 2 'report' "$V" robot one/t.urdf one/more.urdf --report one/more.off
 cmp -s one/more.off one/t.off && cmp -s one/t.off robot/meshes/t.off || fail "a report was written over a mesh"
 # Two meshes of one pose are measured together.
 sed 's/^\([-0-9.]*\) \([-0-9.]*\) \([-0-9.]*\)$/\1 \2 1\3/; 2s/.*/4 4 0/' one/t.off >one/u.off
 one_link one/two.urdf t.off u.off
 expect 0 'bodies' "$D" one/two.urdf -o two --epsilon 3% --effort fast
-shows 0 'verified' "$V" --robot one/two.urdf two/two.urdf --epsilon 3%
+shows 0 'verified' "$V" robot one/two.urdf two/two.urdf --epsilon 3%
 # A mesh found twice, with other contents.
 mkdir -p old/pack/meshes new/pack/meshes
 cp one/t.off old/pack/meshes/t.off
 sed '3s/.*/0.4 0 0/' one/t.off >new/pack/meshes/t.off
 one_link old/pack/r.urdf package://pack/meshes/t.off
 cp old/pack/r.urdf new/pack/r.urdf
-expect 3 'is found twice' "$V" --robot old/pack/r.urdf new/pack/r.urdf --package-path old
+expect 3 'is found twice' "$V" robot old/pack/r.urdf new/pack/r.urdf --package-path old
 # The new robot is a robot, and another run gives the same bytes.
 expect 0 'bodies of 2 links' "$D" out/r.urdf -o again --effort fast
 expect 0 '' "$D" robot/r.urdf -o out2 --epsilon 3% --effort fast --quiet --no-cache --mesh-prefix package://r/
@@ -200,7 +200,7 @@ expect 0 "link 'arm/1' has no visual shape, only collision ones, which stay" "$D
 grep -q 'of 1 link, from 1 mesh$' err.txt || fail "counts: $(cat err.txt)"
 grep -q 'bodies/t/t-0000.stl' seen/v.urdf || fail "no bodies for drawing shapes"
 grep -q 'box size' seen/v.urdf || fail "a link without a shape for drawing lost its collision shape"
-shows 0 'verified' "$V" --robot robot/v.urdf seen/v.urdf --geometry visual
+shows 0 'verified' "$V" robot robot/v.urdf seen/v.urdf --geometry visual
 grep -q "link 'arm/1': verified: .*1 shape is as it was" out.txt || fail "collision shapes of a link that is not drawn are not judged"
 grep -q 'filename="../robot/meshes/t.off"' seen/v.urdf || fail "a mesh that stays is not found from the folder"
 
@@ -208,9 +208,9 @@ sed '3,6s/1/3/' robot/meshes/t.off >robot/meshes/large.off
 echo '<robot name="k"><link name="l"><visual><geometry><mesh filename="meshes/t.off"/></geometry></visual>
 <collision><geometry><mesh filename="meshes/large.off"/></geometry></collision></link></robot>' >robot/kinds.urdf
 expect 0 '' "$D" robot/kinds.urdf -o kinds --visual --epsilon 3% --effort fast
-expect 1 'made of a visual mesh of the original: judge them with --visual' "$V" --robot robot/kinds.urdf kinds/kinds.urdf --report kinds.json
+expect 1 'made of a visual mesh of the original: judge them with --visual' "$V" robot robot/kinds.urdf kinds/kinds.urdf --report kinds.json
 grep -q '"triangles_outside"' kinds.json || fail "no witness in the report"
-shows 0 '^verified: 1 of 1 link judged' "$V" --robot robot/kinds.urdf kinds/kinds.urdf --visual
+shows 0 '^verified: 1 of 1 link judged' "$V" robot robot/kinds.urdf kinds/kinds.urdf --visual
 
 # Files of the same bytes that refer to other files are other meshes.
 for side in a b; do
@@ -231,12 +231,12 @@ for run in made cached; do
   [ "$(cat w.d)" = 'wrapped/r.urdf: wrap/r.urdf wrap/a/m.wrl wrap/a/part.wrl wrap/b/m.wrl wrap/b/part.wrl' ] ||
     fail "dependency file, $run: $(cat w.d)"
 done
-shows 0 'verified' "$BIN/bound-verify" --cover wrap/b/m.wrl wrapped/links/l.glb
+shows 0 'verified' "$BIN/bound-verify" cover wrap/b/m.wrl wrapped/links/l.glb
 
 # Some links only.
 expect 0 'of 1 link, from 1 mesh$' "$D" robot/r.urdf -o some --links arm/1 --epsilon 3% --effort fast
 grep -q 'filename="../robot/meshes/bracket.obj"' some/r.urdf || fail "a link that was not asked for is changed"
-shows 0 'verified' "$V" --robot robot/r.urdf some/r.urdf
+shows 0 'verified' "$V" robot robot/r.urdf some/r.urdf
 expect 0 'from 2 meshes' "$D" robot/r.urdf -o rerun --epsilon 3% --effort fast
 grep -q 'not of this result' err.txt && fail "stale files in a new folder"
 expect 0 "rerun: 'bodies/bracket' and 'links/base.glb' are not of this result" "$D" robot/r.urdf -o rerun --links arm/1 \

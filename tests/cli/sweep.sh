@@ -181,13 +181,13 @@ shows 0 'surface claim: verified' "$BIN/bound-verify" sweep inwards/r.urdf inwar
 
 # The whole motion decided from files alone; a set whose margin is cut, one that lacks a body, another path.
 V=$BIN/bound-verify
-shows 0 'surface claim: verified' "$V" --sweep "$R" path.csv a.glb --report v.json
+shows 0 'surface claim: verified' "$V" sweep "$R" path.csv a.glb --report v.json
 for key in '"relation": "sweep"' '"verdict": "verified"' '"largest_found"' '"configuration"' '"cells"'; do
   grep -q "$key" v.json || fail "no $key in the report"
 done
-shows 0 'solid claim: verified' "$V" --sweep "$R" path.json b.glb
+shows 0 'solid claim: verified' "$V" sweep "$R" path.json b.glb
 for set in uniform.obj adaptive.obj folder all c.glb d.glb e.glb; do
-  shows 0 '^verified: 4 of 4 links judged$' "$V" --sweep "$R" path.csv "$set"
+  shows 0 '^verified: 4 of 4 links judged$' "$V" sweep "$R" path.csv "$set"
 done
 # Upright and leaning cylinders, whose hulls have corners in a line but for the last bits.
 cat >drum.urdf <<'END'
@@ -200,57 +200,57 @@ cat >drum.urdf <<'END'
 END
 printf '0\n1\n' >drum.csv
 expect 0 '' "$S" drum.urdf --path drum.csv -o drum.glb
-shows 0 '^verified: 2 of 2 links judged$' "$V" --sweep drum.urdf drum.csv drum.glb
+shows 0 '^verified: 2 of 2 links judged$' "$V" sweep drum.urdf drum.csv drum.glb
 LC_ALL=C sed 's/"margin":0.0049/"margin":0.0029/' a.glb >thin.glb
 cmp -s a.glb thin.glb && fail "the margin was not cut"
-shows 1 'surface claim: refuted' "$V" --sweep "$R" path.csv thin.glb --witness w.obj --report thin.json
+shows 1 'surface claim: refuted' "$V" sweep "$R" path.csv thin.glb --witness w.obj --report thin.json
 grep -q '^f ' w.obj || fail "no witness"
 grep -q '"place"' thin.json || fail "no place in the report"
 awk '/^o / { n++ } n != 3 || !/^f / { print }' adaptive.obj >lacking.obj
-shows 1 'refuted' "$V" --sweep "$R" path.csv lacking.obj
+shows 1 'refuted' "$V" sweep "$R" path.csv lacking.obj
 sed 's/1.5/1.6/' path.csv >other.csv
-shows 1 'refuted' "$V" --sweep "$R" other.csv a.glb
-shows 1 'refuted' "$V" --sweep "$R" path.csv swept.obj
-expect 0 '' "$V" --sweep "$R" path.csv swept.obj --links hand
-shows 7 'undecided' "$V" --sweep "$R" path.csv a.glb --gap 1
-shows 7 'undecided' "$V" --sweep "$R" path.csv a.glb --max-cells 1
-expect 3 'none.csv' "$V" --sweep "$R" none.csv a.glb
-expect 3 'cut.urdf' "$V" --sweep cut.urdf path.csv a.glb
-expect 3 'none.glb' "$V" --sweep "$R" path.csv none.glb
-expect 2 '' "$V" --sweep "$R" path.csv
-expect 2 '' "$V" --sweep "$R" path.csv a.glb x.off
-expect 2 '' "$V" --sweep "$R" path.csv a.glb --epsilon 1
-expect 2 '' "$V" --sweep "$R" path.csv a.glb --drop-sheets
-expect 2 '' "$V" --sweep "$R" path.csv a.glb --claims solid
-expect 2 'sweep cannot be joined with --input-format' "$V" --sweep "$R" path.csv a.glb --input-format stl
-expect 2 'sweep cannot be joined with --max-contacts' "$V" --sweep "$R" path.csv a.glb --max-contacts 5
-expect 2 '' "$V" --outer shapes/t.off shapes/t.off --links hand
-expect 2 'nothing' "$V" --sweep "$R" path.csv a.glb --links nothing
-expect 4 'no-such' "$V" --sweep "$R" path.csv a.glb --report no-such/v.json
+shows 1 'refuted' "$V" sweep "$R" other.csv a.glb
+shows 1 'refuted' "$V" sweep "$R" path.csv swept.obj
+expect 0 '' "$V" sweep "$R" path.csv swept.obj --links hand
+shows 7 'undecided' "$V" sweep "$R" path.csv a.glb --gap 1
+shows 7 'undecided' "$V" sweep "$R" path.csv a.glb --max-cells 1
+expect 3 'none.csv' "$V" sweep "$R" none.csv a.glb
+expect 3 'cut.urdf' "$V" sweep cut.urdf path.csv a.glb
+expect 3 'none.glb' "$V" sweep "$R" path.csv none.glb
+expect 2 '' "$V" sweep "$R" path.csv
+expect 2 '' "$V" sweep "$R" path.csv a.glb x.off
+expect 2 '' "$V" sweep "$R" path.csv a.glb --epsilon 1
+expect 2 '' "$V" sweep "$R" path.csv a.glb --drop-sheets
+expect 2 '' "$V" sweep "$R" path.csv a.glb --claims solid
+expect 2 'unknown option --input-format' "$V" sweep "$R" path.csv a.glb --input-format stl
+expect 2 'unknown option --max-contacts' "$V" sweep "$R" path.csv a.glb --max-contacts 5
+expect 2 '' "$V" mesh --outer shapes/t.off shapes/t.off --links hand
+expect 2 'nothing' "$V" sweep "$R" path.csv a.glb --links nothing
+expect 4 'no-such' "$V" sweep "$R" path.csv a.glb --report no-such/v.json
 # Meshes as sweep-approx prepared them: a part that is inside out, a hole, a sheet beside it.
 { printf 'OFF\n7 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n5 0 0\n6 0 0\n5 1 0\n'
   printf '3 0 1 2\n3 0 3 1\n3 1 3 2\n3 4 5 6\n3 4 6 5\n'; } >robots/urdf/sheeted.off
 sed 's/u\.off/sheeted.off/' "$R" >robots/urdf/sheeted.urdf
 H=robots/urdf/sheeted.urdf
 expect 0 'A wrap takes the place of the mesh' "$S" $H --path path.csv -o x.glb --body-epsilon 5% --effort fast
-shows 0 '^verified' "$V" --sweep $H path.csv x.glb
+shows 0 '^verified' "$V" sweep $H path.csv x.glb
 expect 0 'NOT enclosed' "$S" $H --path path.csv -o sheeted.glb --drop-sheets
-expect 1 "sheeted.off: .*--prepare --drop-sheets judges that" "$V" --sweep $H path.csv sheeted.glb
-expect 1 'sheeted.off: judged as it is, .*sheets' "$V" --sweep $H path.csv sheeted.glb --prepare
+expect 1 "sheeted.off: .*--prepare --drop-sheets judges that" "$V" sweep $H path.csv sheeted.glb
+expect 1 'sheeted.off: judged as it is, .*sheets' "$V" sweep $H path.csv sheeted.glb --prepare
 shows 0 '^verified: 4 of 4 links judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
-  "$V" --sweep $H path.csv sheeted.glb --prepare --drop-sheets --report v.json
+  "$V" sweep $H path.csv sheeted.glb --prepare --drop-sheets --report v.json
 tr -d ' \n' <v.json | grep -q '"prepared":true,"dropped_sheet_triangles":{"robots/urdf/sheeted.off":2}' || fail "$(cat v.json)"
 grep -q 'meshes are not closed' out.txt && fail 'the filled hole is open'
 expect 0 'NOT enclosed' "$BIN/bcd-decompose" $H -o sheeted --drop-sheets --epsilon 1%
 shows 0 'judged; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
-  "$V" --robot $H sheeted/sheeted.urdf --prepare --drop-sheets
+  "$V" robot $H sheeted/sheeted.urdf --prepare --drop-sheets
 expect 0 'NOT enclosed' "$BIN/bcd-decompose" robots/urdf/sheeted.off -o cover.glb --drop-sheets --epsilon 1%
 shows 0 '^verified; nothing is said of the 2 triangles of sheets dropped from robots/urdf/sheeted.off$' \
-  "$V" --cover robots/urdf/sheeted.off cover.glb --prepare --drop-sheets
-"$V" --sweep "$R" path.csv a.glb --quiet >out.txt 2>err.txt || fail "quiet run"
+  "$V" cover robots/urdf/sheeted.off cover.glb --prepare --drop-sheets
+"$V" sweep "$R" path.csv a.glb --quiet >out.txt 2>err.txt || fail "quiet run"
 if [ -s out.txt ] || [ -s err.txt ]; then fail '--quiet is not quiet'; fi
 for n in 1 2; do
-  "$V" --sweep "$R" path.csv thin.glb --report "t$n.json" --threads $n >"t$n.txt"
+  "$V" sweep "$R" path.csv thin.glb --report "t$n.json" --threads $n >"t$n.txt"
   sed -i '/"resources"/,/}/d' "t$n.json"
 done
 cmp -s t1.json t2.json || fail "the report differs on two threads"

@@ -18,7 +18,7 @@ for bad in 0 -1 nan inf 1e300 1e-300 1e-12 0x10 '' 1% mm; do
   expect 2 'scale' "$B" mm.off -o none.glb "--scale=$bad"
   expect 2 'scale' "$P" mm.off -o none.ply "--scale=$bad"
   expect 2 'scale' "$H" mm.off mm.off "--scale=$bad"
-  expect 2 'scale' "$V" --outer mm.off mm.off "--scale=$bad"
+  expect 2 'scale' "$V" mesh --outer mm.off mm.off "--scale=$bad"
   expect 2 'scale' "$BIN/bmesh-replay" mm.off none.log none.ply "--scale=$bad"
   expect 2 'scale' "$S" make none.json --object a=mm.off --scale "a=$bad"
 done
@@ -54,10 +54,10 @@ expect 3 'd.log: it was made with --scale 0.001' "$BIN/bmesh-replay" mm.off d.lo
 expect 0 '' "$D" mm.off --progressive d.pm --vertices 4 --scale 0.001
 shows 0 'verified' "$V" progressive mm.off d.pm --scale 0.001
 shows 0 'verified' "$V" mesh --outer mm.off d.ply --scale 0.001
-expect 3 'd.pm: it was made with --scale 0.001' "$V" --progressive mm.off d.pm
-shows 0 'verified' "$V" --outer mm.off d.ply --scale 0.001 --report r.json
+expect 3 'd.pm: it was made with --scale 0.001' "$V" progressive mm.off d.pm
+shows 0 'verified' "$V" mesh --outer mm.off d.ply --scale 0.001 --report r.json
 grep -q '"scale": 0.001' r.json || fail "bound-verify: $(cat r.json)"
-expect 1 '' "$V" --outer mm.off d.ply
+expect 1 '' "$V" mesh --outer mm.off d.ply
 shows 0 'Hausdorff' "$H" mm.off d.ply --scale 0.001 --at-most 1e-9
 expect 1 '' "$H" mm.off d.ply --at-most 1
 expect 2 'from' "$D" --from d.pm -o none.ply --vertices 4 --scale 0.001
@@ -68,10 +68,10 @@ cmp b1.glb b2.glb || fail "another set from the cache"
 grep -q '"parameters": "--epsilon 1%.* --scale 0.001"' b1.json || fail "no scale in $(cat b1.json)"
 expect 0 '' "$B" mm.off -o b3.glb --unit mm
 cmp b1.glb b3.glb >/dev/null 2>&1 && fail "the same set for another scale"
-shows 0 'verified' "$V" --cover mm.off b1.glb --scale 0.001 --epsilon 1%
-expect 3 'b1.glb: it was made with --scale 0.001: give that here, too' "$V" --cover mm.off b1.glb
-expect 3 'b3.glb: it was made without --scale: leave that out' "$V" --cover mm.off b3.glb --scale 0.001
-shows 0 'verified' "$V" --cover mm.off b3.glb
+shows 0 'verified' "$V" cover mm.off b1.glb --scale 0.001 --epsilon 1%
+expect 3 'b1.glb: it was made with --scale 0.001: give that here, too' "$V" cover mm.off b1.glb
+expect 3 'b3.glb: it was made without --scale: leave that out' "$V" cover mm.off b3.glb --scale 0.001
+shows 0 'verified' "$V" cover mm.off b3.glb
 expect 2 'sets of bodies\|set of bodies' "$H" b1.glb mm.off --scale 1000
 # A set with a margin, measured as a mesh, is scaled as other meshes.
 python3 - <<'END' || fail "no margin to change"
@@ -98,7 +98,7 @@ expect 0 '' "$P" mm.x3d -o x.obj --scale 0.001 --unit m
 expect 3 'mm.x3d: its vertices are in mm, not in m; .*--scale' "$P" mm.x3d -o none.obj --unit m
 expect 3 'its vertices are in m, not in cm' "$P" mm.x3d -o none.obj --unit cm --scale 0.001
 expect 0 '' "$D" mm.x3d -o x.glb --vertices 4 --precision float
-shows 0 'verified' "$V" --outer mm.x3d x.glb
+shows 0 'verified' "$V" mesh --outer mm.x3d x.glb
 # Metres that are stated are a unit; X3D without one says nothing.
 sed 's/0.001/1/' mm.x3d >m.x3d
 expect 3 'its vertices are in m, not in cm' "$P" m.x3d -o none.obj --unit cm
@@ -106,16 +106,16 @@ sed 's/<unit[^>]*>//' mm.x3d >none.x3d
 expect 0 '' "$P" none.x3d -o n.obj --unit cm
 # Two units: bound-verify, hausdorff-eval, a scene.
 tetrahedron_gltf
-expect 3 'mm.x3d is in mm and t.gltf in m as read.*--scale 0.001' "$V" --outer mm.x3d t.gltf
-expect 1 '' "$V" --outer t.gltf mm.x3d --scale 1000
-shows 0 'verified' "$V" --outer mm.x3d t.gltf --scale 0.001
+expect 3 'mm.x3d is in mm and t.gltf in m as read.*--scale 0.001' "$V" mesh --outer mm.x3d t.gltf
+expect 1 '' "$V" mesh --outer t.gltf mm.x3d --scale 1000
+shows 0 'verified' "$V" mesh --outer mm.x3d t.gltf --scale 0.001
 expect 3 'mm.x3d is in mm and t.gltf in m as read.*--scale 0.001' "$H" mm.x3d t.gltf
 shows 0 'Hausdorff' "$H" mm.x3d t.gltf --scale 0.001
-expect 3 'mm.off is in mm and t.gltf in m' "$V" --outer mm.off t.gltf --unit mm
+expect 3 'mm.off is in mm and t.gltf in m' "$V" mesh --outer mm.off t.gltf --unit mm
 expect 3 'mm.off is in mm and t.gltf in m' "$H" mm.off t.gltf --unit mm
 expect 0 '' "$B" mm.x3d -o x-set.glb
-shows 0 'verified' "$V" --cover mm.x3d x-set.glb
-expect 3 't.gltf is in m and x-set.glb in mm' "$V" --cover t.gltf x-set.glb
+shows 0 'verified' "$V" cover mm.x3d x-set.glb
+expect 3 't.gltf is in m and x-set.glb in mm' "$V" cover t.gltf x-set.glb
 expect 3 't.gltf is in m and x-set.glb in mm' "$H" t.gltf x-set.glb
 expect 3 'mm.x3d: its vertices are in mm as read.*--scale' "$S" make none.json --object a=mm.x3d --no-cache
 absent none.json
@@ -134,6 +134,6 @@ expect 2 "scale: 'a' is scaled twice" "$S" make none.json --object a=mm.x3d --sc
 printf '<robot name="r"><link name="l"><collision><geometry><mesh filename="mm.off"/></geometry></collision></link></robot>' >r.urdf
 expect 2 'robot.*--scale\|--scale.*robot' "$B" r.urdf -o none --scale 0.001
 expect 2 'robot.*--scale\|--scale.*robot' "$D" r.urdf -o none --epsilon 1% --scale 0.001
-expect 2 'robot' "$V" --robot r.urdf r.urdf --scale 0.001
+expect 2 'robot' "$V" robot r.urdf r.urdf --scale 0.001
 absent none none.obj none.ply
 finish

@@ -1,4 +1,4 @@
-# bound-verify's commands: each does what its flag does, and has the options that mean something for it.
+# bound-verify's commands: each has the options that mean something for it, and is named where a flag is given instead.
 . "$(dirname "$0")/common.sh"
 V=$BIN/bound-verify
 
@@ -13,38 +13,27 @@ cube() {
 cube 0 1 >one.off
 cube -1 2 >three.off
 
-# run NAME COMMAND...: its output, code, report and witness as NAME.*
-run() {
-  name=$1
+# decides CODE COMMAND...: that exit code, and a report with the verdict; none where there is none.
+decides() {
+  code=$1
   shift
-  rm -f r.json w.obj
-  "$V" "$@" --report r.json </dev/null >"$name.out" 2>"$name.err"
-  echo $? >"$name.code"
-  sed '/"resources"/,/}/d' r.json >"$name.json" 2>/dev/null
-  cat w.obj >"$name.obj" 2>/dev/null
+  rm -f r.json
+  expect "$code" '' "$V" "$@" --report r.json
+  case $code in
+    0) grep -q '"verdict": "verified"\|"relation": "progressive"' r.json || fail "no verdict of $*: $(cat r.json)" ;;
+    1) grep -q '"verdict": "refuted"' r.json || fail "no verdict of $*: $(cat r.json)" ;;
+    7) grep -q '"verdict": "undecided"' r.json || fail "no verdict of $*: $(cat r.json)" ;;
+    *) [ ! -e r.json ] || fail "a report of $*" ;;
+  esac
 }
 
-# both CODE 'FLAGS' 'COMMAND': the same by either spelling.
-both() {
-  # shellcheck disable=SC2086
-  run flag $2
-  # shellcheck disable=SC2086
-  run command $3
-  [ "$(cat command.code)" = "$1" ] || fail "exit $(cat command.code) instead of $1: $3: $(cat command.err)"
-  for part in out err code json obj; do
-    cmp -s flag.$part command.$part || fail "$part differs: $2, $3: $(diff flag.$part command.$part | head -5)"
-  done
-}
-
-both 0 '--outer one.off three.off' 'mesh --outer one.off three.off'
-both 1 '--outer three.off one.off --witness w.obj' 'mesh three.off one.off --outer --witness w.obj'
-both 0 '--inner three.off one.off --epsilon 2' 'mesh --inner three.off one.off --epsilon 2'
-both 3 '--outer one.off nowhere.off' 'mesh --outer one.off nowhere.off'
-both 7 '--outer one.off three.off --max-contacts 1 --claims solid --epsilon 1.7320508075688772' \
-  'mesh --outer one.off three.off --max-contacts 1 --claims solid --epsilon 1.7320508075688772'
-both 0 '--cover one.off three.off --epsilon 1.74 --prepare' 'cover one.off three.off --epsilon 1.74 --prepare'
-both 1 '--cover three.off one.off --claims surface --witness w.obj' \
-  'cover three.off one.off --claims surface --witness w.obj'
+decides 0 mesh --outer one.off three.off
+decides 1 mesh three.off one.off --outer --witness w.obj
+decides 0 mesh --inner three.off one.off --epsilon 2
+decides 3 mesh --outer one.off nowhere.off
+decides 7 mesh --outer one.off three.off --max-contacts 1 --claims solid --epsilon 1.7320508075688772
+decides 0 cover one.off three.off --epsilon 1.74 --prepare
+decides 1 cover three.off one.off --claims surface --witness w.obj
 
 # robot NAME MESH: one link that turns.
 robot() {
@@ -57,20 +46,19 @@ END
 }
 robot thin one.off
 robot thick three.off
-both 0 '--robot thin.urdf thick.urdf --epsilon 2' 'robot thin.urdf thick.urdf --epsilon 2'
-both 1 '--robot thick.urdf thin.urdf' 'robot thick.urdf thin.urdf'
-both 0 '--robot thin.urdf thick.urdf --geometry visual' 'robot thin.urdf thick.urdf --visual'
+decides 0 robot thin.urdf thick.urdf --epsilon 2
+decides 1 robot thick.urdf thin.urdf
+decides 0 robot thin.urdf thick.urdf --visual
 printf '0\n0.5\n' >path.csv
-both 0 '--sweep thin.urdf path.csv three.off' 'sweep thin.urdf path.csv three.off'
-both 1 '--sweep thick.urdf path.csv one.off --claims surface --witness w.obj' \
-  'sweep thick.urdf path.csv one.off --claims surface --witness w.obj'
+decides 0 sweep thin.urdf path.csv three.off
+decides 1 sweep thick.urdf path.csv one.off --claims surface --witness w.obj
 cube -0.5 1.4 >near.off
-both 0 '--sweep thin.urdf path.csv near.off' 'sweep thin.urdf path.csv near.off'
-both 7 '--sweep thin.urdf path.csv near.off --gap 9' 'sweep thin.urdf path.csv near.off --gap 9'
-both 2 '--sweep thin.urdf path.csv three.off --links no' 'sweep thin.urdf path.csv three.off --links no'
+decides 0 sweep thin.urdf path.csv near.off
+decides 7 sweep thin.urdf path.csv near.off --gap 9
+decides 2 sweep thin.urdf path.csv three.off --links no
 "$BIN/bmesh-decimate" "$BRACKET" --vertices 900 --effort fast --progressive p.pm --quiet || fail 'decimation'
-both 0 "--progressive $BRACKET p.pm" "progressive $BRACKET p.pm"
-both 3 '--progressive one.off p.pm' 'progressive one.off p.pm'
+decides 0 progressive "$BRACKET" p.pm
+decides 3 progressive one.off p.pm
 
 # Options that mean nothing for a command, files that are missing or too many.
 refused() {
@@ -97,6 +85,24 @@ for option in '--epsilon 1' --prepare '--claims all' '--witness w.obj' '--max-co
   refused progressive "$BRACKET" p.pm $option
 done
 expect 2 'unknown option --esilon; did you mean --epsilon' "$V" cover one.off three.off --esilon 1
+expect 2 'unknown option --esilon; did you mean --epsilon' "$V" mesh --outer one.off three.off --esilon 1
+expect 2 'unknown option --wrong (see bound-verify mesh --help)' "$V" mesh one.off three.off --inner --wrong
+
+# A flag instead of a command: one error, which names the command.
+instead() {
+  command=$1
+  shift
+  expect 2 "a command is to come first: instead of $1, bound-verify $command" "$V" "$@"
+  [ "$(wc -l <err.txt)" = 1 ] || fail "more than one line: $(cat err.txt)"
+}
+instead 'mesh --outer ORIGINAL RESULT' --outer one.off three.off
+instead 'mesh --inner ORIGINAL RESULT' --inner three.off one.off --epsilon 2
+instead 'cover ORIGINAL SET' --cover one.off three.off --prepare
+instead 'robot ORIGINAL RESULT' --robot thin.urdf thick.urdf
+instead 'sweep ROBOT PATH SWEPT' --sweep thin.urdf path.csv three.off
+instead 'progressive ORIGINAL FILE' --progressive "$BRACKET" p.pm
+expect 2 'instead of --cover, bound-verify cover ORIGINAL SET' "$V" one.off --quiet three.off --cover
+expect 2 'instead of --cover, bound-verify cover ORIGINAL SET' "$V" mesh-a.off three.off --cover
 refused mesh one.off three.off
 refused mesh --outer --inner one.off three.off
 refused mesh --outer one.off
@@ -107,15 +113,14 @@ refused sweep thin.urdf path.csv three.off one.off
 refused progressive p.pm
 refused --quiet mesh --outer one.off three.off
 
-# Files may be called like commands, but for the first.
+# Files may be called like commands.
 cp three.off cover
 shows 0 '^verified$' "$V" mesh --outer one.off cover --approximation-format off
-shows 0 '^verified$' "$V" --outer one.off cover --approximation-format off
-shows 1 '^refuted$' "$V" --outer ./cover one.off --input-format off
+shows 1 '^refuted$' "$V" mesh --outer ./cover one.off --input-format off
 
 # Each command's help: its own options and files.
 shows 0 'bound-verify sweep ROBOT PATH SWEPT' "$V" --help
-grep -q -- '--cover$' out.txt || fail "no flags in the help: $(cat out.txt)"
+grep -qE -- '^ *--(cover|robot|sweep)' out.txt && fail "flags in the help: $(cat out.txt)"
 for command in mesh cover robot sweep progressive; do
   for width in 80 100; do
     shows 0 'Exit codes' env COLUMNS=$width "$V" $command --help

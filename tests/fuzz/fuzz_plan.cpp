@@ -52,7 +52,7 @@ void try_text(const Text& text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::array kLanguages = {Language::Kpl, Language::Pddl, Language::Xml};
+  constexpr std::array kLanguages = {Language::Kpl, Language::Pddl};
   if (size == 0) return 0;
   const Text text{"fuzz", std::string(reinterpret_cast<const char*>(data) + 1, size - 1),
                   kLanguages[data[0] % kLanguages.size()]};

@@ -10,29 +10,25 @@
 namespace {
 
 // Its actions take one of two things; what is weighed branches.
-constexpr const char* kDomain = R"(<pks>
-  <domain name="weighing">
-    <symbols>
-      <predicates>held/1, heavy/1</predicates>
-      <constants>a, b</constants>
-    </symbols>
-    <action name="take"><params>?o</params><preconds>K(!held(?o))</preconds>
-      <effects>add(Kf, held(?o));</effects></action>
-    <action name="weigh"><params>?o</params><preconds>K(held(?o))</preconds>
-      <effects>add(Kw, heavy(?o));</effects></action>
-  </domain>
-  <problem name="both">
-    <init>add(Kf, !held(a)); add(Kf, !held(b));</init>
-    <goal>K(held(a)) ^ K(held(b))</goal>
-  </problem>
-</pks>)";
+constexpr const char* kDomain = R"(
+predicates: held(object), heavy(object)
+constants: a, b
+action take(?o : object)
+  preconds: K(!held(?o))
+  effects: add(Kf, held(?o))
+action weigh(?o : object)
+  preconds: K(held(?o))
+  effects: add(Kw, heavy(?o))
+init: K(!held(a)), K(!held(b))
+goal: K(held(a)) & K(held(b))
+)";
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kaboum;
   static const plan::Model model =
-      plan::load({"weighing.xml", kDomain, plan::Language::Xml}, nullptr);
+      plan::load({"weighing.kpl", kDomain, plan::Language::Kpl}, nullptr);
   const std::string text(reinterpret_cast<const char*>(data), size);
   fuzz::survive([&] {
     const plan::Plan p = plan::read_plan(model, text, "fuzz");

@@ -358,10 +358,8 @@ TEST(Shells, AHoleAtASharedWallIsRefusedOrSaid) {
   EXPECT_TRUE(doubt_about(open.report).empty());
 }
 
-// A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined
-// through a neck along which it turns inside out.
-TEST(Shells, ALobeInsideOutIsNoted) {
-  // A prism over a bow tie: the crossing square of the smaller lobe is inside out.
+/// A prism over a bow tie: the smaller one of its lobes is inside out.
+Mesh bow_tie() {
   Mesh mesh;
   for (const double z : {0.0, 1.0})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {4.0, 3.0}, {4.0, 0.0}, {0.0, 1.0}})
@@ -372,9 +370,40 @@ TEST(Shells, ALobeInsideOutIsNoted) {
     mesh.triangles.push_back({k, n + 4, k + 4});
   }
   mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}});
-  const Prepared p = prepare(mesh);
+  return mesh;
+}
+
+// A closed surface that crosses itself, most of it oriented outwards: two boxes as one, joined
+// through a neck along which it turns inside out.
+TEST(Shells, ALobeInsideOutIsNoted) {
+  const Prepared p = prepare(bow_tie());
   EXPECT_TRUE(p.solid.closed());
   EXPECT_TRUE(notes_hollow(p));
+}
+
+// Within a box a lobe that is inside out takes from the box's solid: w = 0 there, as in a cavity.
+TEST(Shells, ALobeInsideOutWithinABoxIsNoted) {
+  Mesh turned = bow_tie();
+  for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+  const auto moved = [](Mesh mesh) {
+    for (Vec3& v : mesh.vertices) v += Vec3(3, 4, 2);
+    return mesh;
+  };
+  const Mesh box = mesh_of({{0, 0, 0}, {10, 10, 10}}, {}, false);
+  for (const Mesh& bow : {bow_tie(), turned}) {
+    const Prepared p = prepare(kaboum::test::merged({box, moved(bow)}));
+    EXPECT_TRUE(notes_hollow(p));
+    ASSERT_TRUE(p.report.hollow);
+    const auto w = kaboum::test::winding_number_slow(p.solid.mesh(), *p.report.hollow);
+    EXPECT_EQ(w.value_or(9), 0);
+    EXPECT_FALSE(doubt_about(p.report).empty());
+  }
+  // Twice within: the solid holds the lobe all the same.
+  const Mesh inner = mesh_of({{1, 1, 1}, {9, 9, 9}}, {}, false);
+  EXPECT_FALSE(notes_hollow(prepare(kaboum::test::merged({box, inner, moved(bow_tie())}))));
+  // A cavity is none.
+  const Mesh cavity = mesh_of({{1, 1, 1}, {9, 9, 9}, true}, {}, false);
+  EXPECT_FALSE(notes_hollow(prepare(kaboum::test::merged({box, cavity}))));
 }
 
 // Walls of boxes without common grids lie in each other in part: what stays inside out is refused

@@ -25,16 +25,6 @@ TEST(Convert, KplIsAFixedPoint) {
   }
 }
 
-TEST(Convert, XmlIsReadAndWritten) {
-  const std::string xml = data("sensing.xml");
-  const std::string plan = plan_of(xml, Language::Xml);
-  EXPECT_NE(plan.find("if spillable(o1):"), std::string::npos);
-  const std::string kpl = convert({"d.xml", xml, Language::Xml}, nullptr, Language::Kpl);
-  EXPECT_EQ(plan_of(kpl, Language::Kpl), plan);
-  const std::string again = convert({"d.kpl", kpl, Language::Kpl}, nullptr, Language::Xml);
-  EXPECT_EQ(plan_of(again, Language::Xml), plan);
-}
-
 TEST(Convert, PddlIsReadAndWritten) {
   const std::string pddl = data("blocks.pddl");
   const std::string plan = plan_of(pddl, Language::Pddl);
@@ -151,26 +141,11 @@ TEST(Convert, ObjectMayBeOneTypeAmongOthers) {
   EXPECT_EQ(plan_of(again, Language::Kpl), plan) << again;
 }
 
-TEST(Convert, XmlErrorsNameLineAndColumn) {
-  const std::string message = complaint(
-      "<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols>\n"
-      " <action name=\"a\">\n  <preconds>K(zz)</preconds>\n  <effects>add(Kf, p)</effects>\n"
-      " </action></domain>\n<problem><goal>K(p)</goal></problem></pks>",
-      Language::Xml);
-  EXPECT_NE(message.find(":3:15: error: unknown predicate 'zz'"), std::string::npos) << message;
-  const std::string updates = complaint(
-      "<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols></domain>\n"
-      "<problem><goal>K(p)</goal>\n<updates>K(p) => add(Kf, p)</updates></problem></pks>",
-      Language::Xml);
-  EXPECT_NE(updates.find(":3:1: error: <updates> are not supported"), std::string::npos) << updates;
-}
-
 TEST(Convert, NamesWhatCannotBeSaid) {
   const Text d{"d.kpl",
                slurp(std::string(KABOUM_DOMAINS) + "/remove/domain.kpl") + made("remove", "2"),
                Language::Kpl};
   EXPECT_THROW(convert(d, nullptr, Language::Pddl), Error);
-  EXPECT_THROW(convert(d, nullptr, Language::Xml), Error);
 }
 
 TEST(Show, TextOfAChainOfVeryManyBranchesIsALimit) {

@@ -60,10 +60,7 @@ TEST(Hostile, MutatedScenarios) {
     mutate(whole(name, "2"), Language::Kpl, seed++, 150);
 }
 
-TEST(Hostile, MutatedXmlAndPddl) {
-  const Text d{"d.kpl", whole("force-sensing", "2"), Language::Kpl};
-  std::string xml = slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/sensing.xml");
-  mutate(xml, Language::Xml, 7, 300);
+TEST(Hostile, MutatedPddl) {
   mutate(slurp(std::string(KABOUM_DOMAINS) + "/../../tests/plan/data/blocks.pddl"), Language::Pddl,
          8, 300);
 }
@@ -75,11 +72,7 @@ TEST(Hostile, DeepNestingAndOddTexts) {
   survive(std::string(100000, '('), Language::Pddl);
   survive("", Language::Kpl);
   survive("", Language::Pddl);
-  survive("", Language::Xml);
   survive(std::string("goal: K(p\0)", 11), Language::Kpl);
-  std::string nested;
-  for (int i = 0; i < 5000; ++i) nested += "<a>";
-  survive(nested, Language::Xml);
 }
 
 /// Sizes that are no nonsense to the parser but would exhaust what comes after it.
@@ -104,13 +97,8 @@ TEST(Hostile, LargeButFlat) {
           Language::Kpl);
   std::string actions;
   for (int i = 0; i < 20'000; ++i)
-    actions += "<action name=\"a" + std::to_string(i) +
-               "\">\n"
-               "<params></params>\n<preconds>K(p)</preconds>\n"
-               "<effects>add(Kf, p)</effects>\n</action>\n";
-  survive("<pks><domain name=\"d\"><symbols><predicates>p</predicates></symbols>\n" + actions +
-              "</domain><problem><goal>K(p)</goal></problem></pks>",
-          Language::Xml);
+    actions += "action a" + std::to_string(i) + " preconds: K(p) effects: add(Kf, p)\n";
+  survive("predicates: p\n" + actions + "goal: K(p)", Language::Kpl);
   std::string conjunction = "goal: K(p)";
   for (int i = 0; i < 100'000; ++i) conjunction += " & K(p)";
   survive("predicates: p\n" + conjunction, Language::Kpl);

@@ -68,11 +68,7 @@ inline constexpr std::array kAll = {Algorithm::DepthFirst, Algorithm::BreadthFir
 /// The message of the error that loading raises.
 inline std::string complaint(const std::string& text, Language language = Language::Kpl) {
   try {
-    load({"bad." + std::string(language == Language::Kpl    ? "kpl"
-                               : language == Language::Pddl ? "pddl"
-                                                            : "xml"),
-          text, language},
-         nullptr);
+    load({language == Language::Kpl ? "bad.kpl" : "bad.pddl", text, language}, nullptr);
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
     return e.what();

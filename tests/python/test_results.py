@@ -32,6 +32,20 @@ def test_nothing_is_enclosed_by_nothing():
         assert kaboum.verify_mesh(within, solid, claims="solid").answer == "undefined"
 
 
+def test_what_cannot_be_prepared_is_judged_as_it_is():
+    """A sheet, whose triangle stands in both orientations."""
+    solid = (np.array([[-1.0, -1, -1], [9, -1, -1], [-1, 9, -1], [-1, -1, 9]]),
+             np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+    sheet = (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 1]]))
+    for verdict in (kaboum.verify_mesh(sheet, solid, prepare=True), kaboum.verify_cover(sheet, [solid], prepare=True)):
+        assert verdict and any("judged as it is" in note for note in verdict.notes)
+    out = (sheet[0] * 20, sheet[1])
+    for verdict in (kaboum.verify_mesh(out, solid, prepare=True), kaboum.verify_cover(out, [solid], prepare=True)):
+        assert verdict.answer == "refuted" and verdict.claims["surface"]["answer"] == "refuted"
+    with pytest.raises(kaboum.Error, match="sheet"):
+        kaboum.verify_mesh(sheet, solid, relation="inner", prepare=True)
+
+
 def test_outer_and_inner(ring):
     volume = signed_volume(*ring)
     outer = kaboum.decimate(ring, epsilon="2%", verify=True)

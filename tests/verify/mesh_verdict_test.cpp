@@ -2,9 +2,11 @@
 #include <kaboum/verify/mesh_verdict.h>
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/inclusion.h>
+#include <kaboum/verify/subject.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +53,101 @@ TEST(MeshVerdict, DepthsAreMeasuredWhereRefuted) {
   EXPECT_GT(refuted.surface_depth->lower, 1.7);
   const MeshVerdict verified = decided(small, large, Relation::Outer);
   EXPECT_FALSE(verified.solid_depth || verified.surface_depth);
+}
+
+// Triangles that close a hole may reach out: they bound the solid, but are none of the file's.
+TEST(MeshVerdict, TrianglesThatCloseHolesNeedNotLieInside) {
+  verify::Subject subject;
+  subject.mesh = cube(0, 1);
+  const auto first = static_cast<std::uint32_t>(subject.mesh.vertices.size());
+  for (const Vec3& corner : {Vec3{0.5, 0.5, 0.5}, Vec3{0.6, 0.5, 0.5}, Vec3{0.5, 0.5, 5}})
+    subject.mesh.vertices.push_back(corner);
+  subject.mesh.triangles.push_back({first, first + 1, first + 2});
+  subject.mesh.triangles.push_back({first, first + 2, first + 1});
+  const auto decided_of = [&](const Mesh& result) {
+    return verify::decide({.original = subject.mesh,
+                           .approximation = result,
+                           .set = nullptr,
+                           .relation = Relation::Outer,
+                           .subject = &subject});
+  };
+  EXPECT_EQ(decided_of(cube(-1, 2)).answer, Answer::Refuted);
+  subject.filled_triangles = 2;
+  EXPECT_EQ(decided_of(cube(-1, 2)).answer, Answer::Verified);
+  EXPECT_EQ(decided_of(cube(0.25, 2)).answer, Answer::Refuted);
+}
+
+// Where preparing refuses the triangles, all of them are to be held, and all that they wind round.
+TEST(MeshVerdict, SubjectsThatCannotBePrepared) {
+  Mesh file = verify::turned(cube(0, 1));
+  for (const Vec3& v : {Vec3(2, 0, 0), Vec3(3, 0, 0), Vec3(2, 1, 0)}) file.vertices.push_back(v);
+  const auto first = static_cast<std::uint32_t>(file.vertices.size() - 3);
+  file.triangles.push_back({first, first + 1, first + 2});
+  file.triangles.push_back({first, first + 2, first + 1});
+  const verify::Subject subject = verify::prepared_subject(file, {.holes = geom::Holes::Fill});
+  EXPECT_NE(subject.refusal.find("sheets"), std::string::npos) << subject.refusal;
+  const auto decided_of = [&](const Mesh& approximation) {
+    MeshQuestion question{subject.mesh, approximation};
+    question.subject = &subject;
+    return verify::decide(question);
+  };
+  EXPECT_EQ(decided_of(cube(-1, 4)).answer, Answer::Verified);
+  const MeshVerdict box_only = decided_of(cube(-0.5, 1.5));
+  EXPECT_EQ(box_only.answer, Answer::Refuted);
+  EXPECT_EQ(box_only.inclusion.surface.inner_triangles.size(), 2U);
+  Mesh hollow = cube(-1, 4);
+  const Mesh cavity = verify::turned(cube(0.25, 0.75));
+  for (const auto& t : cavity.triangles) {
+    const auto n = static_cast<std::uint32_t>(cube(-1, 4).vertices.size());
+    hollow.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+  }
+  hollow.vertices.insert(hollow.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
+  const MeshVerdict holed = decided_of(hollow);
+  EXPECT_EQ(holed.inclusion.surface.answer, Answer::Verified);
+  EXPECT_EQ(holed.inclusion.solid.answer, Answer::Refuted);
+  ASSERT_TRUE(holed.solid_depth);
+  EXPECT_GT(holed.solid_depth->lower, 0.2);
+  EXPECT_THROW(
+      (void)verify::prepared_subject(Mesh{}, {.drop_sheets = true, .holes = geom::Holes::Fill}),
+      Error);
+}
+
+// What preparing leaves out is judged as well, and named.
+TEST(MeshVerdict, TrianglesBesideThePreparedOnes) {
+  const Mesh original = cube(0, 1), approximation = cube(-1, 2);
+  verify::Subject subject;
+  subject.has_more = true;
+  subject.triangles = original;
+  MeshQuestion question{original, approximation};
+  question.subject = &subject;
+  EXPECT_EQ(verify::decide(question).answer, Answer::Verified);
+  const auto first = static_cast<std::uint32_t>(subject.triangles.vertices.size());
+  for (const Vec3& v : {Vec3(0, 0, 0), Vec3(5, 0, 0), Vec3(0, 1, 0)})
+    subject.triangles.vertices.push_back(v);
+  subject.triangles.triangles.push_back({first, first + 1, first + 2});
+  const MeshVerdict verdict = verify::decide(question);
+  EXPECT_EQ(verdict.answer, Answer::Refuted);
+  EXPECT_EQ(verdict.inclusion.solid.answer, Answer::Verified);
+  ASSERT_TRUE(verdict.surface_of_all && verdict.surface_depth);
+  EXPECT_NEAR(verdict.surface_depth->upper, 3, 0.01);
+  EXPECT_EQ(verify::offending_triangles(question, verdict).triangles.size(), 1U);
+}
+
+// Of a quad that is not plane both ways to split it are to be held.
+TEST(MeshVerdict, OtherWaysToSplitQuads) {
+  Mesh file;
+  file.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}};
+  file.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}};
+  geom::PrepareOptions options{.holes = geom::Holes::Fill};
+  options.quads = {0};
+  options.diagonal = geom::PrepareOptions::Diagonal::Outward;
+  const verify::Subject subject = verify::prepared_subject(file, options);
+  ASSERT_FALSE(subject.refusal.empty());
+  ASSERT_TRUE(subject.has_more);
+  const std::vector<geom::Triangle>& all = subject.triangles.triangles;
+  ASSERT_EQ(all.size(), 6U);
+  EXPECT_EQ(all[4], (geom::Triangle{1, 2, 3}));
+  EXPECT_EQ(all[5], (geom::Triangle{1, 3, 0}));
 }
 
 // The margin of a cover is taken off what sticks out, and the claim knows of it.

@@ -81,7 +81,8 @@ TEST(Checker, FindsTheContactsThatAllPairsInRationalNumbersFind) {
 /// The pairs in contact by the places of all items, without what leaves out pairs beforehand.
 std::set<std::string> contacts_of_all_pairs(const Checker& checker, const WorldState& state) {
   std::map<Item, collide::PosedSet> at;
-  for (const Checker::Placed& placed : checker.places(state)) at.emplace(placed.item, placed.place);
+  for (const Checker::PosedItem& placed : checker.places(state))
+    at.emplace(placed.item, placed.place);
   std::set<std::string> out;
   for (const auto& [a, b] : checker.pairs(state, {}))
     if (find_collision(at.at(a), at.at(b)))
@@ -150,7 +151,7 @@ TEST(Checker, PlacesAreThoseOfKinematicsFarFromTheOriginAndFixedBesides) {
     WorldState state = initial_state(world);
     state.q[0] = random_values(random, 3);
     const auto links = robot::forward(arm.kinematics, state.q[0]);
-    for (const Checker::Placed& placed : checker.places(state)) {
+    for (const Checker::PosedItem& placed : checker.places(state)) {
       const std::uint32_t link = arm.shapes[placed.item.index].link;
       const Transform expected = arm.base * links[link];
       for (const Vec3& p : checker.hull_of(placed.item))

@@ -203,7 +203,7 @@ TEST(Errors, GrowWithJointValues) {
     const long double angle =
         static_cast<long double>(joint.multiplier) * q + static_cast<long double>(joint.offset);
     const auto c = std::cos(angle), s = std::sin(angle);
-    for (const Checker::Placed& placed : checker.places(state)) {
+    for (const Checker::PosedItem& placed : checker.places(state)) {
       if (world.robots[0].shapes[placed.item.index].link != 3) continue;
       for (const Vec3& p : checker.hull_of(placed.item)) {
         const long double x = 2 + static_cast<long double>(p.x()), y = p.y();

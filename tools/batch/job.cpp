@@ -54,8 +54,10 @@ std::vector<std::string> lines_of(const std::string& file) {
   return lines;
 }
 
+constexpr const char* kJournals = ".kaboum-batch";  ///< folder of them, in that of a batch
+
 /// A file to work on, and what it is called.
-struct Found {
+struct InputFile {
   std::string name;
   fs::path path;
 };
@@ -65,16 +67,44 @@ bool is_input(const fs::path& path) {
   return extension == ".urdf" || io::format_from_name(extension).has_value();
 }
 
-void add_folder(const fs::path& folder, const fs::path& results, std::vector<Found>& found) {
+/// Whether a folder holds what a batch made, this one or another.
+bool is_of_batch(const fs::path& path) {
+  const fs::path name = path.filename();
+  std::error_code error;
+  return (name == "results" || name == "pictures" || name == kJournals) &&
+         fs::is_directory(path.parent_path() / kJournals, error);
+}
+
+void add_folder(const fs::path& folder, const JobOptions& options, std::vector<InputFile>& found) {
   std::error_code error;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
   if (error) throw Error(ErrorCode::InvalidInput, folder.string() + ": " + error.message());
   for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
     const fs::path& path = it->path();
-    if (it->is_directory(error) && fs::equivalent(path, results, error))
+    const bool directory = it->is_directory(error);
+    if (directory && fs::equivalent(path, options.results, error)) {
       it.disable_recursion_pending();
-    else if (it->is_regular_file(error) && is_input(path))
+    } else if (directory && is_of_batch(path)) {
+      it.disable_recursion_pending();
+      if (options.note && path.filename() == "results")
+        options.note(path.string() + ": left out, for these are results of a batch");
+    } else if (it->is_regular_file(error) && is_input(path)) {
       found.push_back({path.lexically_relative(folder).generic_string(), path});
+    }
+  }
+}
+
+/// @throws Error{InvalidArgument} when inputs lie where results are written.
+void require_no_results(const std::vector<InputFile>& found, const fs::path& batch) {
+  std::error_code error;
+  const fs::path results = fs::weakly_canonical(batch / "results", error);
+  for (const InputFile& f : found) {
+    const fs::path input = fs::weakly_canonical(f.path, error);
+    if (std::mismatch(results.begin(), results.end(), input.begin(), input.end()).first ==
+        results.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  f.path.string() + " lies in " + (batch / "results").string() +
+                      ", where this batch writes its results; give another --output");
   }
 }
 
@@ -86,26 +116,27 @@ std::string name_of(const fs::path& path) {
   return name.generic_string();
 }
 
-void add_list(const fs::path& list, std::vector<Found>& found) {
+void add_list(const fs::path& list, std::vector<InputFile>& found) {
   for (const std::string& line : lines_of(list.string())) {
     if (line.empty() || line.starts_with('#')) continue;
     found.push_back({name_of(line), list.parent_path() / line});
   }
 }
 
-std::vector<Found> find_inputs(const JobOptions& options) {
-  std::vector<Found> found;
+std::vector<InputFile> find_inputs(const JobOptions& options) {
+  std::vector<InputFile> found;
   for (const std::string& text : options.inputs) {
     const fs::path input(text);
     std::error_code error;
     if (fs::is_directory(input, error))
-      add_folder(input, options.results, found);
+      add_folder(input, options, found);
     else if (input.extension() == ".txt")
       add_list(input, found);
     else
       found.push_back({input.filename().string(), input});
   }
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+  require_no_results(found, options.results);
+  std::sort(found.begin(), found.end(), [](const InputFile& a, const InputFile& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
   });
   for (std::size_t i = 1; i < found.size(); ++i)
@@ -202,7 +233,7 @@ std::string Job::key() const {
 
 std::vector<Job> find_jobs(const JobOptions& options) {
   std::vector<Job> jobs;
-  for (const Found& found : find_inputs(options)) {
+  for (const InputFile& found : find_inputs(options)) {
     const auto rule = std::find_if(options.rules.begin(), options.rules.end(), [&](const Rule& r) {
       return fnmatch(r.pattern.c_str(), found.name.c_str(), 0) == 0;
     });

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,12 +62,15 @@ struct JobOptions {
   std::string extension;            ///< of results; empty: by program
   fs::path results;                 ///< folder of the batch, whose files are no inputs
   std::optional<Shard> shard;       ///< only the jobs of this part
+  std::function<void(const std::string& text)> note;  ///< what a user should know; may be empty
 };
 
 /// A job for each input that matches a rule, in the order of their names. Of folders all that is in
-/// them and can be read, a robot's meshes as well, but not xacro, which may be parts of robots; of
-/// lists (.txt) a file for each line, relative to the list. A part may have no job.
-/// @throws Error{InvalidInput} when a list or folder cannot be read, or nothing matches.
+/// them and can be read, a robot's meshes as well, but not xacro, which may be parts of robots, nor
+/// the results of batches; of lists (.txt) a file for each line, relative to the list. A part may
+/// have no job.
+/// @throws Error{InvalidInput} when a list or folder cannot be read, or nothing matches;
+///   Error{InvalidArgument} when a file lies where the results are written.
 std::vector<Job> find_jobs(const JobOptions& options);
 
 }  // namespace kaboum::batch

@@ -216,15 +216,6 @@ class DocumentParser {
   syntax::Document document_;
 };
 
-/// What `read` makes of a text that must end there.
-template <class Read>
-auto whole(const Source& source, Read read) {
-  TokenStream in(source);
-  auto result = read(in);
-  if (!in.at_end()) in.location().fail("unexpected " + in.found());
-  return result;
-}
-
 }  // namespace
 
 syntax::Document parse_kpl(std::shared_ptr<const Source> source) {
@@ -232,38 +223,6 @@ syntax::Document parse_kpl(std::shared_ptr<const Source> source) {
   syntax::Document document = DocumentParser(in).document();
   document.sources.push_back(std::move(source));
   return document;
-}
-
-syntax::Formula kpl_piece::formula(const Source& source) {
-  return whole(source, [](TokenStream& in) { return FormulaParser(in).formula(); });
-}
-
-std::vector<Effect> kpl_piece::effects(const Source& source) {
-  return whole(source, [](TokenStream& in) {
-    FormulaParser formulas(in);
-    return EffectParser(in, formulas).effects();
-  });
-}
-
-std::vector<Effect> kpl_piece::initial(const Source& source) {
-  return whole(source, [](TokenStream& in) {
-    FormulaParser formulas(in);
-    return EffectParser(in, formulas).initial();
-  });
-}
-
-std::vector<TypedVariable> kpl_piece::parameters(const Source& source) {
-  return whole(source, [](TokenStream& in) {
-    return in.at_end() ? std::vector<TypedVariable>{} : FormulaParser(in).parameters();
-  });
-}
-
-std::vector<syntax::Signature> kpl_piece::signatures(const Source& source) {
-  return whole(source, [](TokenStream& in) { return DocumentParser(in).signatures(); });
-}
-
-std::vector<TypedVariable> kpl_piece::constants(const Source& source) {
-  return whole(source, [](TokenStream& in) { return DocumentParser(in).constants(); });
 }
 
 }  // namespace kaboum::plan

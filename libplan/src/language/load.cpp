@@ -6,7 +6,6 @@
 #include "language/kpl_printer.h"
 #include "language/pddl.h"
 #include "language/resolve.h"
-#include "language/xml.h"
 
 namespace kaboum::plan {
 namespace {
@@ -21,8 +20,6 @@ syntax::Document parse(const Text& text) {
       return parse_kpl(std::move(source));
     case Language::Pddl:
       return parse_pddl(std::move(source));
-    case Language::Xml:
-      return parse_xml(std::move(source));
   }
   throw Error(ErrorCode::InvalidArgument, "unknown language");
 }
@@ -56,7 +53,6 @@ std::optional<Language> language_from_name(std::string_view file_name) {
   const auto ends = [&](std::string_view e) { return file_name.ends_with(e); };
   if (ends(".kpl")) return Language::Kpl;
   if (ends(".pddl")) return Language::Pddl;
-  if (ends(".xml") || ends(".pks")) return Language::Xml;
   return std::nullopt;
 }
 
@@ -78,8 +74,6 @@ std::string convert(const Text& domain, const Text* problem, Language to) {
   switch (to) {
     case Language::Kpl:
       return checked_kpl(print_kpl(d), domain.name);
-    case Language::Xml:
-      return print_xml(d);
     case Language::Pddl:
       return print_pddl(d);
   }

@@ -11,8 +11,7 @@ std::string Source::diagnostic(std::size_t offset, std::string_view message) con
   const std::size_t begin = newline == std::string::npos ? 0 : newline + 1;
   const std::size_t end = std::min(text.find('\n', begin), text.size());
   const auto line =
-      static_cast<std::ptrdiff_t>(first_line) +
-      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
 
   // Shown are at most kWidth bytes around the place; bytes that a terminal might obey become '?'.
   constexpr std::size_t kWidth = 120;

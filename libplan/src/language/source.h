@@ -15,7 +15,6 @@ inline constexpr int kMaximumNesting = 200;
 struct Source {
   std::string name;
   std::string text;
-  std::size_t first_line = 1;  ///< number of the text's first line in the file
 
   /// "name:line:column: error: message", the line itself, and a caret under the column.
   [[nodiscard]] std::string diagnostic(std::size_t offset, std::string_view message) const;

@@ -8,7 +8,7 @@
 
 #include "language/source.h"
 
-/// The syntax tree that every reader (kpl, XML, PDDL) produces, the resolver checks, and the kpl
+/// The syntax tree that every reader (kpl, PDDL) produces, the resolver checks, and the kpl
 /// printer writes. Names are still text; nothing has been looked up.
 namespace kaboum::plan::syntax {
 

@@ -22,7 +22,7 @@ class AStarSearch {
         store_(words_),
         scratch_(in.task.layout()) {}
 
-  Found run() {
+  SearchResult run() {
     // A target may hold in states that are no goal states of the task (a known sub-plan): the
     // estimate only speaks of the goal, so it guides there but proves nothing. Without sensing both
     // are the same.
@@ -99,7 +99,7 @@ class AStarSearch {
     return store_.bytes() + info_.capacity() * sizeof(Info) + most_open_ * sizeof(Open);
   }
 
-  Found finish(Outcome outcome) {
+  SearchResult finish(Outcome outcome) {
     in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
     in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
     found_.outcome = outcome;
@@ -116,11 +116,11 @@ class AStarSearch {
   std::uint64_t order_ = 0;
   std::size_t most_open_ = 0;
   std::vector<OperatorId> steps_;
-  Found found_;
+  SearchResult found_;
 };
 
 }  // namespace
 
-Found a_star(const SearchInput& in) { return AStarSearch(in).run(); }
+SearchResult a_star(const SearchInput& in) { return AStarSearch(in).run(); }
 
 }  // namespace kaboum::plan

@@ -76,12 +76,12 @@ std::optional<std::pair<Index, OperatorId>> last_step(const SearchInput& in,
 
 }  // namespace
 
-Found breadth_first(const SearchInput& in) {
+SearchResult breadth_first(const SearchInput& in) {
   const Index n = in.task.layout().words();
   StateStore store(n);
   Knowledge scratch(in.task.layout());
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), kNone, 0);
-  Found found;
+  SearchResult found;
   if (in.target.reached(in.start.data())) {
     found.outcome = Outcome::Solved;
     return found;
@@ -124,11 +124,11 @@ Found breadth_first(const SearchInput& in) {
   return found;
 }
 
-Found depth_first(const SearchInput& in) {
+SearchResult depth_first(const SearchInput& in) {
   const Index n = in.task.layout().words();
   StateStore store(n);
   Knowledge scratch(in.task.layout());
-  Found found;
+  SearchResult found;
   struct Frame {
     Index state;
     std::vector<OperatorId> steps;
@@ -200,12 +200,12 @@ Found depth_first(const SearchInput& in) {
 /// Depth-first within a growing depth limit. A state is searched again only with more depth left
 /// than ever before, so each round is at most as long as a breadth-first search of the same depth
 /// and the plan has the fewest steps. A round that reaches no new state proves that there is none.
-Found iterative_deepening(const SearchInput& in) {
+SearchResult iterative_deepening(const SearchInput& in) {
   const Index n = in.task.layout().words();
   StateStore store(n);  // link.step: most depth left with which it was searched
   Knowledge state(in.task.layout());
   state.keep_log(true);
-  Found found;
+  SearchResult found;
   store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), 0, 0);
   if (in.target.reached(in.start.data())) {
     found.outcome = Outcome::Solved;

@@ -194,7 +194,7 @@ Outcome ContingentPlanner::solve(const State& start, Index& entry, ConflictSet& 
   Outcome outcome = Outcome::Limit;
   while (true) {
     ++statistics_.searches;
-    const Found found = search_({task_, start, *this, limits_, statistics_, heuristics_});
+    const SearchResult found = search_({task_, start, *this, limits_, statistics_, heuristics_});
     if (found.outcome != Outcome::Solved) {
       outcome = found.outcome;
       break;

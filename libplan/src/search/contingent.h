@@ -24,7 +24,7 @@ namespace kaboum::plan {
 /// happen need no plan. docs/planning/search.md.
 class ContingentPlanner final : private Target {
  public:
-  using SearchFunction = Found (*)(const SearchInput&);
+  using SearchFunction = SearchResult (*)(const SearchInput&);
 
   ContingentPlanner(Task& task, SearchFunction search, const Assumptions& assumptions,
                     Limits& limits, Statistics& statistics);

@@ -21,7 +21,7 @@ class Engine {
   /// @param besides  bytes that others hold, for the limit of memory
   /// @return what it has found, if it ends within that; Outcome::Limit and no reason in the limits
   /// where it alone needs too much memory.
-  virtual std::optional<Found> advance(std::uint64_t work, std::size_t besides) = 0;
+  virtual std::optional<SearchResult> advance(std::uint64_t work, std::size_t besides) = 0;
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
@@ -36,6 +36,6 @@ std::unique_ptr<Engine> width_engine(const SearchInput& in);
 /// Both, which take turns that become longer, estimates first.
 /// @param first  work of the first turns
 /// @pre without sensing and external functions.
-Found take_turns(const SearchInput& in, std::uint64_t first);
+SearchResult take_turns(const SearchInput& in, std::uint64_t first);
 
 }  // namespace kaboum::plan

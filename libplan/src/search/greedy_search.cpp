@@ -61,13 +61,13 @@ class GreedySearch final : public Engine {
     open_.push(kRelaxed, 0, 0);
   }
 
-  std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
+  std::optional<SearchResult> advance(std::uint64_t work, std::size_t besides) override {
     besides_ = besides;
     turn_ = work;
     for (pause_ = work_ + turn_; work_ < pause_;) {
       if (open_.empty()) return finish(Outcome::Unsolvable);
       const Index item = open_.pop();
-      Taken taken{item, true, false};
+      Expansion taken{item, true, false};
       if ((item & kStep) != 0) taken = take(waiting_[item & ~kStep]);
       if (taken.reached) return finish(Outcome::Solved);
       if (!taken.fresh) {
@@ -103,7 +103,7 @@ class GreedySearch final : public Engine {
     bool preferred = false;
   };
 
-  struct Taken {
+  struct Expansion {
     Index state = kNone;
     bool fresh = false;
     bool reached = false;
@@ -126,7 +126,7 @@ class GreedySearch final : public Engine {
       if (expand(state)) return Outcome::Solved;
       if (!ahead_ || e->relaxed >= nearest) break;
       nearest = e->relaxed;
-      const Taken ahead = look_ahead(state);
+      const Expansion ahead = look_ahead(state);
       if (ahead.reached) return Outcome::Solved;
       state = ahead.state;
     }
@@ -148,14 +148,14 @@ class GreedySearch final : public Engine {
   }
 
   /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
-  Taken look_ahead(Index state) {
+  Expansion look_ahead(Index state) {
     std::vector<OperatorId> left = relaxed_.steps_in_order();
-    Taken at{state};
+    Expansion at{state};
     const auto use = [&](OperatorId step) {
       if (at.reached || in_.task.is_outcome(step) ||
           !in_.task.evaluator().holds(in_.task.action(step).precondition, store_.read(at.state)))
         return false;
-      const Taken next = make(at.state, step);
+      const Expansion next = make(at.state, step);
       if (next.state == kNone) return false;
       at = next;
       if (at.fresh) push(at.state, infos_[state].estimates, false);
@@ -167,7 +167,7 @@ class GreedySearch final : public Engine {
   }
 
   /// Asks, and makes the step if it is possible.
-  Taken take(Waiting& waiting) {
+  Expansion take(Waiting& waiting) {
     const Waiting w = std::exchange(waiting, {});
     if (w.step == kNoOperator) return {};  // in another queue
     if (!in_.task.asks(w.step)) return make(w.parent, w.step);
@@ -175,14 +175,14 @@ class GreedySearch final : public Engine {
     outcomes_.clear();
     if (in_.task.decide(store_.read(w.parent), w.step, outcomes_)) return make(w.parent, w.step);
     for (const OperatorId outcome : outcomes_) {
-      const Taken taken = make(w.parent, outcome);
+      const Expansion taken = make(w.parent, outcome);
       if (taken.reached) return taken;
       if (taken.fresh) push(taken.state, infos_[w.parent].estimates, w.preferred);
     }
     return {};
   }
 
-  Taken make(Index parent, OperatorId step) {
+  Expansion make(Index parent, OperatorId step) {
     if (in_.task.is_outcome(step) && !in_.target.allowed(store_.read(parent), step)) return {};
     if (std::exchange(scratch_of_, parent) == parent) {
       scratch_.undo(0);
@@ -254,7 +254,7 @@ class GreedySearch final : public Engine {
         waiting_.push_back({state, step, preferred});
         continue;
       }
-      const Taken taken = make(state, step);
+      const Expansion taken = make(state, step);
       if (taken.reached) return true;
       if (taken.fresh) push(taken.state, estimates, preferred);
     }
@@ -273,7 +273,7 @@ class GreedySearch final : public Engine {
   /// For the limit of memory.
   [[nodiscard]] std::size_t held() const { return bytes() + store_.growth() + besides_; }
 
-  Found finish(Outcome outcome) {
+  SearchResult finish(Outcome outcome) {
     in_.statistics.states = std::max<std::uint64_t>(in_.statistics.states, store_.size());
     in_.statistics.state_bytes = std::max<std::uint64_t>(in_.statistics.state_bytes, bytes());
     found_.outcome = outcome;
@@ -304,7 +304,7 @@ class GreedySearch final : public Engine {
   Estimates best_{kFar, kFar};
   bool use_events_ = true;
   std::vector<OperatorId> steps_, outcomes_;
-  Found found_;
+  SearchResult found_;
 };
 
 }  // namespace

@@ -16,12 +16,12 @@ constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62U;
 /// fewer.
 constexpr std::uint64_t kFirstTurn = 2'500'000'000;
 
-Found by_estimates(const SearchInput& in) {
-  Found best;
+SearchResult by_estimates(const SearchInput& in) {
+  SearchResult best;
   std::uint64_t most_expanded = kUnlimited;
   for (int round = 0; round < kRounds; ++round) {
     const std::uint64_t refused = in.task.refused(), expanded = in.statistics.expanded;
-    Found found = greedy_engine(in, most_expanded)->advance(kUnlimited, 0).value();
+    SearchResult found = greedy_engine(in, most_expanded)->advance(kUnlimited, 0).value();
     if (round == 0 || (found.outcome == Outcome::Solved && found.steps.size() < best.steps.size()))
       best = std::move(found);
     if (best.outcome != Outcome::Solved || in.task.refused() == refused) break;
@@ -32,7 +32,7 @@ Found by_estimates(const SearchInput& in) {
 
 }  // namespace
 
-Found take_turns(const SearchInput& in, std::uint64_t first) {
+SearchResult take_turns(const SearchInput& in, std::uint64_t first) {
   const auto estimates = greedy_engine(in, kUnlimited);
   std::unique_ptr<Engine> novelty;
   for (std::uint64_t work = first;; work *= 2) {
@@ -46,7 +46,7 @@ Found take_turns(const SearchInput& in, std::uint64_t first) {
   }
 }
 
-Found greedy_best_first(const SearchInput& in) {
+SearchResult greedy_best_first(const SearchInput& in) {
   if (in.target.reached(in.start.data())) return {Outcome::Solved, {}};
   const bool calls = !in.task.model().external_functions.empty();
   return calls || in.task.layout().sensing() ? by_estimates(in) : take_turns(in, kFirstTurn);

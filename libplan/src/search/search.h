@@ -27,7 +27,8 @@ class Target {
   virtual bool expects(const Word* state, OperatorId outcome) = 0;
 };
 
-struct Found {
+/// How a search ended, and the steps that it found.
+struct SearchResult {
   Outcome outcome = Outcome::Limit;
   std::vector<OperatorId> steps;
 };
@@ -59,10 +60,10 @@ struct SearchInput {
   Heuristics& heuristics;
 };
 
-Found depth_first(const SearchInput& in);
-Found breadth_first(const SearchInput& in);
-Found iterative_deepening(const SearchInput& in);
-Found greedy_best_first(const SearchInput& in);
-Found a_star(const SearchInput& in);
+SearchResult depth_first(const SearchInput& in);
+SearchResult breadth_first(const SearchInput& in);
+SearchResult iterative_deepening(const SearchInput& in);
+SearchResult greedy_best_first(const SearchInput& in);
+SearchResult a_star(const SearchInput& in);
 
 }  // namespace kaboum::plan

@@ -97,13 +97,13 @@ class WidthSearch final : public Engine {
     push(0, 1);
   }
 
-  std::optional<Found> advance(std::uint64_t work, std::size_t besides) override {
+  std::optional<SearchResult> advance(std::uint64_t work, std::size_t besides) override {
     turn_ = work;
     besides_ = besides;
-    std::optional<Found> found;
+    std::optional<SearchResult> found;
     for (pause_ = work_ + turn_; work_ < pause_ && !found;) {
-      if (open_.empty()) return Found{Outcome::Unsolvable, {}};
-      if (out_of_limits()) return Found{};
+      if (open_.empty()) return SearchResult{Outcome::Unsolvable, {}};
+      if (out_of_limits()) return SearchResult{};
       const Index state = pop();
       if (nodes_[state].plan == kNone && !make_plan(state)) continue;
       found = expand(state);
@@ -198,7 +198,7 @@ class WidthSearch final : public Engine {
   }
 
   /// @return how the search ends, if it does.
-  std::optional<Found> expand(Index state) {
+  std::optional<SearchResult> expand(Index state) {
     const Word* const words = store_.read(state);
     list_present(words);
     applicable_.find(words, steps_);
@@ -206,7 +206,7 @@ class WidthSearch final : public Engine {
     ++in_.statistics.expanded;
     work_ += 2'000 + 2 * in_.task.layout().words() + 10 * present_.size();
     for (const OperatorId step : steps_) {
-      if (out_of_limits()) return Found{};
+      if (out_of_limits()) return SearchResult{};
       scratch_.undo(0);
       if (!in_.task.apply(step, scratch_)) continue;
       work_ += kPerStep + goals_.size();
@@ -216,7 +216,7 @@ class WidthSearch final : public Engine {
       if (in_.target.reached(scratch_.words())) {
         std::vector<OperatorId> path = store_.path(number);
         in_.statistics.depth = std::max<std::uint64_t>(in_.statistics.depth, path.size());
-        return Found{Outcome::Solved, std::move(path)};
+        return SearchResult{Outcome::Solved, std::move(path)};
       }
       evaluate(state, words);
     }

@@ -2,12 +2,12 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
-#include <kaboum/geom/prepare.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/held_shape.h>
 #include <kaboum/verify/matching_shapes.h>
 #include <kaboum/verify/motion_alike.h>
 #include <kaboum/verify/robot_verdict.h>
+#include <kaboum/verify/subject.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,50 +45,33 @@ auto naming(const std::string& file, const Work& work) {
   }
 }
 
-geom::Mesh turned(geom::Mesh mesh) {
-  for (geom::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
 /// The triangles of a file and what they bound, as far as that is judged.
-struct Subject {
+struct JudgedFile : Subject {
   const MeshFile* file = nullptr;
-  geom::Mesh mesh;            ///< whose solid is judged, and its triangles
-  bool both_ways = false;     ///< what it winds round backwards counts as well
-  bool file_as_well = false;  ///< the file has triangles that `mesh` does not have
-  std::size_t dropped_sheets = 0;
-  std::string refusal;  ///< why it could not be prepared
 };
 
-Subject subject_of(const MeshFile& file, const RobotQuestion& q) {
-  Subject out{&file, file.mesh, q.solid != Solid::AsFile, false, 0, {}};
-  if (q.solid != Solid::Prepared) return out;
-  try {
-    geom::Prepared p =
-        geom::prepare(file.mesh, {.drop_sheets = q.drop_sheets, .holes = geom::Holes::Fill});
-    const geom::PreparationReport& r = p.report;
-    out.both_ways = r.hollow.has_value();
-    out.dropped_sheets = r.dropped_sheets;
-    out.file_as_well = r.dropped_sheets == 0 && r.collapsed_triangles + r.cancelled_walls > 0;
-    out.mesh = p.solid.mesh();
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::InvalidInput || q.drop_sheets)
-      throw Error(error.code(), file.path + ": " + error.what());
-    out.refusal = error.what();
-  }
+JudgedFile judged_file(const MeshFile& file, const RobotQuestion& q) {
+  JudgedFile out{{}, &file};
+  static_cast<Subject&>(out) = naming(file.path, [&] {
+    return q.solid != Solid::Prepared ? unprepared_subject(file.mesh)
+                                      : prepared_subject(file.mesh, {.drop_sheets = q.drop_sheets,
+                                                                     .holes = geom::Holes::Fill});
+  });
+  if (q.solid == Solid::AsFile) out.both_ways = false;
+  if (out.report.hollow) out.both_ways = true;
   return out;
 }
 
 /// A mesh and what holds it, decided.
 class Judgement {
  public:
-  Judgement(const Subject& subject, const Holders& holders, const RobotQuestion& q)
+  Judgement(const JudgedFile& subject, const Holders& holders, const RobotQuestion& q)
       : subject_(subject), holders_(holders), q_(q) {}
 
   ShapeVerdict run() {
     out_.file = subject_.file;
     out_.name = subject_.file->path;
-    out_.dropped_sheets = subject_.dropped_sheets;
+    out_.dropped_sheets = subject_.report.dropped_sheets;
     naming(out_.name, [&] { decide(); });
     return std::move(out_);
   }
@@ -111,7 +94,8 @@ class Judgement {
     if (held.surface) out_.triangles = in.surface;
     if (held.solid) out_.solid = in.solid;
     measured_ = &subject_.mesh;
-    if (held.surface && subject_.file_as_well) look_at_file();
+    if (held.surface && subject_.filled_triangles > 0) look_past_filling();
+    if (held.surface && subject_.has_more) look_at_file();
     if (!out_.triangles && !out_.solid) {
       out_.answer = Answer::Undefined;
       return;
@@ -119,6 +103,7 @@ class Judgement {
     out_.answer = Answer::Verified;
     for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
       if (*claim) out_.answer = worse(out_.answer, (*claim)->answer);
+    look_at_exact_faces();
     if (out_.answer == Answer::Refuted && !holders_.refutes()) out_.answer = Answer::Undecided;
     measure();
     put_into_words();
@@ -137,16 +122,36 @@ class Judgement {
     return out;
   }
 
+  /// Triangles that close holes are none of the file's: they need not lie inside themselves.
+  void look_past_filling() {
+    if (out_.triangles->answer == Answer::Verified) return;
+    InclusionOptions options = q_.limits;
+    options.surface_only = true;
+    const Inclusion in =
+        holders_.inclusion_of(without_filling(subject_.mesh, subject_.filled_triangles), options);
+    out_.triangles = in.surface;
+    out_.left_out += in.left_out;
+    out_.limited = out_.limited || in.limited;
+  }
+
   /// The file's triangles that preparing has left out lie inside as well.
   void look_at_file() {
     InclusionOptions options = q_.limits;
     options.surface_only = true;
-    const Inclusion in = holders_.inclusion_of(subject_.file->mesh, options);
+    const Inclusion in = holders_.inclusion_of(subject_.triangles, options);
     if (worse(out_.triangles->answer, in.surface.answer) == out_.triangles->answer) return;
     out_.triangles = in.surface;
     out_.left_out += in.left_out;
     out_.limited = out_.limited || in.limited;
-    measured_ = &subject_.file->mesh;
+    measured_ = &subject_.triangles;
+  }
+
+  void look_at_exact_faces() {
+    const std::optional<ExactPoints>& exact = subject_.file->exact;
+    if (!exact) return;
+    out_.exact_points =
+        verify_points({exact->points, exact->of_face, exact->rounding}, holders_.sum());
+    if (out_.exact_points->answer == Answer::Refuted) out_.answer = Answer::Refuted;
   }
 
   void measure() {
@@ -189,43 +194,22 @@ class Judgement {
     }
     for (const std::optional<Claim>* claim : {&out_.triangles, &out_.solid})
       if (*claim && (*claim)->answer != Answer::Verified) out_.text = (*claim)->reason;
+    if (const auto& points = out_.exact_points; points && points->answer == Answer::Refuted)
+      out_.text = (!out_.text.empty() ? out_.text
+                   : out_.triangles   ? std::string("every triangle is inside")
+                                      : std::string("its solid is inside")) +
+                  ", but " + std::to_string(points->outside) + " of " +
+                  std::to_string(points->points) + " points of its exact faces stick out of the " +
+                  bodies + " of its pose, by up to " + number_up(points->farthest) + ", near " +
+                  text_of(points->at) + ", in the mesh's own unit";
   }
 
-  const Subject& subject_;
+  const JudgedFile& subject_;
   const Holders& holders_;
   const RobotQuestion& q_;
   const geom::Mesh* measured_ = nullptr;
   ShapeVerdict out_;
 };
-
-/// What distances are measured to: the mesh's solid and all triangles of the file. Where preparing
-/// refuses the file, what is left of it without sheets; no solid where it refuses that, too.
-struct Measured {
-  geom::Mesh mesh;
-  bool has_solid = true;
-};
-
-Measured measured_to(const Subject& subject, const RobotQuestion& q) {
-  const bool is_prepared = q.solid == Solid::Prepared && subject.refusal.empty();
-  if (q.solid == Solid::AsFile || (is_prepared && !subject.file_as_well)) return {subject.mesh};
-  Measured out;
-  try {
-    out.mesh = is_prepared ? subject.mesh
-                           : geom::prepare(subject.file->mesh,
-                                           {.drop_sheets = true, .holes = geom::Holes::Fill})
-                                 .solid.mesh();
-  } catch (const Error&) {
-    out.has_solid = false;
-  }
-  // All triangles, on both sides: their windings cancel.
-  for (const geom::Mesh& mesh : {subject.file->mesh, turned(subject.file->mesh)}) {
-    const auto first = static_cast<std::uint32_t>(out.mesh.vertices.size());
-    out.mesh.vertices.insert(out.mesh.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    for (const geom::Triangle& t : mesh.triangles)
-      out.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-  return out;
-}
 
 class RobotJudge {
  public:
@@ -247,6 +231,10 @@ class RobotJudge {
       out_.answer = worse(out_.answer, out_.links.back().answer);
       if (judged) judged(out_.links.back());
     }
+    const bool any_judged = std::ranges::any_of(out_.links, [](const LinkVerdict& link) {
+      return std::ranges::any_of(link.shapes, &ShapeVerdict::is_judged);
+    });
+    if (first_error_ && !any_judged) throw Error(*first_error_);
     if (q_.epsilon) look_for_strangers();
     return std::move(out_);
   }
@@ -292,14 +280,22 @@ class RobotJudge {
                     std::vector<ShapeVerdict>& out) {
     std::vector<const MeshFile*> originals, bodies;
     for (const std::size_t i : match.originals) originals.push_back(&q_.file_of(shapes[i], false));
-    for (const std::size_t i : match.there) bodies.push_back(&q_.file_of(there[i], true));
+    for (const std::size_t i : match.there) {
+      const MeshFile& body = q_.file_of(there[i], true);
+      if (body.error && std::ranges::none_of(originals, [&](const MeshFile* file) {
+            return file->error && file->sha256 == body.sha256;
+          }))
+        throw Error(*body.error);
+      bodies.push_back(&body);
+    }
     const geom::Vec3 scale = shapes[match.originals.front()].size.cwiseAbs();
     const Key key{originals, bodies, scale.x(), scale.y(), scale.z()};
     auto at = judged_.find(key);
     if (at == judged_.end())
       at = judged_.emplace(key, decide(link, originals, bodies, scale)).first;
     for (ShapeVerdict verdict : at->second) {
-      const Answer answer = beside_others(verdict.answer, match);
+      const Answer answer =
+          verdict.is_judged ? beside_others(verdict.answer, match) : verdict.answer;
       if (answer != verdict.answer && !verdict.distance)
         verdict.text += "; what the " + counted(match.elsewhere, "shape", "shapes") +
                         " of other poses hold is not looked at";
@@ -314,29 +310,37 @@ class RobotJudge {
                                    const geom::Vec3& scale) {
     std::vector<Holders::NamedMesh> named;
     named.reserve(bodies.size());
-    for (const MeshFile* file : bodies) named.push_back({file->path, &file->mesh});
+    for (const MeshFile* file : bodies)
+      if (!file->error) named.push_back({file->path, &file->mesh});
     const Holders holders(named);
     for (const auto& [path, why] : holders.left_out()) note(path, why);
     std::vector<const MeshFile*> hold;
     for (const MeshFile* file : bodies)
-      if (std::ranges::none_of(holders.left_out(),
-                               [&](const auto& left) { return left.first == file->path; }))
+      if (!file->error && std::ranges::none_of(holders.left_out(), [&](const auto& left) {
+            return left.first == file->path;
+          }))
         hold.push_back(file);
     std::vector<ShapeVerdict> out;
-    std::vector<Subject> subjects;
+    std::vector<JudgedFile> subjects;
     bool held = true;
     for (const MeshFile* file : originals) {
       if (q_.progress) q_.progress("link " + link + ": " + file->path);
       for (const std::string& text : file->notes) note(file->path, text);
-      subjects.push_back(subject_of(*file, q_));
-      const Subject& subject = subjects.back();
-      if (!subject.refusal.empty())
-        note(file->path,
-             "every triangle is judged as it is, for which solid they bound cannot be "
-             "told (" +
-                 subject.refusal + ")");
-      out.push_back(Judgement(subject, holders, q_).run());
-      out.back().held_by = hold;
+      try {
+        if (file->error) throw Error(*file->error);
+        subjects.push_back(judged_file(*file, q_));
+        const JudgedFile& subject = subjects.back();
+        if (!subject.refusal.empty())
+          note(file->path,
+               "every triangle is judged as it is, for which solid they bound cannot be "
+               "told (" +
+                   subject.refusal + ")");
+        out.push_back(Judgement(subject, holders, q_).run());
+        out.back().held_by = hold;
+      } catch (const Error& error) {
+        if (!is_of_one_mesh(error)) throw;
+        out.push_back(not_held(*file, error));
+      }
       if (!out.back().closed && q_.solid == Solid::AsFile) out_.open = true;
       held = held && out.back().answer == Answer::Verified;
     }
@@ -344,15 +348,30 @@ class RobotJudge {
     return out;
   }
 
+  /// Nothing is known to hold a mesh that is not known.
+  ShapeVerdict not_held(const MeshFile& file, const Error& error) {
+    if (!first_error_) first_error_ = error;
+    ShapeVerdict out;
+    out.is_judged = false;
+    out.file = &file;
+    out.name = file.path;
+    out.answer = error.code() == ErrorCode::LimitReached ? Answer::Undecided : Answer::Refuted;
+    out.text = error.what();
+    if (out.text.starts_with(file.path + ": ")) out.text.erase(0, file.path.size() + 2);
+    out.text = "it is not held, for it cannot be judged: " + out.text;
+    return out;
+  }
+
   /// How far the bodies of one frame are from all of its meshes together.
-  ShapeVerdict distance(const std::string& link, const std::vector<Subject>& subjects,
+  ShapeVerdict distance(const std::string& link, const std::vector<JudgedFile>& subjects,
                         const Holders& holders, const geom::Vec3& scale) {
     if (q_.progress) q_.progress("link " + link + ": distance");
     double diagonal = 0;
     bool has_solid = true;
     std::vector<geom::Mesh> meshes;
-    for (const Subject& subject : subjects) {
-      Measured to = measured_to(subject, q_);
+    for (const JudgedFile& subject : subjects) {
+      MeasuredMesh to = q_.solid == Solid::AsFile ? MeasuredMesh{subject.mesh}
+                                                  : measured_mesh(subject, subject.file->mesh);
       has_solid = has_solid && to.has_solid;
       diagonal = std::max(diagonal, geom::bounding_box(to.mesh).diagonal());
       meshes.push_back(std::move(to.mesh));
@@ -448,6 +467,7 @@ class RobotJudge {
                          double>;
   const RobotQuestion& q_;
   RobotVerdict out_;
+  std::optional<Error> first_error_;  // of a mesh that is not judged
   std::map<Key, std::vector<ShapeVerdict>> judged_;
 };
 

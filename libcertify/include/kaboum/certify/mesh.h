@@ -3,6 +3,7 @@
 #include <kaboum/base/length.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/certify/certified.h>
+#include <kaboum/certify/float32_shortage.h>
 #include <kaboum/certify/mesh_certificate.h>
 #include <kaboum/certify/wrap.h>
 #include <kaboum/geom/prepare.h>
@@ -51,14 +52,6 @@ struct MeshRequest {
   [[nodiscard]] bool may_be_double() const {
     return numbers == Numbers::Auto && io::holds_double(format);
   }
-};
-
-/// Why float32 numbers do not do.
-struct Float32Shortage {
-  double spacing = 0;  ///< of float32 numbers at these coordinates [length]
-  double limit = 0;    ///< on that [length]
-  /// Vertices that have no certified float32 position; 0: the spacing is larger than the limit.
-  std::size_t vertices = 0;
 };
 
 /// What a request comes to for one mesh.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/float32_shortage.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/io/mesh_io.h>
 
@@ -22,7 +23,11 @@ struct CertifiedFile {
 /// float32 cannot hold bodies as near to this file's mesh as asked for (certify_set).
 class TooCoarse : public Error {
  public:
-  explicit TooCoarse(const std::string& file, const char* remedy = "move the mesh to the origin");
+  explicit TooCoarse(const std::string& file);
+  /// With figures, and a remedy that helps.
+  /// @param remedy  what else helps
+  TooCoarse(const std::string& file, const geom::Mesh& mesh, const std::optional<Length>& epsilon,
+            const SpacingShares& shares, const std::string& remedy = "");
 };
 
 /// Reads the file and finds or certifies its set, which says the unit that the vertices are in as

@@ -31,7 +31,11 @@ struct WrapRequest {
   /// Quads that are not plane (io::ReadResult::bent_quads): both ways of splitting them are to be
   /// inside.
   std::vector<std::uint32_t> quads = {};
-  bool float32 = true;  ///< numbers of the wrap; else doubles
+  /// Of the triangles given, those of the input: the rest fills its holes or is another way of
+  /// splitting its quads [all].
+  std::optional<std::size_t> input_triangles;
+  bool float32 = true;         ///< numbers of the wrap; else doubles
+  bool may_be_double = false;  ///< doubles stand in for float32 where that is too coarse
   std::function<void(const std::string& stage)> progress;
 };
 

@@ -87,7 +87,7 @@ class Cell {
     double radius = 0;
   };
   /// A thing where it is in a state.
-  struct Placed {
+  struct PosedThing {
     const Thing* thing;
     geom::Transform at;
     geom::Vec3 center;
@@ -96,8 +96,8 @@ class Cell {
   };
 
   void add(Thing thing, const geom::Mesh& mesh);
-  [[nodiscard]] std::vector<Placed> place(const CellState& state) const;
-  [[nodiscard]] bool is_looked_at(const Placed& a, const Placed& b) const;
+  [[nodiscard]] std::vector<PosedThing> place(const CellState& state) const;
+  [[nodiscard]] bool is_looked_at(const PosedThing& a, const PosedThing& b) const;
   [[nodiscard]] bool connected(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) const;
   /// The first meeting of pairs that `wanted` takes.
   template <typename Wanted>

@@ -10,9 +10,9 @@
 
 namespace kaboum::plan {
 
-enum class Language { Kpl, Pddl, Xml };
+enum class Language { Kpl, Pddl };
 
-/// By the file name's extension: .kpl, .pddl, .xml or .pks; else nullopt.
+/// By the file name's extension: .kpl or .pddl; else nullopt.
 std::optional<Language> language_from_name(std::string_view file_name);
 
 /// A text and what it is called in messages.

@@ -6,6 +6,7 @@
 #include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/verify/points.h>
+#include <kaboum/verify/subject.h>
 
 #include <functional>
 #include <optional>
@@ -32,6 +33,11 @@ struct MeshQuestion {
   /// Of the exact faces that the original's triangles stand for, which are to be enclosed or
   /// covered as well. Not looked at of Inner.
   std::optional<PointQuestion> exact_points{};
+  /// What the original is as a Subject: whether it is to be held whichever way it is oriented, and
+  /// which triangles are besides. Not looked at of Inner; null: the original is all.
+  const Subject* subject = nullptr;
+  /// What a cover's distances are measured to, closed; null: the original.
+  const MeasuredMesh* measured = nullptr;
 
   [[nodiscard]] const geom::Mesh& inner() const {
     return relation == Relation::Inner ? approximation : original;
@@ -69,6 +75,8 @@ struct MeshVerdict {
       depth;  ///< of an inner set: that it leaves out nothing deeper than the bound
   /// Of the points of exact faces, where they were asked for: they refute, and prove nothing.
   std::optional<PointClaim> exact_points;
+  bool solid_backwards = false;  ///< the solid claim is that of the original turned round
+  bool surface_of_all = false;   ///< the surface claim is that of Subject::triangles
   /// The solid claim alone decides, and the enclosed mesh is inside out: its solid is empty, or
   /// nearly so, and within any other.
   bool vacuous = false;
@@ -86,6 +94,9 @@ Answer answer_of(const MeshVerdict& verdict, Claims claims);
 /// @throws as verify_inclusion, verify_distance
 MeshVerdict decide(const MeshQuestion& question,
                    const std::function<void(const MeshVerdict&)>& enclosure = {});
+
+/// The triangles that the surface claim is about, which its numbers are of.
+const geom::Mesh& surface_of(const MeshQuestion& question, const MeshVerdict& verdict);
 
 /// The triangles, of both meshes, that bound what refutes the claims; those of the claims of
 /// enclosure once. Empty if only the bodies' convexity is refuted.

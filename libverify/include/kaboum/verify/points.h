@@ -2,9 +2,21 @@
 
 #include <kaboum/verify/inclusion.h>
 
+#include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace kaboum::verify {
+
+/// Points of the exact faces and edges of a CAD file, by a reading of its own.
+struct ExactPoints {
+  std::vector<geom::Vec3> points;
+  std::vector<std::uint32_t> of_face;  ///< of each point; faces are counted from 0
+  std::size_t faces = 0, edges = 0;    ///< one for each place of a face; edges of all of them
+  /// What evaluating may have moved a point by, in each coordinate. [length]
+  double rounding = 0;
+};
 
 /// Points that a solid is to hold.
 struct PointQuestion {

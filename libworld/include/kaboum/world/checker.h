@@ -107,20 +107,21 @@ class Checker {
   [[nodiscard]] std::optional<Nearest> find_nearest(const WorldState& state, Scratch& scratch,
                                                     const Options& options) const;
 
-  /// Where things are in a state.
-  struct Placed {
+  /// An item where it is in a state.
+  struct PosedItem {
     Item item;
     collide::PosedSet place;
   };
   /// Of all items.
   /// @throws as find_contact
-  [[nodiscard]] std::vector<Placed> places(const WorldState& state) const {
+  [[nodiscard]] std::vector<PosedItem> places(const WorldState& state) const {
     Scratch scratch;
     return places(state, items_, scratch);
   }
   /// Of some, in their order. @pre none of them is absent.
-  [[nodiscard]] std::vector<Placed> places(const WorldState& state, const std::vector<Item>& items,
-                                           Scratch& scratch) const;
+  [[nodiscard]] std::vector<PosedItem> places(const WorldState& state,
+                                              const std::vector<Item>& items,
+                                              Scratch& scratch) const;
 
   [[nodiscard]] const World& world() const { return *world_; }
   [[nodiscard]] Observer* observer() const { return observer_; }

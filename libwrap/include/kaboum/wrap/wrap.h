@@ -23,6 +23,9 @@ struct WrapOptions {
   std::function<void(const std::string& stage)> progress;
 };
 
+/// Whether float32 numbers are near enough to each other for a wrap of what is in the box.
+bool float32_is_fine(const geom::Box3& box, const WrapOptions& options);
+
 /// A closed surface that encloses triangles.
 struct Wrap {
   /// Closed, manifold and free of self-intersections, decided exactly. Every triangle of the input

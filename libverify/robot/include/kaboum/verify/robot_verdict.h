@@ -1,10 +1,12 @@
 #pragma once
 
+#include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/points.h>
 
 #include <algorithm>
 #include <functional>
@@ -28,8 +30,16 @@ enum class Solid {
 struct MeshFile {
   std::string path, sha256;
   geom::Mesh mesh;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = {};
+  /// Points of the exact faces that the triangles stand for, where these are looked at.
+  std::optional<ExactPoints> exact = {};
+  std::optional<Error> error = {};  ///< why it could not be read; then it has no mesh
 };
+
+/// Whether what such an error is about is one mesh: that one is not held, and others are judged.
+inline bool is_of_one_mesh(const Error& error) {
+  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
+}
 
 /// What is asked about two robots. Referred to while it is decided.
 struct RobotQuestion {
@@ -71,12 +81,14 @@ struct ShapeVerdict {
   std::optional<Claim> triangles, solid;
   std::optional<Bracket> sticks_out;  ///< of the triangles that do not [length, the mesh's own]
   bool closed = true;                 ///< else only the triangles were judged
+  bool is_judged = true;              ///< else the mesh is none that claims can be decided of
   std::size_t triangles_without_area = 0, left_out = 0, dropped_sheets = 0;
   bool limited = false;
-  std::optional<Claim> convex = {};            ///< of what holds it
-  std::optional<DistanceClaim> distance = {};  ///< of the bodies; then `shape` means nothing
-  std::optional<double> bound = {};            ///< of the distance
-  bool of_surface = false;                     ///< the distance: HeldDistance::of_surface
+  std::optional<Claim> convex = {};             ///< of what holds it
+  std::optional<PointClaim> exact_points = {};  ///< they refute, and prove nothing
+  std::optional<DistanceClaim> distance = {};   ///< of the bodies; then `shape` means nothing
+  std::optional<double> bound = {};             ///< of the distance
+  bool of_surface = false;                      ///< the distance: HeldDistance::of_surface
 };
 
 struct LinkVerdict {
@@ -100,10 +112,12 @@ struct RobotVerdict {
 /// Decides whether the result moves as the original, and whether every shape of the original's
 /// links is held by the result's collision shapes of the same link: a mesh by meshes of its frame
 /// (Holders), each box, cylinder and sphere by itself. Same meshes held by the same ones are judged
-/// once.
+/// once. A mesh of the original that cannot be read, or of which no claim can be decided, is not
+/// held; nor does it hold anything where the result has it as well.
 /// @param judged  called with each verdict on a link as soon as it is there; may be empty
-/// @throws Error as file_of and verify_inclusion, naming the file; Error{InvalidInput} where no
-///   link has a shape, or epsilon is no length in a mesh's unit
+/// @throws Error as file_of; as MeshFile::error where nothing else is there to be judged, or of
+///   another mesh of the result; Error{InvalidInput} where no link has a shape, or epsilon is no
+///   length in a mesh's unit
 RobotVerdict decide(const RobotQuestion& question,
                     const std::function<void(const LinkVerdict&)>& judged = {});
 
