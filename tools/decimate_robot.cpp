@@ -21,6 +21,11 @@
 namespace kaboum::tools {
 namespace {
 
+using robot_folder::NewShapes;
+using robot_folder::RobotFolder;
+using robot_folder::RobotWriter;
+using robot_folder::StoredMesh;
+
 /// Format of the new meshes: what engines read.
 io::Format format_of_meshes(const DecimationOptions& o) {
   const std::string name = o.output_format.empty() ? o.robot.bodies : o.output_format;
@@ -70,7 +75,7 @@ void say_meshes(Run& run) {
   }
 }
 
-void write(Run& run, RobotOutput& output) {
+void write(Run& run, RobotWriter& output) {
   RobotFolder& folder = output.folder();
   for (std::size_t i = 0; i < run.made.meshes.size(); ++i) {
     if (!run.made.meshes[i].flaw.empty())
@@ -79,7 +84,7 @@ void write(Run& run, RobotOutput& output) {
       folder.set_extension(i, ".obj");
   }
   const NewShapes shapes =
-      new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
+      robot_folder::new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
         std::vector<std::string> out;
         if (run.made.meshes[*run.made.shapes[s].mesh].flaw.empty())
           out.push_back(folder.place_of(s));
@@ -97,12 +102,12 @@ void write(Run& run, RobotOutput& output) {
       [&](const StoredMesh& stored, const std::filesystem::path& place) {
         io::write_file(place, run.made.meshes[stored.mesh].made.enclosure.bytes());
       },
-      {}, run.notes);
+      {}, note_in(run.notes));
 }
 
 /// The command that decides it from the files alone; epsilon as well, where it is one for all links
 /// and of distances to what the files hold, not to wraps or exact faces.
-RobotCheck check_of(const Run& run, const RobotOutput& output) {
+RobotCheck check_of(const Run& run, const RobotWriter& output) {
   std::optional<Length> epsilon = run.request.mesh.mesh.epsilon;
   if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
     epsilon.reset();
@@ -136,8 +141,8 @@ RobotCounts counts_of(const Run& run) {
   return counts;
 }
 
-Json decimated_report(const Run& run, const RobotOutput& output) {
-  Json report = output.report(), links = Json::array();
+Json decimated_report(const Run& run, const RobotWriter& output) {
+  Json report = report_of(output), links = Json::array();
   const RobotCounts counts = counts_of(run);
   std::size_t before = 0, at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
@@ -206,7 +211,7 @@ PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
   return out;
 }
 
-void write_page(const Run& run, const RobotOutput& output) {
+void write_page(const Run& run, const RobotWriter& output) {
   RobotPage page{.robot = run.robot.robot.name,
                  .source = run.o.input,
                  .tool = std::string("bmesh-decimate ") + version(),
@@ -251,10 +256,12 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   const io::Format format = format_of_meshes(o);
   o.robot.declare_convex = false;  // they are not
-  RobotOutput output(o.robot, o.output, run.robot, "meshes",
+  RobotWriter output(folder_options(o.robot), o.output, run.robot, "meshes",
                      format == io::Format::Stl ? ".stl" : ".obj");
-  run.request = {
-      enclosure_request(o), output.choice(), {}, read_epsilons(o.robot.epsilons, run.robot.robot)};
+  run.request = {enclosure_request(o),
+                 output.options().shapes,
+                 {},
+                 read_epsilons(o.robot.epsilons, run.robot.robot)};
   run.request.partial = true;
   if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
   const certify::WantedMeshes meshes =
@@ -276,7 +283,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                           counted(counts.links, "link", "links") +
                           (counts.kept > 0 ? ", from " + counts.of_meshes() : std::string()));
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
-  output.say(o.common.quiet, run.notes);
+  say(output, o.common.quiet, run.notes);
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty())
     write_report(o.common, "bmesh-decimate", decimated_report(run, output));

@@ -5,14 +5,13 @@
 #include <kaboum/base/error.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/robot_budget.h>
-#include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/scene/robot_pairs.h>
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <optional>
-#include <span>
 
 #include "decompose_preview.h"
 #include "decompose_words.h"
@@ -20,11 +19,12 @@
 #include "robot_check.h"
 #include "robot_output.h"
 #include "robot_page.h"
-#include "robot_pairs.h"
 #include "set_picture.h"
 
 namespace kaboum::tools {
 namespace {
+
+using robot_folder::RobotWriter;
 
 certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::RobotFile& robot,
                                     const robot::ShapeChoice& choice) {
@@ -32,6 +32,19 @@ certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::Robo
       certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
   if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
   return r;
+}
+
+std::string pairs_in_words(const scene::RobotPairs& pairs) {
+  return "pairs of links that need no check: " + std::to_string(pairs.adjacent) + " adjacent, " +
+         std::to_string(pairs.never) + " proved never to touch, " + std::to_string(pairs.fixed) +
+         " fixed to each other; " + std::to_string(pairs.others) + " others";
+}
+
+Json pairs_report(const scene::RobotPairs& pairs) {
+  return {{"adjacent", pairs.adjacent},
+          {"never_in_contact", pairs.never},
+          {"fixed_to_each_other", pairs.fixed},
+          {"others", pairs.others}};
 }
 
 /// What was made, and where it goes.
@@ -43,7 +56,7 @@ struct Run {
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
   std::vector<certify::LinkVerdict> verdicts = {};
   Notes notes = {};
-  std::optional<RobotPairs> pairs = {};  ///< with --srdf
+  std::optional<scene::RobotPairs> pairs = {};  ///< with --srdf
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
     return made.bodies.certificate();
@@ -92,41 +105,10 @@ void certify_links(Run& run) {
   run.verdicts = verdicts(run.made);
 }
 
-/// The files of the bodies, relative to the folder.
-NewShapes shapes_of(const Run& run, const RobotFolder& folder) {
-  const certify::BodiesCertificate& bodies = run.bodies();
-  return new_shapes(run.robot, bodies.choice, bodies.shapes, [&](std::size_t s) {
-    const std::string& name = folder.name_of(s);
-    std::vector<std::string> out;
-    if (!bodies.meshes[*bodies.shapes[s].mesh].held) return out;
-    const std::size_t count =
-        bodies.meshes[*bodies.shapes[s].mesh].made.found.set.artefact().bodies.size();
-    for (std::size_t b = 0; b < count; ++b)
-      out.push_back(folder.part() + "/" + name + "/" + io::default_name(b, name) + "." +
-                    run.o.robot.bodies);
-    return out;
-  });
-}
-
-void write(Run& run, RobotOutput& output) {
-  const bool obj = run.o.robot.bodies == "obj";
-  for (std::size_t i = 0; i < run.bodies().meshes.size(); ++i)
-    if (!run.bodies().meshes[i].held) output.folder().leave_out(i);
-  const auto write_mesh = [&](const StoredMesh& s, const std::filesystem::path& place) {
-    io::write_convex_folder(place, run.bodies().meshes[s.mesh].made.found.set.artefact(), s.name,
-                            obj ? io::Format::Obj : io::Format::Stl);
-  };
-  std::vector<std::pair<std::string, std::span<const char>>> links;
-  for (const certify::CertifiedLink& link : run.made.links)
-    links.emplace_back(run.robot.robot.links[link.certificate().link].name, link.bytes());
-  if (!run.o.no_cache) {
-    std::map<std::size_t, std::span<const char>> meshes;
-    for (std::size_t s = 0; s < run.bodies().shapes.size(); ++s)
-      if (const auto& mesh = run.bodies().shapes[s].mesh; mesh && run.bodies().meshes[*mesh].held)
-        meshes.emplace(s, run.bodies().meshes[*mesh].made.found.set.bytes());
-    output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
-  }
-  output.write(shapes_of(run, output.folder()), write_mesh, std::move(links), run.notes);
+void write(Run& run, RobotWriter& writer) {
+  std::optional<certify::CacheFolder> cache;
+  if (!run.o.no_cache) cache.emplace(certify::CacheFolder::default_folder());
+  write_certified(writer, run.made, cache ? &*cache : nullptr, note_in(run.notes));
 }
 
 /// @param files  of the links that have a set
@@ -155,7 +137,7 @@ Json links_report(const Run& run, const std::vector<std::string>& files) {
 
 /// The command that decides it from the files alone; epsilon as well, where it is one for all links
 /// and of distances to what the files hold, not to wraps.
-RobotCheck check_of(const Run& run, const RobotOutput& output) {
+RobotCheck check_of(const Run& run, const RobotWriter& output) {
   std::optional<Length> epsilon = run.request.set.wanted_epsilon();
   if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
     epsilon.reset();
@@ -177,9 +159,9 @@ RobotCounts counts_of(const Run& run) {
   return counts;
 }
 
-Json robot_report(const Run& run, const RobotOutput& output) {
+Json robot_report(const Run& run, const RobotWriter& output) {
   const RobotCounts counts = counts_of(run);
-  Json report = output.report();
+  Json report = report_of(output);
   report.update({{"bodies", counts.bodies},
                  {"vertices", counts.vertices},
                  {"meshes", counts.meshes},
@@ -191,7 +173,7 @@ Json robot_report(const Run& run, const RobotOutput& output) {
                  {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
                  {"parameters", run.request.parameters()}});
-  if (run.pairs) report["pairs_of_links"] = report_of(*run.pairs);
+  if (run.pairs) report["pairs_of_links"] = pairs_report(*run.pairs);
   return report;
 }
 
@@ -221,7 +203,7 @@ PageLink page_link(const Run& run, const certify::LinkVerdict& link) {
   return out;
 }
 
-void write_page(const Run& run, const RobotOutput& output) {
+void write_page(const Run& run, const RobotWriter& output) {
   RobotPage page{.robot = run.robot.robot.name,
                  .source = run.o.input,
                  .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
@@ -245,8 +227,8 @@ int decompose_robot(const DecomposeOptions& o) {
   Run run{o, robot::read_robot(o.input)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
-  RobotOutput output(o.robot, o.output, run.robot, "bodies", "");
-  run.request = robot_request(o, run.robot, output.choice());
+  RobotWriter output(folder_options(o.robot), o.output, run.robot, "bodies", "");
+  run.request = robot_request(o, run.robot, output.options().shapes);
   run.request.partial = true;
   const certify::WantedMeshes meshes =
       certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
@@ -255,7 +237,7 @@ int decompose_robot(const DecomposeOptions& o) {
   require_formats(meshes, o.input_format);
   certify_links(run);
   if (o.srdf) {
-    run.pairs = pairs_of(run.robot.robot, run.made.links);
+    run.pairs = scene::pairs_of(run.robot.robot, run.made.links);
     output.add_document(".srdf", run.pairs->srdf);
   }
   write(run, output);
@@ -264,8 +246,8 @@ int decompose_robot(const DecomposeOptions& o) {
                           counted(counts.bodies, "body", "bodies") + " of " +
                           counted(counts.links, "link", "links") + ", from " + counts.of_meshes());
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
-  output.say(o.common.quiet, run.notes);
-  if (run.pairs) log(o.common.quiet, run.pairs->words);
+  say(output, o.common.quiet, run.notes);
+  if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
   if (is_page(o.preview))
     io::write_file(o.preview, page_of_robot(o, run.robot, run.made, run.verdicts));
   else if (!o.preview.empty())

@@ -36,14 +36,6 @@ std::string text_of(double value) {
   return {text.data(), end.ptr};
 }
 
-std::vector<std::string> singular_names(unsigned singular) {
-  std::vector<std::string> names;
-  if ((singular & kinematics::kShoulder) != 0) names.emplace_back("shoulder");
-  if ((singular & kinematics::kElbow) != 0) names.emplace_back("elbow");
-  if ((singular & kinematics::kWrist) != 0) names.emplace_back("wrist");
-  return names;
-}
-
 std::vector<std::string> free_names(const IkAnswer& answer, unsigned free) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < answer.joints.size(); ++i)
@@ -91,7 +83,7 @@ Json answer_json(const IkAnswer& answer, bool degrees) {
     j["solutions"].push_back({{"q", q},
                               {"pose", pose_json(row.pose)},
                               {"within_limits", row.within},
-                              {"singular", singular_names(row.singular)},
+                              {"singular", kinematics::singular_names(row.singular)},
                               {"free", free_names(answer, row.free)},
                               {"position_error", row.error.position},
                               {"rotation_error", row.error.rotation}});
@@ -116,7 +108,7 @@ Json answer_json(const IkAnswer& answer, bool degrees) {
     j["families"].push_back({{"free", free_names(answer, free)},
                              {"ranges", ranges},
                              {"pose", pose_json(f.pose)},
-                             {"singular", singular_names(f.family.singular)},
+                             {"singular", kinematics::singular_names(f.family.singular)},
                              {"representatives", representatives}});
   }
   return j;
@@ -151,7 +143,8 @@ void print_answer(const IkAnswer& answer, bool degrees) {
       if (i > 0) line += ',';
       line += text_of(shown(answer, degrees, i, row.q[i]));
     }
-    for (const std::string& name : singular_names(row.singular)) line += "  # singular: " + name;
+    for (const std::string& name : kinematics::singular_names(row.singular))
+      line += "  # singular: " + name;
     for (const std::string& name : free_names(answer, row.free)) line += "  # free: " + name;
     if (!row.within) line += "  # outside the limits";
     std::cout << line << '\n';

@@ -1,6 +1,5 @@
 // kaboum-ik: the configurations with which a robot's chain reaches a pose.
-#include <kaboum/kinematics/copies.h>
-#include <kaboum/kinematics/solution_set.h>
+#include <kaboum/kinematics/inverse.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/robot_file.h>
 
@@ -19,9 +18,6 @@ using namespace kaboum;  // the tool's own names are few
 namespace ik = kinematics;
 
 using tools::kDegree;
-
-/// Configurations of a family that are printed, about.
-constexpr std::size_t kRepresentatives = 6;
 
 using Answer = tools::IkAnswer;
 using Options = tools::IkOptions;
@@ -50,37 +46,6 @@ std::vector<double> parse_joints(const std::string& text, const char* option, co
   return q;
 }
 
-/// The link that no joint starts from, where there is one only.
-std::string only_tip(const robot::Robot& robot) {
-  std::vector<std::string> tips;
-  for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
-    bool last = true;
-    for (const robot::Joint& joint : robot.joints) last = last && joint.parent != link;
-    if (last) tips.push_back(robot.links[link].name);
-  }
-  if (tips.size() != 1)
-    usage("--tip: name the link to be placed; the robot ends in " + robot::names_of(tips));
-  return tips.front();
-}
-
-void add_row(Answer& answer, const Options& o, const std::vector<double>& q,
-             const std::vector<double>& reference, Answer::Row row) {
-  std::vector<std::vector<double>> choices;
-  if (o.copies && !o.ignore_limits) {
-    choices = ik::copies(answer.arm, q);
-  } else if (auto nearest = ik::nearest_copy(answer.arm, q, reference)) {
-    choices.push_back(std::move(*nearest));
-  }
-  if (choices.empty() && o.ignore_limits) {
-    choices.push_back(q);
-    row.within = false;
-  }
-  for (std::vector<double>& choice : choices) {
-    row.q = std::move(choice);
-    answer.rows.push_back(row);
-  }
-}
-
 /// The robot that is asked about, and where its tip is.
 struct Chain {
   std::string file, sha256;           ///< a URDF, or a scene
@@ -106,41 +71,8 @@ Chain read_chain(const Options& o) {
     }
     if (o.base.empty()) out.robot = robot::placed(model.kinematics, model.base);
   }
-  if (out.tip.empty()) out.tip = tools::naming(out.file, [&] { return only_tip(out.robot); });
+  if (out.tip.empty()) out.tip = tools::naming(out.file, [&] { return ik::only_tip(out.robot); });
   return out;
-}
-
-void find_in_closed_form(Answer& answer, const Options& o, const std::vector<double>& reference) {
-  const auto joints = static_cast<long>(answer.joints.size());
-  ik::SolutionSetOptions options;
-  std::copy(reference.begin(), reference.end(), options.solve.reference.begin());
-  options.limits = !o.ignore_limits;
-  options.representatives = kRepresentatives;
-  std::vector<ik::Transform> targets{answer.target};
-  if (o.free_heading) {
-    targets = ik::with_other_headings(*answer.form, answer.target);
-    if (ik::has_any_heading(*answer.form, answer.target))
-      answer.incomplete = "the pose can be reached with many headings, or nearly so";
-  }
-  for (const ik::Transform& target : targets) {
-    ik::SolutionSet set = ik::solve_set(*answer.form, target, options);
-    if (!set.complete && answer.incomplete.empty()) answer.incomplete = set.reason;
-    answer.found += set.isolated.size();
-    if (options.limits && set.isolated.empty() && set.families.empty()) {
-      ik::SolutionSetOptions any = options;
-      any.limits = false;
-      answer.outside = answer.outside || !ik::solve_set(*answer.form, target, any).families.empty();
-    }
-    const auto add = [&](const ik::Solution& s) {
-      add_row(answer, o, {s.q.begin(), s.q.begin() + joints}, reference,
-              {{}, {s.position_error, s.rotation_error}, s.singular, true, target, s.free});
-    };
-    for (const ik::Solution& s : set.isolated) add(s);
-    for (ik::SolutionFamily& family : set.families) {
-      for (const ik::Solution& s : family.representatives) add(s);
-      answer.families.push_back({std::move(family), target});
-    }
-  }
 }
 
 Answer find(const Options& o, const Chain& chain) {
@@ -154,26 +86,16 @@ Answer find(const Options& o, const Chain& chain) {
       o.pose.empty()
           ? ik::forward(answer.arm, parse_joints(o.pose_of, "--pose-of", answer, o.degrees))
           : robot::parse_pose(o.pose, "--pose");
-  const std::vector<double> reference =
-      o.reference.empty() ? std::vector<double>(answer.joints.size(), 0.0)
-                          : parse_joints(o.reference, "--reference", answer, o.degrees);
-  if (!o.numeric) answer.form = ik::recognise(answer.arm);
-  if (o.free_heading && (!answer.form || answer.form->family != ik::Family::FiveAxes))
-    usage("--free-heading is for arms with five axes and a closed form; this one is not");
-  if (answer.form) {
-    find_in_closed_form(answer, o, reference);
-    return answer;
-  }
-  answer.incomplete = "a numeric search finds no proof";
-  ik::NumericOptions options;
-  options.seed = o.common.seed;
-  options.starts = o.starts;
-  options.limits = !o.ignore_limits;
-  if (!o.reference.empty()) options.first = reference;
-  for (const ik::NumericSolution& s : ik::solve_numeric_all(answer.arm, answer.target, options)) {
-    ++answer.found;
-    add_row(answer, o, s.q, reference, {{}, s.error, ik::kRegular, true, answer.target});
-  }
+  ik::InverseRequest request{answer.target};
+  if (!o.reference.empty())
+    request.reference = parse_joints(o.reference, "--reference", answer, o.degrees);
+  request.numeric = o.numeric;
+  request.limits = !o.ignore_limits;
+  request.copies = o.copies;
+  request.free_heading = o.free_heading;
+  request.starts = o.starts;
+  request.seed = o.common.seed;
+  static_cast<ik::InverseAnswer&>(answer) = ik::find_configurations(answer.arm, request);
   return answer;
 }
 

@@ -2,14 +2,14 @@
 // touch.
 
 #include <kaboum/base/error.h>
+#include <kaboum/scene/scene_update.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "scene_maker.h"
+#include "scene_names.h"
 #include "scene_options.h"
 #include "scene_pairs.h"
-#include "scene_update.h"
 
 namespace {
 
@@ -18,16 +18,21 @@ using namespace kaboum;  // the tool's own names are few
 const std::map<std::string, bcd::Effort> kEfforts{
     {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
 
-std::vector<tools::NamedFile> named_files(const std::vector<std::string>& texts,
+std::vector<scene::NamedFile> named_files(const std::vector<std::string>& texts,
                                           const char* option) {
-  std::vector<tools::NamedFile> out;
+  std::vector<scene::NamedFile> out;
   out.reserve(texts.size());
   for (const std::string& text : texts) out.push_back(tools::parse_named_file(text, option));
   return out;
 }
 
+/// Of a mesh, by its extension. @throws Error saying what to do with others
+io::Format format_of(const std::string& file) {
+  return tools::format_for(file, "", "--input-format");
+}
+
 /// @return the exit code
-int say_made(const tools::SceneOptions& o, const tools::MadeScene& made, const std::string& what,
+int say_made(const tools::SceneOptions& o, const scene::MadeScene& made, const std::string& what,
              const char* command) {
   for (const std::string& line : made.notes) tools::log(o.common.quiet, line);
   for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
@@ -45,7 +50,7 @@ int say_made(const tools::SceneOptions& o, const tools::MadeScene& made, const s
 
 int make_scene(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::SceneMaker maker;
+  scene::SceneMaker maker;
   maker.scene = o.scene;
   maker.robots = named_files(o.robots, "--robot");
   maker.objects = named_files(o.objects, "--object");
@@ -54,30 +59,8 @@ int make_scene(const tools::SceneOptions& o) {
   maker.scales = tools::parse_scales(o.scales, "--scale");
   std::vector<std::string> inputs;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
-    for (const tools::NamedFile& file : *files) inputs.push_back(file.file);
-  if (inputs.empty())
-    throw Error(ErrorCode::InvalidArgument, "nothing is asked for: give --robot or --object");
-  if (!o.scene.ends_with(".json") && !o.scene.ends_with(".yaml") && !o.scene.ends_with(".yml"))
-    throw Error(ErrorCode::InvalidArgument,
-                o.scene + ": a scene's name ends in .json, .yaml or .yml");
-  if (!o.force && std::filesystem::exists(o.scene))
-    throw Error(ErrorCode::InvalidArgument,
-                o.scene + " exists; --force replaces it, with all that was edited in it");
-  const std::filesystem::path folder = std::filesystem::path(o.scene).replace_extension();
-  std::error_code error;
-  if (!o.force && std::filesystem::exists(folder, error) &&
-      !std::filesystem::is_empty(folder, error))
-    throw Error(ErrorCode::InvalidArgument,
-                folder.string() + ", where the sets of " + o.scene +
-                    " go, is there already, perhaps of another scene; --force writes into it");
-  // Lengths in URDFs are metres; an arm that is a thousand times too small is free of everything.
-  if (!o.robots.empty() && o.unit != "m")
-    throw Error(ErrorCode::InvalidArgument,
-                "--unit " + o.unit +
-                    ": URDFs are in m, and so are scenes with robots; bring the "
-                    "meshes of objects into m with --scale");
-  if (o.inner_links && o.robots.empty())
-    throw Error(ErrorCode::InvalidArgument, "--inner-links: no robot is asked for (--robot)");
+    for (const scene::NamedFile& file : *files) inputs.push_back(file.file);
+  maker.replace = o.force;
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
   if (o.inner_links) maker.options.inner_links.emplace();  // all
@@ -87,12 +70,13 @@ int make_scene(const tools::SceneOptions& o) {
   maker.options.sets.preparation.drop_sheets = o.drop_sheets;
   maker.options.sets.unit = o.unit;
   maker.options.packages = o.packages;
+  maker.options.format_of = format_of;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
   if (!o.no_cache) maker.options.cache = &cache;
   tools::Progress progress(o.common.quiet);
   maker.options.progress = [&](const std::string& stage) { progress.show(stage); };
-  const tools::MadeScene made = tools::make_scene(maker);
+  const scene::MadeScene made = scene::make_scene(maker);
   return say_made(o, made,
                   o.scene + ": " + std::to_string(made.containers.size()) + " sets" +
                       (maker.places.size() < inputs.size()
@@ -107,9 +91,9 @@ int update_scene(const tools::SceneOptions& o) {
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
   tools::Progress progress(o.common.quiet);
-  const tools::MadeScene made =
-      tools::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
-                           [&](const std::string& stage) { progress.show(stage); }});
+  const scene::MadeScene made =
+      scene::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
+                           [&](const std::string& stage) { progress.show(stage); }, format_of});
   return say_made(
       o, made,
       o.scene + ": " +

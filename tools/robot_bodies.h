@@ -1,11 +1,10 @@
 #pragma once
 
+#include <kaboum/base/notes.h>
 #include <kaboum/certify/link_bodies.h>
 
 #include <string>
 #include <vector>
-
-#include "notes.h"
 
 /// What tools that make the bodies of robots have in common.
 namespace kaboum::tools {

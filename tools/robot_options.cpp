@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot_folder/loaders.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,30 +16,10 @@
 namespace kaboum::tools {
 namespace {
 
-/// What a program needs of robots that it loads: docs/robots.md has the table.
-struct Preset {
-  const char* name;
-  std::vector<std::string> formats;
-  bool package = false;        ///< meshes are named package://FOLDER/...
-  const char* bodies = "stl";  ///< format of bodies' files
-  bool declare_convex = false;
-  double thickness = 0;  ///< least, of bodies [m]
-};
-
-const std::vector<Preset>& presets() {
-  static const std::vector<Preset> all{
-      {.name = "moveit", .formats = {}, .package = true},
-      // Its float32 loses bodies thinner than 1/10,000 of their size: 0.1 mm does for 1 m.
-      {.name = "mujoco", .formats = {"mjcf"}, .thickness = 0.0001},
-      {.name = "gazebo", .formats = {"sdf"}},
-      {.name = "bullet", .formats = {}},
-      {.name = "drake", .formats = {}, .bodies = "obj", .declare_convex = true}};
-  return all;
-}
-
 void add_formats(CLI::App& app, RobotOptions& o) {
   std::vector<std::string> names;
-  for (const Preset& preset : presets()) names.emplace_back(preset.name);
+  for (const robot_folder::Loader& loader : robot_folder::loaders())
+    names.emplace_back(loader.name);
   app.add_option("--robot-format", o.formats,
                  "Also write the robot as MJCF (NAME.xml) or SDF (NAME.sdf), beside the URDF, "
                  "which is always written (repeatable)")
@@ -115,19 +96,18 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input) {
 
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& o,
                   double* thickness) {
-  for (const Preset& preset : presets()) {
-    if (preset.name != o.preset) continue;
-    if (app.count("--robot-format") == 0) o.formats = preset.formats;
-    if (app.count("--mesh-prefix") == 0 && preset.package) {
-      const std::filesystem::path path =
-          std::filesystem::absolute(std::filesystem::path(folder)).lexically_normal();
-      const std::filesystem::path named = path.filename().empty() ? path.parent_path() : path;
-      o.prefix = "package://" + named.filename().string();
-    }
-    o.bodies = preset.bodies;
-    o.declare_convex = preset.declare_convex;
-    if (thickness != nullptr && app.count("--min-thickness") == 0) *thickness = preset.thickness;
+  if (o.preset.empty()) return;
+  const robot_folder::Loader& loader = robot_folder::loader_of(o.preset);
+  if (app.count("--robot-format") == 0) {
+    o.formats.clear();
+    if (loader.mjcf) o.formats.emplace_back("mjcf");
+    if (loader.sdf) o.formats.emplace_back("sdf");
   }
+  if (app.count("--mesh-prefix") == 0 && loader.package)
+    o.prefix = robot_folder::package_prefix(folder);
+  o.bodies = loader.bodies;
+  o.declare_convex = loader.declare_convex;
+  if (thickness != nullptr && app.count("--min-thickness") == 0) *thickness = loader.thickness;
 }
 
 certify::LinkEpsilons read_epsilons(const std::string& file, const robot::Robot& robot) {

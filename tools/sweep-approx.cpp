@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
+#include <kaboum/robot_folder/urdf_text.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -130,7 +131,7 @@ void write_set(const Run& run, io::SetFormat format) {
   if (format == io::SetFormat::Glb) {
     io::write_file(o.output, run.swept.bytes());
   } else if (o.urdf()) {
-    const std::string prefix = with_slash(o.prefix);
+    const std::string prefix = robot_folder::with_slash(o.prefix);
     write_swept_urdf(o.output, run.swept.artefact(), prefix);
     log(o.common.quiet,
         how_meshes_are_found(o.output, std::filesystem::path(o.output).stem().string(), prefix));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/base/notes.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/sweep.h>
@@ -8,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "notes.h"
 #include "verdict.h"
 #include "verify_sweep.h"
 

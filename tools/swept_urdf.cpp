@@ -4,9 +4,10 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/io/file_names.h>
+#include <kaboum/robot_folder/urdf_text.h>
 #include <tinyxml2.h>
 
-#include "file_names.h"
 #include "urdf_output.h"
 
 namespace kaboum::tools {
@@ -16,14 +17,14 @@ void write_swept_urdf(const std::filesystem::path& path, const geom::ConvexSet& 
   ensure(set.margin == 0, "a margin cannot be stated in URDF");
   std::filesystem::path folder = path;
   folder.replace_extension();
-  const std::string name = folder.filename().string(), stem = plain_file_name(name);
+  const std::string name = folder.filename().string(), stem = io::plain_file_name(name);
   io::write_convex_set(folder, set, io::SetFormat::Directory, stem);
   tinyxml2::XMLDocument document;
   document.InsertEndChild(document.NewDeclaration());
   tinyxml2::XMLElement* robot = document.NewElement("robot");
   document.InsertEndChild(robot);
   robot->SetAttribute("name", name.c_str());
-  let_mujoco_find_meshes(*robot);
+  robot_folder::let_mujoco_find_meshes(*robot);
   tinyxml2::XMLElement* link = robot->InsertNewChildElement("link");
   link->SetAttribute("name", "swept_volume");
   // Gazebo drops links without inertia. It has no other meaning: the link is static.

@@ -2,6 +2,7 @@
 #include "verify_robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/notes.h>
 #include <kaboum/geom/inside_out.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/robot_file.h>
@@ -11,7 +12,6 @@
 #include <filesystem>
 #include <iostream>
 
-#include "notes.h"
 #include "prepared_original.h"
 #include "robot_meshes.h"
 #include "verdict.h"

@@ -1,5 +1,7 @@
 // Scenes from the file system.
 
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/scene.h>
 
@@ -23,6 +25,20 @@ SceneFile read_scene(const std::string& path) {
       &notes);
   out.notes = std::move(notes.notes);
   return out;
+}
+
+std::size_t robot_named(const World& world, const std::string& name) {
+  std::vector<std::string> names;
+  for (const RobotModel& robot : world.robots) names.push_back(robot.name);
+  if (name.empty()) {
+    if (names.size() == 1) return 0;
+    throw Error(ErrorCode::InvalidArgument, names.empty()
+                                                ? "the scene has no robot"
+                                                : "the scene has several robots: name one (robot)");
+  }
+  if (const auto robot = world.find_robot(name)) return *robot;
+  throw Error(ErrorCode::InvalidArgument,
+              "robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
 }
 
 }  // namespace kaboum::world

@@ -204,6 +204,18 @@ class CertifiedRobot:
     def verdicts(self) -> list[tuple[str, str, str]]: ...
     @property
     def distance(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def write(
+        self,
+        folder: _Path,
+        *,
+        formats: str | Sequence[str] | None = None,
+        loader: Literal["moveit", "mujoco", "gazebo", "bullet", "drake"] | None = None,
+        mesh_prefix: str | None = None,
+        srdf: bool = False,
+        no_cache: bool = False,
+    ) -> dict[str, list[str]]: ...
 
 class Solution:
     @property
@@ -255,8 +267,67 @@ class Path:
     def __bool__(self) -> bool: ...
     def __len__(self) -> int: ...
 
+class InverseKinematics:
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def solutions(self) -> NDArray[np.float64]: ...
+    @property
+    def details(self) -> list[dict[str, Any]]: ...
+    @property
+    def families(self) -> list[dict[str, Any]]: ...
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def incomplete(self) -> str: ...
+    @property
+    def family(self) -> str | None: ...
+    def __bool__(self) -> bool: ...
+    def __len__(self) -> int: ...
+
+class Wrap:
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    @property
+    def distance(self) -> _Bracket: ...
+    @property
+    def notes(self) -> list[str]: ...
+
+class Scene:
+    def __init__(self, *, unit: str = "m") -> None: ...
+    @staticmethod
+    def read(path: _Path) -> Scene: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def path(self) -> str | None: ...
+    @property
+    def data(self) -> dict[str, Any]: ...
+    def add_robot(self, name: str, robot: CertifiedRobot, *, at: Sequence[float] | None = None, **members: Any) -> None: ...
+    def add_object(
+        self,
+        name: str,
+        shape: CertifiedSet | _Mesh,
+        *,
+        at: Sequence[float] | None = None,
+        inner: CertifiedSet | _Mesh | None = None,
+        features: list[dict[str, Any]] | None = None,
+        grasps: list[dict[str, Any]] | None = None,
+        **options: Any,
+    ) -> None: ...
+    def add_region(
+        self, name: str, shape: CertifiedSet | _Mesh, *, at: Sequence[float] | None = None, **options: Any
+    ) -> None: ...
+    def allow_contact(self, a: str, b: str) -> None: ...
+    def attach(self, **members: Any) -> None: ...
+    def write(self, path: _Path, *, force: bool = False) -> dict[str, list[str]]: ...
+
 class World:
-    def __init__(self, path: _Path) -> None: ...
+    def __init__(self, scene: Scene | _Path) -> None: ...
     @property
     def unit(self) -> str: ...
     @property
@@ -497,20 +568,94 @@ def verify_robot(
 def certify_robot(
     robot: _Robot,
     *,
-    epsilon: _Length | None = None,
-    max_bodies: int | None = None,
-    max_vertices_per_body: int = 64,
-    effort: _Effort = "normal",
     links: Sequence[str] | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
-    unit: str = "m",
-    drop_sheets: bool = False,
+    epsilons: Mapping[str, _Length] | None = None,
+    robot_bodies: int | None = None,
+    robot_vertices: int | None = None,
     partial: bool = False,
+    # options of certify_robot
+    epsilon: _Length | None = None,
+    max_bodies: int | None = None,
+    max_total_vertices: int | None = None,
+    min_thickness: float = 0.0,
+    max_vertices_per_body: int = 64,
+    effort: Literal["fast", "normal", "best"] = "normal",
+    simplify: float | None = None,
+    max_work: float | None = None,
+    improve_work: float | None = None,
+    method: Literal["planes", "clusters", "voxels"] = "planes",
+    pre_step: Literal["auto", "on", "off"] = "auto",
+    drop_sheets: bool = False,
+    holes: Literal["fill", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    unit: str = "m",
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> CertifiedRobot: ...
+def inverse_kinematics(
+    robot: _Robot,
+    pose: ArrayLike | None = None,
+    *,
+    tip: str | None = None,
+    base: str | None = None,
+    pose_of: ArrayLike | None = None,
+    reference: ArrayLike | None = None,
+    numeric: bool = False,
+    ignore_limits: bool = False,
+    copies: bool = False,
+    free_heading: bool = False,
+    starts: int = 100,
+    seed: int = 1,
+) -> InverseKinematics: ...
+def wrap(
+    mesh: _Mesh,
+    *,
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    epsilon: _Length | None = None,
+    precision: Literal["float", "double"] = "float",
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Wrap: ...
+def replay(original: _Path, log: _Path, result: _Mesh, *, scale: float = 1.0) -> Verdict: ...
+def cache_entries(*, folder: _Path | None = None, verify: bool = False) -> list[dict[str, Any]]: ...
+def prune_cache(*, folder: _Path | None = None, size: int | None = None) -> dict[str, int]: ...
+def make_scene(
+    path: _Path,
+    *,
+    robots: Mapping[str, _Path] | None = None,
+    objects: Mapping[str, _Path] | None = None,
+    regions: Mapping[str, _Path] | None = None,
+    at: Mapping[str, Sequence[float]] | None = None,
+    scale: Mapping[str, float] = {},
+    inner: bool = False,
+    inner_links: bool = False,
+    geometry: _Geometry = "collision",
+    epsilon: _Length = "1%",
+    effort: _Effort = "normal",
+    drop_sheets: bool = False,
+    unit: str = "m",
+    package_path: _Path | Sequence[_Path] = (),
+    force: bool = False,
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> dict[str, list[str]]: ...
+def update_scene(
+    path: _Path,
+    *,
+    package_path: _Path | Sequence[_Path] = (),
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> dict[str, list[str]]: ...
 def solve(
     domain: _Path,
     problem: _Path | None = None,

@@ -21,6 +21,10 @@ void bind_verification(py::module_& module);
 void bind_sweep_verification(py::module_& module);
 void bind_robot_verification(py::module_& module);
 void bind_planning(py::module_& module);
+void bind_inverse_kinematics(py::module_& module);
+void bind_wraps(py::module_& module);
+void bind_replay_and_cache(py::module_& module);
+void bind_scenes(py::module_& module);
 void bind_worlds(py::module_& module);
 void bind_option_tables(py::module_& module);
 

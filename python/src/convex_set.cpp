@@ -146,6 +146,7 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
   return run(running.threads, [&] {
     CertifiedSetValue out;
     out.notes = value.notes;
+    if (!value.sha256.empty()) out.file = value.source;
     const certify::SetCache cache(certify::SetCache::default_folder());
     auto found = certify::find_or_certify(
         *value.mesh, value.sha256, r, running.no_cache ? nullptr : &cache,

@@ -19,6 +19,7 @@ struct CertifiedSetValue {
   certify::CertifiedSet made;
   bool cached = false;
   std::vector<std::string> notes;
+  std::string file = {};  ///< that the mesh was read from; empty: from none
 
   /// Keeps what it looks into.
   [[nodiscard]] std::shared_ptr<const geom::ConvexSet> set() const {

@@ -20,6 +20,10 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_sweep_verification(module);
   bind_robot_verification(module);
   bind_planning(module);
+  bind_inverse_kinematics(module);
+  bind_wraps(module);
+  bind_replay_and_cache(module);
+  bind_scenes(module);
   bind_worlds(module);
   bind_option_tables(module);
   module.attr("__name__") = name;

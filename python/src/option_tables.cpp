@@ -4,6 +4,7 @@
 #include <kaboum/certify/set_options.h>
 
 #include "request_options.h"
+#include "robot.h"
 
 namespace kaboum::python {
 
@@ -14,6 +15,7 @@ void bind_option_tables(py::module_& module) {
         py::dict out;
         out["decimate"] = table_of(keywords_of(certify::mesh_options()));
         out["decompose"] = table_of(keywords_of(certify::set_options()));
+        out["certify_robot"] = table_of(keywords_of(link_options()));
         return out;
       },
       "By function, its options as the library describes them: a list of dicts.");

@@ -3,11 +3,16 @@
 #include "robot.h"
 
 #include <kaboum/certify/link_verdict.h>
+#include <kaboum/certify/robot_budget.h>
+#include <kaboum/certify/set_options.h>
+#include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/robot_folder/loaders.h>
+#include <kaboum/scene/robot_pairs.h>
 
 #include "convex_set.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
-#include "set_options.h"
 
 namespace kaboum::python {
 namespace {
@@ -73,11 +78,151 @@ void bind_robot(py::module_& module) {
       });
 }
 
-/// A CertifiedRobot, and the robot that it is of.
-struct CertifiedValue {
-  certify::CertifiedRobot made;
-  std::shared_ptr<const robot::RobotFile> file;
-};
+/// A dict of links' names and lengths.
+certify::LinkEpsilons epsilons_of(const py::object& given) {
+  certify::LinkEpsilons out;
+  if (given.is_none()) return out;
+  if (!py::isinstance<py::dict>(given))
+    throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
+  for (const auto& [link, epsilon] : given.cast<py::dict>()) {
+    if (!py::isinstance<py::str>(link))
+      throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
+    const auto name = link.cast<std::string>();
+    const auto length = length_of(py::reinterpret_borrow<py::object>(epsilon),
+                                  ("epsilons['" + name + "']").c_str());
+    if (!length)
+      throw Error(ErrorCode::InvalidArgument, "epsilons['" + name + "'] must be a length");
+    out.emplace(name, *length);
+  }
+  return out;
+}
+
+CertifiedValue certify_robot(const py::object& robot, const py::object& links,
+                             const std::string& geometry, const py::object& package_path,
+                             const py::object& epsilons, std::optional<std::size_t> robot_bodies,
+                             std::optional<std::size_t> robot_vertices, bool partial,
+                             const py::kwargs& given) {
+  py::dict keywords = given;
+  certify::SetOptions options;
+  const std::set<std::string> stated = take_options(link_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords);
+  require_all_taken("certify_robot", keywords, keywords_of(link_options()));
+  require_none(certify::contradiction(options, stated));
+  const RobotValue value = robot_of(robot, "robot");
+  certify::RobotRequest r;
+  r.set = certify::request_of(options);
+  r.partial = partial;
+  r.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
+  r.epsilons = epsilons_of(epsilons);
+  const bool has_budget = robot_bodies || robot_vertices;
+  if (has_budget)
+    for (const char* other : {"epsilon", "max-bodies", "max-total-vertices"})
+      if (stated.contains(other))
+        throw Error(ErrorCode::InvalidArgument,
+                    with_underscores(other) + " means nothing beside a budget of the whole robot");
+  Watch watch(running.progress);
+  return run(running.threads, [&] {
+    const certify::SetCache kept(certify::SetCache::default_folder());
+    const certify::SetCache* cache = running.no_cache ? nullptr : &kept;
+    certify::RobotHooks hooks;
+    hooks.progress = watch.hook();
+    if (has_budget)
+      r.set.epsilon =
+          certify::epsilon_within(*value.file, r, {robot_bodies, robot_vertices}, cache, hooks);
+    std::vector<std::string> notes;
+    hooks.note = [&](const std::string& file, const std::string& text) {
+      notes.push_back(file + ": " + text);
+    };
+    certify::CertifiedRobot made = certify::certify_robot(*value.file, r, cache, hooks);
+    return CertifiedValue{std::move(made), value.file, std::move(notes)};
+  });
+}
+
+/// Names of formats: one, several or none.
+void take_formats(const py::object& formats, robot_folder::FolderOptions& options) {
+  for (const std::string& format : links_of(formats)) {
+    if (format == "mjcf")
+      options.mjcf = true;
+    else if (format == "sdf")
+      options.sdf = true;
+    else if (format != "urdf")
+      refuse_name("formats", format, {"urdf", "mjcf", "sdf"});
+  }
+}
+
+py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
+                     const py::object& formats, const std::optional<std::string>& loader,
+                     const std::optional<std::string>& mesh_prefix, bool srdf, bool no_cache) {
+  const auto place = path_of(folder);
+  if (!place) throw Error(ErrorCode::InvalidArgument, "folder must be a str or an os.PathLike");
+  robot_folder::FolderOptions options;
+  take_formats(formats, options);
+  if (mesh_prefix) options.mesh_prefix = *mesh_prefix;
+  if (loader) {
+    robot_folder::FolderOptions by_default = options;
+    robot_folder::apply(robot_folder::loader_of(*loader), *place, by_default);
+    if (!formats.is_none()) {
+      by_default.mjcf = options.mjcf;
+      by_default.sdf = options.sdf;
+    }
+    if (mesh_prefix) by_default.mesh_prefix = *mesh_prefix;
+    options = by_default;
+  }
+  std::vector<std::string> notes;
+  const robot_folder::WrittenRobot written = run(0, [&] {
+    std::vector<std::pair<std::string, std::string>> documents;
+    if (srdf)
+      documents.emplace_back(".srdf", scene::pairs_of(robot.file->robot, robot.made.links).srdf);
+    std::optional<certify::CacheFolder> cache;
+    if (!no_cache) cache.emplace(certify::CacheFolder::default_folder());
+    return robot_folder::write_robot(*place, *robot.file, robot.made, options, documents,
+                                     cache ? &*cache : nullptr,
+                                     [&](const std::string& file, const std::string& text) {
+                                       notes.push_back(file + ": " + text);
+                                     });
+  });
+  py::dict out;
+  out["documents"] = written.documents;
+  out["links"] = written.links;
+  out["stale"] = written.stale;
+  out["notes"] = notes;
+  return out;
+}
+
+constexpr const char* kWriteDoc =
+    R"(Writes the robot's folder, the same bytes as `bcd-decompose ROBOT -o FOLDER`.
+
+It has the bodies of each mesh, a container for each link, and the robot's URDF with these bodies
+instead of its shapes (docs/robots.md).
+
+Parameters
+----------
+folder : str or path
+    A new one, or one of an earlier result, whose files are replaced.
+formats : str or sequence of str, optional
+    'mjcf' and 'sdf', besides URDF.
+loader : str, optional
+    'moveit', 'mujoco', 'gazebo', 'bullet' or 'drake': sets formats, prefix and the bodies' format
+    as the program needs them, where the other arguments do not. MuJoCo needs bodies of
+    `min_thickness` 0.0001 m as well: `certify_robot` makes them.
+mesh_prefix : str, optional
+    Put before the new meshes' names, as in 'package://arm'; by default they are relative.
+srdf : bool
+    Also write pairs of links that need no check, for MoveIt. Not where only some `links` were
+    asked for.
+no_cache : bool
+    Write all files, also those that an earlier run has written just so.
+
+Returns
+-------
+dict
+    'documents': the files that hold the robot, the URDF first. 'links': the containers, 'stale':
+    what is there of an earlier result, both relative to the folder. 'notes'.
+
+Raises
+------
+Error
+    'output_failed' where something else is in the folder's place.)";
 
 void bind_certified(py::module_& module) {
   using Value = CertifiedValue;
@@ -110,37 +255,14 @@ void bind_certified(py::module_& module) {
       .def_property_readonly(
           "distance", [](const Value& r) { return r.made.bodies.certificate().distance; },
           "Bound of how far a body reaches beyond its shape. [length]")
+      .def_property_readonly(
+          "notes", [](const Value& r) { return r.notes; }, "What a user should know of the meshes.")
+      .def("write", &write_robot, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
+           py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
+           py::arg("srdf") = false, py::arg("no_cache") = false, kWriteDoc)
       .def("__repr__", [](const Value& r) {
         return "<kaboum.CertifiedRobot of " + std::to_string(r.made.links.size()) + " links>";
       });
-}
-
-CertifiedValue certify_robot(const py::object& robot, const py::object& epsilon,
-                             std::optional<std::size_t> max_bodies,
-                             std::size_t max_vertices_per_body, const std::string& effort,
-                             const py::object& links, const std::string& geometry,
-                             const py::object& package_path, const std::string& unit,
-                             bool drop_sheets, bool partial, bool no_cache, int threads,
-                             const py::object& progress) {
-  const RobotValue value = robot_of(robot, "robot");
-  certify::RobotRequest r;
-  r.set.epsilon = length_of(epsilon, "epsilon");
-  r.set.max_bodies = max_bodies;
-  r.set.max_vertices = max_vertices_per_body;
-  r.set.effort = value_of(kSetEfforts, effort, "effort");
-  r.set.preparation.drop_sheets = drop_sheets;
-  r.set.wrap.emplace().where_needed = true;
-  r.set.unit = unit;
-  r.partial = partial;
-  r.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
-  Watch watch(progress);
-  return run(threads, [&] {
-    const certify::SetCache cache(certify::SetCache::default_folder());
-    certify::RobotHooks hooks;
-    hooks.progress = watch.hook();
-    return CertifiedValue{
-        certify::certify_robot(*value.file, r, no_cache ? nullptr : &cache, hooks), value.file};
-  });
 }
 
 constexpr const char* kDoc =
@@ -149,25 +271,20 @@ constexpr const char* kDoc =
 Parameters
 ----------
 robot : Robot or path
-epsilon : float or str, optional
-    No body's point is farther than this from its mesh: a length in the robot's unit, or a
-    percentage of each mesh's diagonal. By default '1%'.
-max_bodies : int, optional
-    Of each mesh.
-max_vertices_per_body : int
-effort : str
-    'fast', 'normal' or 'best'.
 links : sequence of str, optional
     Only these.
 geometry : str
     'collision' or 'visual'.
 package_path : str or sequence of str
     Folders that package:// is looked up in.
+epsilons : dict, optional
+    Of single links, by name: a length or a percentage, instead of `epsilon`.
+robot_bodies, robot_vertices : int, optional
+    The most of all links together: the least epsilon, the same for all links, that allows it.
 partial : bool
     A mesh that cannot be held as asked for does not refuse the robot: it gets one body round a wrap
     of it, farther than epsilon; or none, and its link has no set. `verdicts` names the links.
-unit, drop_sheets, no_cache, threads, progress
-    As for `decompose`. Meshes that bound no solid are wrapped.
+{keywords}
 
 Raises
 ------
@@ -175,7 +292,21 @@ Error
     'invalid_argument' naming an unknown link; 'invalid_input' naming the link or file, with
     `partial` only where no link can be held.)";
 
+/// Keywords that are no options of a set, in the signature.
+constexpr const char* kOwnKeywords =
+    "*, links: object = None, geometry: str = 'collision', package_path: object = (), "
+    "epsilons: object = None, robot_bodies: object = None, robot_vertices: object = None, "
+    "partial: bool = False,";
+
 }  // namespace
+
+std::vector<Option<certify::SetOptions>> link_options() {
+  std::vector<Option<certify::SetOptions>> out;
+  for (const Option<certify::SetOptions>& option : certify::set_options())
+    if (option.name != "direction" && option.name != "scale" && option.name != "frame")
+      out.push_back(option);
+  return out;
+}
 
 RobotValue robot_of(const py::object& value, const char* argument) {
   if (py::isinstance<RobotValue>(value)) return value.cast<RobotValue>();
@@ -222,14 +353,16 @@ Raises
 ------
 Error
     'invalid_input' naming the line.)");
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  std::string text = document("certify_robot", "robot: object", keywords_of(link_options()),
+                              "kaboum.CertifiedRobot", kDoc);
+  text.replace(text.find("*,"), 2, kOwnKeywords);
   module.def("certify_robot", &certify_robot, py::arg("robot"), py::kw_only(),
-             py::arg("epsilon") = py::none(), py::arg("max_bodies") = py::none(),
-             py::arg("max_vertices_per_body") = 64, py::arg("effort") = "normal",
              py::arg("links") = py::none(), py::arg("geometry") = "collision",
-             py::arg("package_path") = py::tuple(), py::arg("unit") = "m",
-             py::arg("drop_sheets") = false, py::arg("partial") = false,
-             py::arg("no_cache") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
-             kDoc);
+             py::arg("package_path") = py::tuple(), py::arg("epsilons") = py::none(),
+             py::arg("robot_bodies") = py::none(), py::arg("robot_vertices") = py::none(),
+             py::arg("partial") = false, text.c_str());
 }
 
 }  // namespace kaboum::python

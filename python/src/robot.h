@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/certify/robot.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <memory>
@@ -14,8 +15,18 @@ struct RobotValue {
   std::shared_ptr<const robot::RobotFile> file;
 };
 
+/// A CertifiedRobot, and the robot that it is of.
+struct CertifiedValue {
+  certify::CertifiedRobot made;
+  std::shared_ptr<const robot::RobotFile> file;
+  std::vector<std::string> notes;
+};
+
 /// A Robot, or the name of its file. @throws as robot::read_robot
 RobotValue robot_of(const py::object& value, const char* argument);
+
+/// Options of a set that a robot's links can have: its file states their scales and frames.
+std::vector<Option<certify::SetOptions>> link_options();
 
 /// Names, or None for all.
 std::vector<std::string> links_of(const py::object& links);

@@ -1,6 +1,5 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
-#include <kaboum/base/similar_name.h>
 #include <kaboum/motion/find_path.h>
 #include <kaboum/world/scene.h>
 #include <pybind11/numpy.h>
@@ -12,6 +11,7 @@
 #include "arguments.h"
 #include "mesh.h"
 #include "running.h"
+#include "scene.h"
 
 namespace kaboum::python {
 namespace {
@@ -41,17 +41,7 @@ struct PathValue {
 };
 
 std::size_t robot_index(const world::World& world, const std::optional<std::string>& name) {
-  std::vector<std::string> names;
-  for (const world::RobotModel& robot : world.robots) names.push_back(robot.name);
-  if (!name) {
-    if (names.size() == 1) return 0;
-    throw Error(ErrorCode::InvalidArgument,
-                names.empty() ? "the scene has no robot"
-                              : "the scene has several robots: robot must name one");
-  }
-  if (const auto robot = world.find_robot(*name)) return *robot;
-  throw Error(ErrorCode::InvalidArgument,
-              "robot: the scene has no robot '" + *name + "'" + did_you_mean(*name, names));
+  return world::robot_named(world, name.value_or(""));
 }
 
 /// n x k values, a row for each configuration; one configuration may be given without its row.
@@ -104,12 +94,16 @@ world::WorldState state_at(const WorldValue& in, std::size_t robot, const std::v
   return state;
 }
 
-WorldValue read_world(const py::object& path) {
-  const auto file = path_of(path);
-  if (!file) throw Error(ErrorCode::InvalidArgument, "path must be a str or an os.PathLike");
+WorldValue read_world(const py::object& scene) {
+  std::optional<world::SceneFile> made = scene_file_of(scene);
+  const auto file = path_of(scene);
+  if (!made && !file)
+    throw Error(ErrorCode::InvalidArgument,
+                "scene must be a kaboum.Scene, a str or an os.PathLike");
   return run(0, [&] {
     WorldValue out;
-    out.scene = std::make_shared<const world::SceneFile>(world::read_scene(*file));
+    out.scene = std::make_shared<const world::SceneFile>(made ? std::move(*made)
+                                                              : world::read_scene(*file));
     out.checker = std::make_shared<const world::Checker>(out.scene->world);
     return out;
   });
@@ -297,7 +291,7 @@ void bind_world(py::module_& module) {
       R"(Robots and objects of a scene by their bounding sets, as kaboum-check and kaboum-move read it.
 
 It never changes. Angles are in radians, lengths in the scene's unit.)")
-      .def(py::init(&read_world), py::arg("path"), "Reads a scene file (docs/scene.md).")
+      .def(py::init(&read_world), py::arg("scene"), "Of a Scene, or of its file (docs/scene.md).")
       .def_property_readonly(
           "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
       .def_property_readonly(

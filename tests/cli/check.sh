@@ -275,7 +275,7 @@ expect 2 'is used twice' "$BIN/kaboum-scene" make bad.json --object a=meshes/cub
 for option in --path --configuration --configurations; do expect 2 'is empty' "$BIN/kaboum-check" near.json $option ''; done
 sed 's/"unit": "m"/"unit": "mm"/' near.json >mm.json
 expect 3 'URDFs are in m' "$BIN/kaboum-check" mm.json
-expect 2 'cell.json exists; --force' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
+expect 2 'cell.json exists; replacing it (force)' "$BIN/kaboum-scene" make cell.json --object box=meshes/cube.off
 expect 2 'ends in .json' "$BIN/kaboum-scene" make cell --object box=meshes/cube.off
 expect 2 'URDFs are in m' "$BIN/kaboum-scene" make bad.json --unit mm --robot arm=arm.urdf --object box=meshes/cube.off
 # Files that state their unit, and others: a set is in the unit that it says.
@@ -294,7 +294,7 @@ expect 3 'absent.stl: there is no such file' "$BIN/kaboum-scene" make bad.json -
 # Too thin for bodies within it.
 printf 'OFF\n8 12 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1e-6\n1 0 1e-6\n0 1 1e-6\n1 1 1e-6\n' >thin.off
 printf '3 %s\n' '0 2 3' '0 3 1' '4 5 7' '4 7 6' '0 1 5' '0 5 4' '2 6 7' '2 7 3' '0 4 6' '0 6 2' '1 3 7' '1 7 5' >>thin.off
-expect 0 'no body lies within thin.off at this --epsilon; it has no inner set' \
+expect 0 'no body lies within thin.off at this epsilon; it has no inner set' \
   "$BIN/kaboum-scene" make thin.json --object thin=thin.off --inner --epsilon 20% --no-cache
 grep -q '"inner"' thin.json && fail "an inner set without bodies"
 expect 3 "region 'thin': no body lies within thin.off" "$BIN/kaboum-scene" make bad.json --region thin=thin.off --epsilon 20% --no-cache

@@ -1,6 +1,9 @@
 """Meshes in and out: arrays, objects that look like meshes, files, errors."""
 
 import fractions
+import os
+import pathlib
+import subprocess
 import types
 
 import numpy as np
@@ -145,3 +148,63 @@ def test_prepare_says_what_it_did(box):
     inside_out = kaboum.prepare((box[0], box[1][:, ::-1]))
     assert signed_volume(inside_out.vertices, inside_out.faces) == pytest.approx(1)
     assert inside_out.turned_triangles == 12
+
+
+PROGRAMS = pathlib.Path(os.environ["KABOUM_BIN"])
+
+
+def program(name, *arguments, code=0):
+    done = subprocess.run([PROGRAMS / name, *map(str, arguments)], check=False, capture_output=True, text=True)
+    assert done.returncode == code, done.stderr
+
+
+def test_wrap_is_the_programs(tmp_path):
+    """A soup of triangles that bound nothing is held by a closed mesh, the one that mesh-prepare writes."""
+    rng = np.random.default_rng(3)
+    soup = rng.uniform(0, 1, (8, 1, 3)) + rng.uniform(-0.3, 0.3, (8, 3, 3))
+    vertices, faces = soup.reshape(-1, 3), np.arange(24).reshape(-1, 3)
+    kaboum.write((vertices, faces), tmp_path / "soup.off")
+    made = kaboum.wrap(tmp_path / "soup.off", offset="1%", seal="5%")
+    program("mesh-prepare", tmp_path / "soup.off", "-o", tmp_path / "wrap.stl", "--prepare", "wrap", "--offset", "1%", "--seal", "5%")
+    theirs = kaboum.read(tmp_path / "wrap.stl")
+    assert np.array_equal(np.sort(made.vertices[made.faces].reshape(-1, 9), axis=0),
+                          np.sort(theirs.vertices[theirs.faces].reshape(-1, 9), axis=0))
+    assert kaboum.verify_mesh((vertices, faces), made, claims="surface")
+    assert 0 < made.distance[0] <= made.distance[1] and made.report["offset"] > 0
+    with pytest.raises(kaboum.Error, match="beyond the triangles"):
+        kaboum.wrap((vertices, faces), offset="1%", seal="30%", epsilon="1e-6%")
+    with pytest.raises(kaboum.Error, match="float"):
+        kaboum.wrap((vertices, faces), precision="half")
+
+    def stop(_):
+        raise KeyError("enough")
+
+    with pytest.raises(KeyError):
+        kaboum.wrap((vertices, faces), progress=stop)
+
+
+def test_replay_of_a_log(tmp_path, ring):
+    kaboum.write(ring, tmp_path / "ring.off")
+    program("bmesh-decimate", tmp_path / "ring.off", "-o", tmp_path / "outer.ply", "--ratio", "0.5", "--log", tmp_path / "outer.log")
+    verdict = kaboum.replay(tmp_path / "ring.off", tmp_path / "outer.log", tmp_path / "outer.ply")
+    assert verdict and verdict.claims["replay"]["steps"] > 0 and verdict.claims["replay"]["direction"] == "outer"
+    result = kaboum.read(tmp_path / "outer.ply")
+    moved = result.vertices.copy()
+    moved[0, 0] += 0.001
+    refuted = kaboum.replay(tmp_path / "ring.off", tmp_path / "outer.log", (moved, result.faces))
+    assert refuted.answer == "refuted" and refuted.claims["replay"]["reason"]
+    kaboum.write(result, tmp_path / "other.off")
+    with pytest.raises(kaboum.Error, match="another file"):
+        kaboum.replay(tmp_path / "other.off", tmp_path / "outer.log", result)
+
+
+def test_cache(tmp_path, bracket):
+    folder = pathlib.Path(os.environ["KABOUM_CACHE"])
+    assert kaboum.cache_entries() == []
+    assert not kaboum.decompose(bracket, epsilon="5%").cached and kaboum.decompose(bracket, epsilon="5%").cached
+    entries = kaboum.cache_entries(verify=True)
+    assert entries and all(e["flaw"] == "" and e["bytes"] > 0 and e["kind"].startswith("KABOUM") for e in entries)
+    one = next(f for f in folder.rglob("*") if f.is_file() and f.stem == entries[0]["entry"])
+    one.write_bytes(one.read_bytes()[:-1] + b"?")
+    assert any(e["flaw"] for e in kaboum.cache_entries(folder=folder, verify=True))
+    assert kaboum.prune_cache(size=0)["removed"] == len(entries) and kaboum.cache_entries() == []

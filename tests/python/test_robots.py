@@ -1,10 +1,26 @@
 """Robots, sweeps and what the verifier says of them."""
 
+import os
+import pathlib
+import subprocess
+
 import numpy as np
 import pytest
 
 import kaboum
 from conftest import ARM, cube
+
+BIN = pathlib.Path(os.environ["KABOUM_BIN"])
+
+
+def program(name, *arguments, code=0):
+    done = subprocess.run([BIN / name, *map(str, arguments)], check=False, capture_output=True, text=True)
+    assert done.returncode == code, done.stderr
+    return done.stderr
+
+
+def files_in(folder):
+    return {str(f.relative_to(folder)): f.read_bytes() for f in sorted(folder.rglob("*")) if f.is_file()}
 
 
 def test_robot(arm):
@@ -105,3 +121,85 @@ def test_one_bad_mesh_is_named(arm):
     made = kaboum.certify_robot(bad, epsilon="5%")
     assert all(verdict == "held" for _, verdict, _ in made.verdicts)
     assert kaboum.verify_cover(arm.parent / "broken.off", made.links["tool"])
+
+
+VISUAL = ARM.replace('<link name="tool">', '<link name="tool"><visual><geometry><mesh filename="tool.ply"/></geometry></visual>')
+
+
+@pytest.mark.parametrize("options, keywords", [
+    ([], {}),
+    (["--robot-format", "mjcf,sdf", "--srdf"], {"formats": ["mjcf", "sdf"], "srdf": True}),
+    (["--for", "drake"], {"loader": "drake"}),
+    (["--for", "moveit", "--mesh-prefix", "package://x"], {"loader": "moveit", "mesh_prefix": "package://x"}),
+    (["--for", "gazebo", "--robot-format", "mjcf"], {"loader": "gazebo", "formats": "mjcf"}),
+])
+def test_folder_is_the_programs(arm, tmp_path, options, keywords):
+    """Python and bcd-decompose write the same bytes under the same names."""
+    arm.write_text(VISUAL)
+    program("bcd-decompose", arm, "-o", tmp_path / "by-program", "--epsilon", "5%", *options)
+    made = kaboum.certify_robot(arm, epsilon="5%")
+    written = made.write(tmp_path / "by-python", **keywords)
+    program_files, python_files = files_in(tmp_path / "by-program"), files_in(tmp_path / "by-python")
+    assert program_files.keys() == python_files.keys()
+    assert [name for name in program_files if program_files[name] != python_files[name]] == []
+    assert set(written["links"]) == {f"links/{link}.glb" for link in ("base", "upper", "tool")}
+    assert pathlib.Path(written["documents"][0]) == tmp_path / "by-python" / "arm.urdf"
+    assert all(pathlib.Path(d).is_file() for d in written["documents"])
+    if "mesh_prefix" not in keywords:
+        assert kaboum.verify_robot(arm, tmp_path / "by-python" / "arm.urdf")
+
+
+def test_robot_options_are_the_programs(arm, tmp_path):
+    """Every option reaches the sets, and their records."""
+    (tmp_path / "e.yaml").write_text("tool: 3%\n")
+    program("bcd-decompose", arm, "-o", tmp_path / "a", "--epsilon", "5%", "--effort", "fast", "--min-thickness", "0.001",
+            "--max-vertices-per-body", "32", "--epsilons", tmp_path / "e.yaml", "--simplify", "0.2")
+    kaboum.certify_robot(arm, epsilon="5%", effort="fast", min_thickness=0.001, max_vertices_per_body=32,
+                         epsilons={"tool": "3%"}, simplify=0.2).write(tmp_path / "b")
+    assert files_in(tmp_path / "a") == files_in(tmp_path / "b")
+    program("bcd-decompose", arm, "-o", tmp_path / "c", "--robot-bodies", "20")
+    made = kaboum.certify_robot(arm, robot_bodies=20)
+    made.write(tmp_path / "d")
+    assert files_in(tmp_path / "c") == files_in(tmp_path / "d")
+    assert sum(len(link) for link in made.links.values()) <= 20
+    for wrong, says in (({"epsilons": {"nose": 1}}, "nose"), ({"epsilons": {"tool": -1}}, "epsilons"),
+                        ({"robot_bodies": 20, "epsilon": 1}, "epsilon means nothing"), ({"effort": "fats"}, "fast")):
+        with pytest.raises(kaboum.Error, match=says):
+            kaboum.certify_robot(arm, **wrong)
+    with pytest.raises(TypeError, match="max_bodies"):
+        kaboum.certify_robot(arm, max_bodie=3)
+
+
+def test_folders_of_others_are_left(arm, tmp_path):
+    made = kaboum.certify_robot(arm, epsilon="5%")
+    with pytest.raises(kaboum.Error, match="overwrite the input"):
+        made.write(arm.parent)
+    (tmp_path / "theirs").mkdir()
+    (tmp_path / "theirs" / "arm.urdf").write_text("<robot/>")
+    with pytest.raises(kaboum.Error, match="remove it") as error:
+        made.write(tmp_path / "theirs")
+    assert error.value.code == "output_failed" and (tmp_path / "theirs" / "arm.urdf").read_text() == "<robot/>"
+    with pytest.raises(kaboum.Error, match="did you mean 'gazebo'"):
+        made.write(tmp_path / "new", loader="gazeboo")
+    with pytest.raises(kaboum.Error, match="mjcf"):
+        made.write(tmp_path / "new", formats="mjfc")
+    assert not (tmp_path / "new").exists()
+
+
+def test_what_is_kept_is_written_as_the_program_does(arm, tmp_path):
+    (arm.parent / "tool.ply").write_bytes(b"nothing")
+    program("bcd-decompose", arm, "-o", tmp_path / "a", "--epsilon", "5%", code=1)
+    made = kaboum.certify_robot(arm, epsilon="5%", partial=True)
+    made.write(tmp_path / "b")
+    assert files_in(tmp_path / "a") == files_in(tmp_path / "b")
+
+
+def test_a_function_that_raises_ends_the_work(arm):
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        kaboum.certify_robot(arm, epsilon="0.5%", no_cache=True, progress=stop)

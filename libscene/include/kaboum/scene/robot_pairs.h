@@ -1,0 +1,29 @@
+#pragma once
+
+#include <kaboum/certify/robot.h>
+#include <kaboum/world/world.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace kaboum::scene {
+
+/// A robot as worlds have it, by the certified sets of its links, standing at the origin. Links
+/// that have points only, and those without a set, have no shape in it.
+world::RobotModel robot_model(const robot::Robot& robot,
+                              const std::vector<certify::CertifiedLink>& links);
+
+/// What is known of a robot's pairs of links, by their bodies.
+struct RobotPairs {
+  std::string srdf;  ///< <disable_collisions> of those that need no check
+  std::size_t adjacent = 0, never = 0, fixed = 0;  ///< in the SRDF, by reason
+  std::size_t others = 0;                          ///< that are to be checked
+};
+
+/// Pairs of links that need no check: connected ones, and those whose bodies are proved never to
+/// touch within the limits (world::examine_pairs).
+/// @pre all links with shapes are among the certified ones
+RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links);
+
+}  // namespace kaboum::scene

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/robot.h>
+#include <kaboum/scene/scene_maker.h>
+#include <kaboum/world/scene.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kaboum::scene {
+
+/// A certified set of an object or a region, and the files that it was made from.
+struct SceneSet {
+  certify::CertifiedSet set;
+  std::vector<std::filesystem::path> sources;  ///< its mesh's first; empty: it was made of no file
+};
+
+/// A scene that is put together in process, of certified robots, objects and regions.
+///
+/// What scene files say besides sets (docs/scene.md) is given as JSON objects, `members`: of a
+/// robot "base", "home", "limits", "tools", ...; of an object "pose", "features", "grasps".
+class SceneDraft {
+ public:
+  explicit SceneDraft(const std::string& unit = "m");
+  /// A scene that was written, to be added to: what it has stays as it is, and it is written where
+  /// it was.
+  /// @throws as world::read_scene
+  static SceneDraft read(const std::filesystem::path& file);
+
+  SceneDraft(SceneDraft&&) noexcept;
+  SceneDraft& operator=(SceneDraft&&) noexcept;
+  ~SceneDraft();
+
+  [[nodiscard]] std::string unit() const;
+  /// Where it was read or written last; empty: nowhere.
+  [[nodiscard]] const std::filesystem::path& file() const;
+
+  /// @throws Error{InvalidArgument} where the name is taken, `members` is no object or names what
+  ///   this function states itself; Error{InvalidInput} where it is no JSON
+  void add_robot(const std::string& name, std::shared_ptr<const robot::RobotFile> file,
+                 certify::CertifiedRobot made, const std::string& members);
+  /// @param inner  lies in the object; none: its contacts are never certain
+  void add_object(const std::string& name, SceneSet outer, std::optional<SceneSet> inner,
+                  const std::string& members);
+  void add_region(const std::string& name, SceneSet inner, const std::string& members);
+  /// An entry of a list of the scene: "allowed_contacts" or "attachments".
+  void add_entry(const std::string& list, const std::string& entry);
+
+  /// The text of the scene as it would be written as JSON.
+  [[nodiscard]] std::string json() const;
+
+  /// What the scene holds, as world::read_scene reads it; nothing needs to be written for that.
+  /// @throws as world::parse_scene
+  [[nodiscard]] world::SceneFile world() const;
+
+  /// Writes containers into the folder with the scene's stem beside it, then the scene.
+  /// @param replace  a scene that exists
+  /// @throws Error{InvalidArgument} where a scene is there, or it was read elsewhere;
+  ///   Error{InvalidInput} where reading would refuse it; Error{OutputFailed}
+  MadeScene write(const std::filesystem::path& scene, bool replace);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kaboum::scene

@@ -1,0 +1,41 @@
+// Pairs of a robot's links that need no check, proved of the bodies that were made.
+
+#include <kaboum/scene/robot_pairs.h>
+#include <kaboum/world/allowed_pairs.h>
+
+#include <cstdint>
+
+namespace kaboum::scene {
+
+using Reason = world::AllowedPair::Reason;
+
+world::RobotModel robot_model(const robot::Robot& robot,
+                              const std::vector<certify::CertifiedLink>& links) {
+  world::RobotModel model;
+  model.name = robot.name;
+  model.kinematics = robot;
+  for (const certify::CertifiedLink& link : links) {
+    // Of a link that has points only nothing is proved: its pairs are left to the checks.
+    if (link.artefact().bodies.empty()) continue;
+    model.shapes.push_back({static_cast<std::uint32_t>(link.certificate().link),
+                            world::BoundingSet(link.artefact()),
+                            {}});
+  }
+  return model;
+}
+
+RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links) {
+  const world::RobotModel model = robot_model(robot, links);
+  const std::vector<world::LinkPair> examined = examine_pairs(model, {});
+  const std::vector<world::AllowedPair> allowed = pairs_without_check(model, examined);
+  RobotPairs out;
+  for (const world::AllowedPair& pair : allowed)
+    ++(pair.reason == Reason::Never      ? out.never
+       : pair.reason == Reason::Adjacent ? out.adjacent
+                                         : out.fixed);
+  for (const world::LinkPair& pair : examined) out.others += pair.reason ? 0 : 1;
+  out.srdf = to_srdf(model, allowed);
+  return out;
+}
+
+}  // namespace kaboum::scene

@@ -1,0 +1,240 @@
+// Inverse kinematics: kaboum.inverse_kinematics, as kaboum-ik.
+
+#include <kaboum/kinematics/inverse.h>
+#include <kaboum/robot/base_pose.h>
+#include <pybind11/numpy.h>
+
+#include <cmath>
+#include <memory>
+
+#include "robot.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+/// An answer, and the arm that it is of.
+struct InverseValue {
+  std::shared_ptr<const kinematics::Arm> arm;
+  std::vector<std::string> joints;
+  kinematics::InverseAnswer answer;
+};
+
+py::array_t<double> rows_array(const std::vector<std::vector<double>>& rows, std::size_t columns) {
+  py::array_t<double> out({rows.size(), columns});
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t k = 0; k < columns; ++k) out.mutable_at(i, k) = rows[i][k];
+  return out;
+}
+
+std::vector<std::string> free_names(const InverseValue& value, unsigned free) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < value.joints.size(); ++i)
+    if ((free >> i & 1U) != 0) names.push_back(value.joints[i]);
+  return names;
+}
+
+py::array_t<double> solutions_of(const InverseValue& value) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& row : value.answer.rows) rows.push_back(row.q);
+  return rows_array(rows, value.joints.size());
+}
+
+py::list details_of(const InverseValue& value) {
+  py::list out;
+  for (const auto& row : value.answer.rows) {
+    py::dict one;
+    one["within_limits"] = row.within;
+    one["singular"] = kinematics::singular_names(row.singular);
+    one["free"] = free_names(value, row.free);
+    one["position_error"] = row.error.position;
+    one["rotation_error"] = row.error.rotation;
+    out.append(one);
+  }
+  return out;
+}
+
+py::list families_of(const InverseValue& value) {
+  py::list out;
+  for (const auto& [family, pose] : value.answer.families) {
+    py::dict one;
+    std::vector<std::string> free;
+    for (const std::size_t joint : family.free) free.push_back(value.joints[joint]);
+    one["free"] = free;
+    py::list ranges;
+    for (std::size_t i = 0; i < family.ranges.size(); ++i) {
+      const std::size_t joint = family.free.size() == 1 ? family.free.front() : family.free[i];
+      ranges.append(
+          py::make_tuple(value.joints[joint], family.ranges[i].lower, family.ranges[i].upper));
+    }
+    one["ranges"] = ranges;
+    one["singular"] = kinematics::singular_names(family.singular);
+    std::vector<std::vector<double>> rows;
+    for (const kinematics::Solution& s : family.representatives)
+      rows.emplace_back(s.q.begin(), s.q.begin() + static_cast<long>(value.joints.size()));
+    one["representatives"] = rows_array(rows, value.joints.size());
+    out.append(one);
+  }
+  return out;
+}
+
+/// Values of so many numbers, all finite doubles.
+std::vector<double> numbers_of(const py::object& given, const char* name) {
+  const py::array array = py::array::ensure(given);
+  if (!array || array.ndim() != 1) {
+    PyErr_Clear();
+    throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a row of numbers");
+  }
+  require_doubles(array.attr("reshape")(1, -1).cast<py::array>(), name);
+  const auto doubles =
+      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!doubles) throw py::error_already_set();
+  std::vector<double> out(doubles.data(), doubles.data() + doubles.size());
+  for (const double x : out)
+    if (!std::isfinite(x))
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(name) + " has a value that is not finite");
+  return out;
+}
+
+/// x, y, z and roll, pitch, yaw, a quaternion or a matrix, row by row; or a 4 x
+/// 4 matrix.
+kinematics::Transform target_of(const py::object& pose) {
+  const py::array array = py::array::ensure(pose);
+  if (!array) PyErr_Clear();
+  std::vector<double> numbers;
+  if (array && array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4) {
+    const std::vector<double> m = numbers_of(array.attr("reshape")(16), "pose");
+    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+      throw Error(ErrorCode::InvalidArgument, "pose: the matrix's last row must be 0, 0, 0, 1");
+    numbers = {m[3], m[7], m[11], m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
+  } else {
+    numbers = numbers_of(pose, "pose");
+  }
+  std::string text;
+  for (const double x : numbers)
+    text += (text.empty() ? "" : ",") + py::repr(py::float_(x)).cast<std::string>();
+  return robot::parse_pose(text, "pose");
+}
+
+InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
+                                const std::optional<std::string>& tip,
+                                const std::optional<std::string>& base, const py::object& pose_of,
+                                const py::object& reference, bool numeric, bool ignore_limits,
+                                bool copies, bool free_heading, int starts, std::uint64_t seed) {
+  if (pose.is_none() == pose_of.is_none())
+    throw Error(ErrorCode::InvalidArgument, "give pose, or pose_of");
+  if (starts < 1) throw Error(ErrorCode::InvalidArgument, "starts must be at least 1");
+  const RobotValue value = robot_of(robot, "robot");
+  const robot::Robot& model = value.file->robot;
+  auto arm = std::make_shared<kinematics::Arm>(kinematics::arm_of(
+      model, base.value_or(model.links.front().name), tip ? *tip : kinematics::only_tip(model)));
+  InverseValue out{arm, {}, {}};
+  for (const std::uint32_t v : arm->variables) out.joints.push_back(model.variables[v].name);
+  const auto joints_of = [&](const py::object& given, const char* name) {
+    std::vector<double> q = numbers_of(given, name);
+    if (q.size() != out.joints.size())
+      throw Error(
+          ErrorCode::InvalidArgument,
+          std::string(name) + " must have a value for each of " + robot::names_of(out.joints));
+    return q;
+  };
+  kinematics::InverseRequest request;
+  request.target = pose_of.is_none() ? target_of(pose)
+                                     : kinematics::forward(*arm, joints_of(pose_of, "pose_of"));
+  if (!reference.is_none()) request.reference = joints_of(reference, "reference");
+  request.numeric = numeric;
+  request.limits = !ignore_limits;
+  request.copies = copies;
+  request.free_heading = free_heading;
+  request.starts = starts;
+  request.seed = seed;
+  out.answer = run(0, [&] { return kinematics::find_configurations(*arm, request); });
+  return out;
+}
+
+constexpr const char* kDoc =
+    R"(The configurations with which a robot's chain reaches a pose, as `kaboum-ik`.
+
+All of them, in closed form, for arms with a spherical wrist, with three parallel axes, or with five
+axes; else those that a numeric search finds.
+
+Parameters
+----------
+robot : Robot or path
+pose : array, optional
+    Of `tip` in the frame of `base`: x, y, z and roll, pitch, yaw; or and a quaternion x, y, z, w; or
+    and the matrix of the rotation, row by row; or a 4 x 4 matrix.
+tip : str, optional
+    A link; by default the only one that no joint starts from.
+base : str, optional
+    A link above it; by default the robot's root.
+pose_of : array, optional
+    Instead of `pose`: the pose that these joint values reach.
+reference : array, optional
+    Whole turns nearest to it are chosen; the numeric search starts there.
+numeric : bool
+    Search numerically even where there is a closed form.
+ignore_limits, copies, free_heading : bool
+    Also outside the joints' limits; all copies by whole turns within them; of arms with five axes,
+    poses with another heading.
+starts, seed : int
+    Of the numeric search.
+
+Raises
+------
+Error
+    'invalid_argument' naming the links that there are, or another number of values.)";
+
+void bind_answer(py::module_& module) {
+  py::class_<InverseValue>(module, "InverseKinematics",
+                           "Configurations that reach a pose; true where there is one.")
+      .def("__bool__", [](const InverseValue& v) { return !v.answer.rows.empty(); })
+      .def("__len__", [](const InverseValue& v) { return v.answer.rows.size(); })
+      .def_property_readonly(
+          "joints", [](const InverseValue& v) { return v.joints; },
+          "Names: what the columns of `solutions` are.")
+      .def_property_readonly("solutions", &solutions_of,
+                             "n x k float64, a row for each configuration. [rad or length]")
+      .def_property_readonly("details", &details_of,
+                             "A dict for each row: 'within_limits', "
+                             "'singular', 'free' (joints that may have other "
+                             "values), 'position_error', 'rotation_error'.")
+      .def_property_readonly("families", &families_of,
+                             "Dicts of configurations that hang together: "
+                             "'free' joints, their 'ranges' (joint, from, "
+                             "to), 'singular', and 'representatives', n x k, "
+                             "which are among the solutions.")
+      .def_property_readonly(
+          "complete", [](const InverseValue& v) { return v.answer.incomplete.empty(); },
+          "Whether there are no others, up to the accuracy of closed forms.")
+      .def_property_readonly(
+          "incomplete", [](const InverseValue& v) { return v.answer.incomplete; },
+          "Why there may be others; else empty.")
+      .def_property_readonly(
+          "family",
+          [](const InverseValue& v) -> py::object {
+            if (!v.answer.form) return py::none();
+            return py::str(kinematics::name_of(v.answer.form->family));
+          },
+          "The kind of arm that has a closed form, or None: the search was "
+          "numeric.")
+      .def("__repr__", [](const InverseValue& v) {
+        return "<kaboum.InverseKinematics of " + std::to_string(v.answer.rows.size()) +
+               " configurations>";
+      });
+}
+
+}  // namespace
+
+void bind_inverse_kinematics(py::module_& module) {
+  bind_answer(module);
+  module.def("inverse_kinematics", &inverse_kinematics, py::arg("robot"),
+             py::arg("pose") = py::none(), py::kw_only(), py::arg("tip") = py::none(),
+             py::arg("base") = py::none(), py::arg("pose_of") = py::none(),
+             py::arg("reference") = py::none(), py::arg("numeric") = false,
+             py::arg("ignore_limits") = false, py::arg("copies") = false,
+             py::arg("free_heading") = false, py::arg("starts") = 100, py::arg("seed") = 1, kDoc);
+}
+
+}  // namespace kaboum::python

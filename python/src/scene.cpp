@@ -1,0 +1,406 @@
+// Scenes: kaboum.Scene, made in process; make_scene and update_scene, as kaboum-scene.
+
+#include "scene.h"
+
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/base_pose.h>
+#include <kaboum/scene/scene_draft.h>
+#include <kaboum/scene/scene_update.h>
+
+#include <memory>
+
+#include "convex_set.h"
+#include "robot.h"
+#include "running.h"
+#include "set_options.h"
+
+namespace kaboum::python {
+namespace {
+
+struct SceneValue {
+  std::shared_ptr<scene::SceneDraft> draft;
+};
+
+/// JSON of what Python states; arrays become lists.
+std::string json_text(const py::object& value) {
+  const auto list_of = [](const py::object& o) -> py::object { return o.attr("tolist")(); };
+  return py::module_::import("json")
+      .attr("dumps")(value, py::arg("allow_nan") = false,
+                     py::arg("default") = py::cpp_function(list_of))
+      .cast<std::string>();
+}
+
+std::vector<double> pose_of(const py::object& at, const std::string& name) {
+  std::vector<double> out;
+  try {
+    out = at.cast<std::vector<double>>();
+  } catch (const py::cast_error&) {
+  }
+  if (out.size() != 3 && out.size() != 6 && out.size() != 7)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "at of '" + name +
+            "' must be x, y, z; or these and roll, pitch, yaw; or these and a quaternion x, "
+            "y, z, w");
+  return out;
+}
+
+/// A pose as scene files state it.
+py::dict pose_dict(const py::object& at, const std::string& name) {
+  const std::vector<double> numbers = pose_of(at, name);
+  const auto list = [&](std::size_t from, std::size_t to) {
+    py::list out;
+    for (std::size_t i = from; i < to; ++i) out.append(numbers[i]);
+    return out;
+  };
+  py::dict out;
+  out["position"] = list(0, 3);
+  if (numbers.size() == 6) out["rpy"] = list(3, 6);
+  if (numbers.size() == 7) out["quaternion"] = list(3, 7);
+  return out;
+}
+
+/// A mesh's file and what it refers to, as they are now.
+std::vector<std::filesystem::path> sources_of(const std::string& file) {
+  std::vector<std::filesystem::path> out;
+  if (file.empty()) return out;
+  out.emplace_back(file);
+  for (const std::string& other : io::read_mesh(file).other_files) out.emplace_back(other);
+  return out;
+}
+
+/// A CertifiedSet, or one made of a mesh.
+scene::SceneSet set_from(const py::object& shape, py::dict options, const char* direction,
+                         const std::string& unit) {
+  py::object made = shape;
+  if (!py::isinstance<CertifiedSetValue>(shape)) {
+    if (!options.contains("unit")) options["unit"] = unit;
+    if (!options.contains("direction")) options["direction"] = direction;
+    made = py::module_::import("kaboum").attr("decompose")(shape, **options);
+  } else if (!options.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "options of `decompose` are for meshes: this is a set that was made already");
+  }
+  const auto& value = made.cast<const CertifiedSetValue&>();
+  using Direction = certify::SetRequest::Direction;
+  const bool outer = value.made.certificate().direction == Direction::Outer;
+  if (outer != (std::string(direction) == "outer"))
+    throw Error(ErrorCode::InvalidArgument, std::string("an ") + direction +
+                                                " set is needed: decompose with direction '" +
+                                                direction + "'");
+  return run(0, [&] { return scene::SceneSet{value.made, sources_of(value.file)}; });
+}
+
+py::dict dict_of(const scene::MadeScene& made) {
+  py::dict out;
+  std::vector<std::string> containers;
+  for (const std::filesystem::path& path : made.containers) containers.push_back(path.string());
+  out["containers"] = containers;
+  out["inputs"] = made.inputs;
+  out["sizes"] = made.sizes;
+  out["bad_links"] = made.bad_links;
+  out["notes"] = made.notes;
+  return out;
+}
+
+std::string path_text(const py::object& path, const char* argument) {
+  const auto file = path_of(path);
+  if (!file)
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(argument) + " must be a str or an os.PathLike");
+  return *file;
+}
+
+void add_robot(SceneValue& scene, const std::string& name, const py::object& robot,
+               const py::object& at, const py::kwargs& members) {
+  if (!py::isinstance<CertifiedValue>(robot))
+    throw Error(ErrorCode::InvalidArgument, "robot must be a kaboum.CertifiedRobot");
+  const auto& value = robot.cast<const CertifiedValue&>();
+  if (!at.is_none()) members["base"] = pose_dict(at, name);
+  scene.draft->add_robot(name, value.file, value.made, json_text(members));
+}
+
+void add_object(SceneValue& scene, const std::string& name, const py::object& shape,
+                const py::object& at, const py::object& inner, const py::object& features,
+                const py::object& grasps, const py::kwargs& options) {
+  const std::string unit = scene.draft->unit();
+  py::dict members;
+  if (!at.is_none()) members["pose"] = pose_dict(at, name);
+  if (!features.is_none()) members["features"] = features;
+  if (!grasps.is_none()) members["grasps"] = grasps;
+  const std::string text = json_text(members);
+  scene::SceneSet outer = set_from(shape, options, "outer", unit);
+  std::optional<scene::SceneSet> in;
+  if (!inner.is_none()) in = set_from(inner, py::dict(), "inner", unit);
+  scene.draft->add_object(name, std::move(outer), std::move(in), text);
+}
+
+void add_region(SceneValue& scene, const std::string& name, const py::object& shape,
+                const py::object& at, const py::kwargs& options) {
+  py::dict members;
+  if (!at.is_none()) members["pose"] = pose_dict(at, name);
+  scene.draft->add_region(name, set_from(shape, options, "inner", scene.draft->unit()),
+                          json_text(members));
+}
+
+/// A dict of names and files.
+std::vector<scene::NamedFile> files_of(const py::object& given, const char* argument) {
+  std::vector<scene::NamedFile> out;
+  if (given.is_none()) return out;
+  if (!py::isinstance<py::dict>(given))
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(argument) + " must be a dict of names and files");
+  for (const auto& [name, file] : given.cast<py::dict>())
+    out.push_back({py::str(name), path_text(py::reinterpret_borrow<py::object>(file), argument)});
+  return out;
+}
+
+py::dict make_scene(const py::object& path, const py::object& robots, const py::object& objects,
+                    const py::object& regions, const py::object& at,
+                    const std::map<std::string, double>& scale, bool inner, bool inner_links,
+                    const std::string& geometry, const py::object& epsilon,
+                    const std::string& effort, bool drop_sheets, const std::string& unit,
+                    const py::object& package_path, bool force, bool no_cache, int threads,
+                    const py::object& progress) {
+  scene::SceneMaker maker;
+  maker.scene = path_text(path, "path");
+  maker.robots = files_of(robots, "robots");
+  maker.objects = files_of(objects, "objects");
+  maker.regions = files_of(regions, "regions");
+  if (!at.is_none())
+    for (const auto& [name, pose] : at.cast<py::dict>()) {
+      std::string text;
+      const std::string of = py::str(name);
+      for (const double x : pose_of(py::reinterpret_borrow<py::object>(pose), of))
+        text += (text.empty() ? "" : ",") + py::repr(py::float_(x)).cast<std::string>();
+      maker.places.emplace(of, robot::parse_pose(text, "at " + of));
+    }
+  for (const auto& [name, factor] : scale) {
+    if (!(factor >= 1e-9 && factor <= 1e9))
+      throw Error(ErrorCode::InvalidArgument,
+                  "scale of '" + name + "' must be a number from 1e-9 to 1e9");
+    maker.scales.emplace(name, factor);
+  }
+  maker.inner = inner;
+  maker.replace = force;
+  if (inner_links) maker.options.inner_links.emplace();  // all
+  maker.options.visual = is_visual(geometry);
+  maker.options.sets.epsilon = length_of(epsilon, "epsilon");
+  maker.options.sets.effort = value_of(kSetEfforts, effort, "effort");
+  maker.options.sets.preparation.drop_sheets = drop_sheets;
+  maker.options.sets.unit = unit;
+  maker.options.packages = packages_of(package_path);
+  Watch watch(progress);
+  maker.options.progress = watch.hook();
+  return dict_of(run(threads, [&] {
+    const certify::SetCache cache(certify::SetCache::default_folder());
+    if (!no_cache) maker.options.cache = &cache;
+    return scene::make_scene(maker);
+  }));
+}
+
+py::dict update_scene(const py::object& path, const py::object& package_path, bool no_cache,
+                      int threads, const py::object& progress) {
+  Watch watch(progress);
+  const std::string file = path_text(path, "path");
+  const std::vector<std::string> packages = packages_of(package_path);
+  return dict_of(run(threads, [&] {
+    const certify::SetCache cache(certify::SetCache::default_folder());
+    return scene::update_scene({file, packages, no_cache ? nullptr : &cache, watch.hook()});
+  }));
+}
+
+constexpr const char* kSceneDoc =
+    R"(Robots, objects and regions with certified sets, put together in process (docs/scene.md).
+
+`World` takes it as it is; `write` makes the files that the programs read. Lengths are in its unit,
+angles in radians.)";
+
+constexpr const char* kAddRobotDoc =
+    R"(Adds a robot.
+
+Parameters
+----------
+name : str
+robot : CertifiedRobot
+    Of all links that have shapes.
+at : sequence of float, optional
+    Where its base stands: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
+**members
+    What else scene files say of robots: `home`, `limits`, `tools`, `grippers`, `features`,
+    `allowed_contacts`.)";
+
+constexpr const char* kAddObjectDoc =
+    R"(Adds an object.
+
+Parameters
+----------
+name : str
+shape : CertifiedSet or mesh
+    A mesh is decomposed.
+at : sequence of float, optional
+    Where it stands: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
+inner : CertifiedSet or mesh, optional
+    A set inside it, so that contacts can be certain.
+features, grasps : list of dict, optional
+    As in scene files.
+**options
+    Of `decompose`, for a mesh.)";
+
+constexpr const char* kWriteDoc =
+    R"(Writes the scene (.json or .yaml), and its sets into a folder of its name beside it.
+
+Parameters
+----------
+path : str or path
+force : bool
+    Replace a scene that exists.
+
+Returns
+-------
+dict
+    'containers', 'inputs', 'sizes', 'bad_links' (of robots, that are not held as asked for),
+    'notes'.)";
+
+constexpr const char* kMakeDoc =
+    R"(Makes a scene of URDFs and meshes, with the convex sets that it needs: `kaboum-scene make`.
+
+Parameters
+----------
+path : str or path
+    The scene to write (.json or .yaml); sets go into a folder beside it.
+robots, objects, regions : dict, optional
+    By name, files: URDFs, meshes.
+at : dict, optional
+    By name, where things stand: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
+scale : dict
+    By name, what the coordinates of an object's or region's mesh are multiplied by.
+inner, inner_links : bool
+    Inner sets of objects, of robots' links: contacts can be certain.
+geometry : str
+    Of robots: 'collision' or 'visual'.
+epsilon : float or str
+    Largest distance of the sets from their meshes.
+effort : str
+drop_sheets : bool
+unit : str
+    Of all meshes; with robots m.
+package_path : str or sequence of str
+force : bool
+    Replace a scene that exists.
+no_cache, threads, progress
+    As for `decompose`.
+
+Returns
+-------
+dict
+    As `Scene.write`.)";
+
+constexpr const char* kUpdateDoc =
+    R"(Makes those sets of a scene anew that are out of date: `kaboum-scene update`.
+
+Parameters
+----------
+path : str or path
+package_path : str or sequence of str
+no_cache, threads, progress
+    As for `decompose`.
+
+Returns
+-------
+dict
+    As `Scene.write`; no containers where nothing is out of date.)";
+
+void bind_scene(py::module_& module) {
+  py::class_<SceneValue>(module, "Scene", kSceneDoc)
+      .def(py::init([](const std::string& unit) {
+             return SceneValue{std::make_shared<scene::SceneDraft>(unit)};
+           }),
+           py::kw_only(), py::arg("unit") = "m", "An empty scene.")
+      .def_static(
+          "read",
+          [](const py::object& path) {
+            const std::string file = path_text(path, "path");
+            return run(0, [&] {
+              return SceneValue{std::make_shared<scene::SceneDraft>(scene::SceneDraft::read(file))};
+            });
+          },
+          py::arg("path"), "A scene that was written; it is written where it was.")
+      .def_property_readonly(
+          "unit", [](const SceneValue& s) { return s.draft->unit(); }, "Of length.")
+      .def_property_readonly(
+          "path",
+          [](const SceneValue& s) -> py::object {
+            if (s.draft->file().empty()) return py::none();
+            return py::str(s.draft->file().string());
+          },
+          "Where it was read or written last, or None.")
+      .def_property_readonly(
+          "data",
+          [](const SceneValue& s) {
+            return py::module_::import("json").attr("loads")(
+                run(0, [&] { return s.draft->json(); }));
+          },
+          "A dict: what the scene's file says.")
+      .def("add_robot", &add_robot, py::arg("name"), py::arg("robot"), py::kw_only(),
+           py::arg("at") = py::none(), kAddRobotDoc)
+      .def("add_object", &add_object, py::arg("name"), py::arg("shape"), py::kw_only(),
+           py::arg("at") = py::none(), py::arg("inner") = py::none(),
+           py::arg("features") = py::none(), py::arg("grasps") = py::none(), kAddObjectDoc)
+      .def("add_region", &add_region, py::arg("name"), py::arg("shape"), py::kw_only(),
+           py::arg("at") = py::none(),
+           "Adds a region: a shape as of `add_object`, whose inner set it is.")
+      .def(
+          "allow_contact",
+          [](SceneValue& s, const std::string& a, const std::string& b) {
+            py::list pair;
+            pair.append(a);
+            pair.append(b);
+            s.draft->add_entry("allowed_contacts", json_text(pair));
+          },
+          py::arg("a"), py::arg("b"), "Lets 'OBJECT', 'ROBOT/LINK' or 'ROBOT' touch another one.")
+      .def(
+          "attach",
+          [](SceneValue& s, const py::kwargs& members) {
+            s.draft->add_entry("attachments", json_text(members));
+          },
+          "Has an object move with a robot: `object`, `robot`, `link`, `tool` or `gripper`, "
+          "`grasp` "
+          "or a pose, as in scene files.")
+      .def(
+          "write",
+          [](SceneValue& s, const py::object& path, bool force) {
+            const std::string file = path_text(path, "path");
+            return dict_of(run(0, [&] { return s.draft->write(file, force); }));
+          },
+          py::arg("path"), py::kw_only(), py::arg("force") = false, kWriteDoc)
+      .def("__repr__", [](const SceneValue& s) {
+        return "<kaboum.Scene" +
+               (s.draft->file().empty() ? "" : " '" + s.draft->file().string() + "'") + ">";
+      });
+}
+
+}  // namespace
+
+std::optional<world::SceneFile> scene_file_of(const py::object& value) {
+  if (!py::isinstance<SceneValue>(value)) return std::nullopt;
+  const auto& scene = value.cast<const SceneValue&>();
+  return run(0, [&] { return scene.draft->world(); });
+}
+
+void bind_scenes(py::module_& module) {
+  bind_scene(module);
+  module.def(
+      "make_scene", &make_scene, py::arg("path"), py::kw_only(), py::arg("robots") = py::none(),
+      py::arg("objects") = py::none(), py::arg("regions") = py::none(), py::arg("at") = py::none(),
+      py::arg("scale") = py::dict(), py::arg("inner") = false, py::arg("inner_links") = false,
+      py::arg("geometry") = "collision", py::arg("epsilon") = "1%", py::arg("effort") = "normal",
+      py::arg("drop_sheets") = false, py::arg("unit") = "m", py::arg("package_path") = py::tuple(),
+      py::arg("force") = false, py::arg("no_cache") = false, py::arg("threads") = 0,
+      py::arg("progress") = py::none(), kMakeDoc);
+  module.def("update_scene", &update_scene, py::arg("path"), py::kw_only(),
+             py::arg("package_path") = py::tuple(), py::arg("no_cache") = false,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), kUpdateDoc);
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,107 @@
+// Wraps: kaboum.wrap, as mesh-prepare --prepare wrap.
+
+#include <kaboum/certify/wrap.h>
+
+#include "arguments.h"
+#include "mesh.h"
+#include "running.h"
+
+namespace kaboum::python {
+namespace {
+
+struct WrapValue {
+  std::shared_ptr<const certify::CertifiedWrap> made;
+  std::vector<std::string> notes;
+
+  /// Keeps what it looks into.
+  [[nodiscard]] std::shared_ptr<const geom::Mesh> mesh() const { return {made, &made->artefact()}; }
+};
+
+WrapValue wrap(const py::object& mesh, const py::object& offset, const py::object& seal,
+               const py::object& epsilon, const std::string& precision, int threads,
+               const py::object& progress) {
+  const MeshValue value = mesh_of(mesh, "mesh");
+  if (precision != "float" && precision != "double")
+    refuse_name("precision", precision, {"float", "double"});
+  certify::WrapRequest request;
+  request.offset = length_of(offset, "offset");
+  request.seal = length_of(seal, "seal");
+  if (const auto farthest = length_of(epsilon, "epsilon"))
+    request.farthest = farthest->of(geom::bounding_box(*value.mesh).diagonal());
+  request.clearance = value.deviation;
+  request.quads = value.bent_quads;
+  request.float32 = precision == "float";
+  Watch watch(progress);
+  request.progress = watch.hook();
+  return run(threads, [&] {
+    return WrapValue{
+        std::make_shared<certify::CertifiedWrap>(certify::certify_wrap(*value.mesh, request)),
+        value.notes};
+  });
+}
+
+constexpr const char* kDoc =
+    R"(A closed mesh whose solid holds every triangle of the input, whatever they are like.
+
+Decided exactly by what shares nothing with the search, as `mesh-prepare --prepare wrap`
+(docs/algorithms/wrapping.md). The result may be given wherever a mesh is expected.
+
+Parameters
+----------
+mesh : mesh
+offset : float or str, optional
+    How far the wrap may be from the input where it can get near it. By default a quarter of
+    `epsilon`, else '0.1%'.
+seal : float or str, optional
+    Hollows behind gaps narrower than this are filled. By default found, so that `epsilon` is kept;
+    else '1%'.
+epsilon : float or str, optional
+    No point of the wrap is farther from the triangles, or it is refused.
+precision : str
+    Of the wrap's numbers: 'float' or 'double'.
+threads, progress
+    As for `decompose`.
+
+Raises
+------
+Error
+    'invalid_input' where there is nothing to wrap, or it would be farther than `epsilon`.)";
+
+}  // namespace
+
+void bind_wraps(py::module_& module) {
+  py::class_<WrapValue>(module, "Wrap", "A closed mesh that was decided to hold all triangles.")
+      .def_property_readonly(
+          "vertices", [](const WrapValue& w) { return vertices_of(w.mesh()); },
+          "n x 3 float64, a view that cannot be written. [length]")
+      .def_property_readonly(
+          "faces", [](const WrapValue& w) { return faces_of(w.mesh()); },
+          "m x 3 uint32, a view that cannot be written.")
+      .def_property_readonly(
+          "report",
+          [](const WrapValue& w) {
+            return py::module_::import("json").attr("loads")(
+                certify::to_json(w.made->certificate()));
+          },
+          "A dict, as in mesh-prepare's report: 'offset', 'seal', distances.")
+      .def_property_readonly(
+          "distance",
+          [](const WrapValue& w) {
+            const certify::WrapCertificate& c = w.made->certificate();
+            return py::make_tuple(c.farthest_lower, c.farthest_upper);
+          },
+          "Certified bracket of the largest distance of its points from the "
+          "triangles. [length]")
+      .def_property_readonly(
+          "notes", [](const WrapValue& w) { return w.notes; }, "What a user should know.")
+      .def("__repr__", [](const WrapValue& w) {
+        return "<kaboum.Wrap of " + std::to_string(w.made->artefact().vertices.size()) +
+               " vertices, " + std::to_string(w.made->artefact().triangles.size()) + " faces>";
+      });
+  module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(), py::arg("offset") = py::none(),
+             py::arg("seal") = py::none(), py::arg("epsilon") = py::none(),
+             py::arg("precision") = "float", py::arg("threads") = 0,
+             py::arg("progress") = py::none(), kDoc);
+}
+
+}  // namespace kaboum::python

@@ -1,0 +1,170 @@
+"""Scenes made in process and from files."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+
+import numpy as np
+import pytest
+
+import kaboum
+from conftest import ARM, SOURCE, cube
+
+BIN = pathlib.Path(os.environ["KABOUM_BIN"])
+
+
+def program(folder, *arguments, code=0):
+    done = subprocess.run([BIN / "kaboum-scene", *map(str, arguments)], check=False, capture_output=True, text=True, cwd=folder)
+    assert done.returncode == code, done.stderr
+    return done.stderr
+
+
+def files_in(folder):
+    return {str(f.relative_to(folder)): f.read_bytes() for f in sorted(folder.rglob("*")) if f.is_file()}
+
+
+@pytest.fixture
+def parts(arm):
+    """A folder with an arm of three links and a box of 0.2 m."""
+    vertices, faces = cube(0.2)
+    kaboum.write((vertices - 0.1, faces), arm.parent / "box.off")
+    return arm.parent
+
+
+def test_scene_is_the_programs(parts, monkeypatch):
+    """make_scene and kaboum-scene make write the same bytes; so does update after a mesh has changed."""
+    monkeypatch.chdir(parts)
+    (parts / "a").mkdir()
+    (parts / "b").mkdir()
+    program(parts, "make", "a/cell.json", "--robot", "arm=arm.urdf", "--object", "box=box.off", "--region", "room=box.off", "--at",
+            "box=1,0,0.5,0,0,0.3", "--at", "arm=0,0,0.1", "--scale", "room=2", "--inner", "--epsilon", "5%", "--effort", "fast")
+    made = kaboum.make_scene("b/cell.json", robots={"arm": "arm.urdf"}, objects={"box": "box.off"}, regions={"room": "box.off"},
+                             at={"box": [1, 0, 0.5, 0, 0, 0.3], "arm": (0, 0, 0.1)}, scale={"room": 2}, inner=True, epsilon="5%",
+                             effort="fast")
+    assert files_in(parts / "a") == files_in(parts / "b")
+    assert len(made["containers"]) == 6 and made["bad_links"] == []
+    assert kaboum.update_scene("b/cell.json")["containers"] == []
+    vertices, faces = cube(0.2)
+    kaboum.write((vertices - 0.11, faces), parts / "box.off")
+    with pytest.raises(kaboum.Error, match="box"):
+        kaboum.World("b/cell.json")
+    program(parts, "update", "a/cell.json")
+    assert len(kaboum.update_scene("b/cell.json")["containers"]) == 3
+    assert files_in(parts / "a") == files_in(parts / "b")
+    for wrong, says in (({"path": "b/cell.json"}, "exists"), ({"path": "c.json", "at": {"bax": (0, 0, 0)}}, "did you mean 'box'"),
+                        ({"path": "c.json", "unit": "mm"}, "URDFs are in m"), ({"path": "c.txt"}, "ends in .json"),
+                        ({"path": "c.json", "at": {"box": (0, 0)}}, "x, y, z")):
+        with pytest.raises(kaboum.Error, match=says):
+            kaboum.make_scene(robots={"arm": "arm.urdf"}, objects={"box": "box.off"}, **wrong)
+    with pytest.raises(kaboum.Error, match="nothing is asked for"):
+        kaboum.make_scene("c.json")
+
+
+def filled(parts, robot=None):
+    scene = kaboum.Scene()
+    scene.add_robot("arm", robot or kaboum.certify_robot(parts / "arm.urdf", epsilon="5%"), at=(0, 0, 0.1), home=[0, 0],
+                    tools=[{"name": "tip", "link": "tool", "position": np.zeros(3)}])
+    scene.add_object("box", parts / "box.off", at=(0.45, 0, 0.5, 0, 0, 0.3), epsilon="5%",
+                     features=[{"name": "top", "point": [0, 0, 0.1]}])
+    return scene
+
+
+def test_scene_in_process_is_the_one_on_disk(parts, tmp_path):
+    scene = filled(parts)
+    scene.allow_contact("arm/base", "box")
+    before = kaboum.World(scene)
+    assert scene.path is None and before.robots == ["arm"] and before.objects == ["box"]
+    (tmp_path / "there").mkdir()
+    written = scene.write(tmp_path / "there" / "cell.yaml")
+    assert len(written["containers"]) == 4 and written["bad_links"] == []
+    after = kaboum.World(tmp_path / "there" / "cell.yaml")
+    rows = np.random.default_rng(1).uniform([-2, 0], [2, 0.3], (300, 2))
+    free = before.are_free(rows)
+    assert np.array_equal(free, after.are_free(rows)) and free.any() and not free.all()
+    assert kaboum.World(scene).home().tolist() == [0, 0]
+    # The programs read it.
+    done = subprocess.run([BIN / "kaboum-check", tmp_path / "there" / "cell.yaml"], capture_output=True, text=True, check=False)
+    assert done.returncode in (0, 1), done.stderr
+    again = kaboum.Scene.read(tmp_path / "there" / "cell.yaml")
+    assert again.data == scene.data and again.path == str(tmp_path / "there" / "cell.yaml")
+    with pytest.raises(kaboum.Error, match="exists"):
+        filled(parts).write(tmp_path / "there" / "cell.yaml")
+
+
+def test_scene_that_was_read_is_added_to(parts, tmp_path):
+    filled(parts).write(tmp_path / "cell.json")
+    kept = files_in(tmp_path / "cell")
+    scene = kaboum.Scene.read(tmp_path / "cell.json")
+    scene.add_object("second", kaboum.decompose(parts / "box.off", epsilon="5%"), at=(0, 1, 0))
+    with pytest.raises(kaboum.Error, match="used twice"):
+        scene.add_object("box", parts / "box.off")
+    with pytest.raises(kaboum.Error, match="written where it was"):
+        scene.write(tmp_path / "other.json")
+    scene.write(tmp_path / "cell.json")
+    assert kaboum.World(tmp_path / "cell.json").objects == ["box", "second"]
+    assert {name: files_in(tmp_path / "cell")[name] for name in kept} == kept
+    scene.attach(object="second", robot="arm", link="tool", position=[0, 0, 0.2])
+    assert kaboum.World(scene).objects == ["box", "second"]
+
+
+def test_objects_of_arrays_and_inner_sets(parts, tmp_path):
+    scene = filled(parts)
+    vertices, faces = cube(0.2)
+    scene.add_object("plate", (vertices, faces), at=(0, 0, 2), inner=kaboum.decompose((vertices, faces), direction="inner"))
+    scene.add_region("room", (vertices * 4, faces), at=(0, 0, 0), epsilon="2%")
+    world = kaboum.World(scene)
+    assert world.objects == ["box", "plate"]
+    scene.write(tmp_path / "cell.json")
+    data = json.loads((tmp_path / "cell.json").read_text())
+    assert "made_from" not in data["objects"][1]["outer"] and data["objects"][0]["outer"]["made_from"]
+    assert data["regions"][0]["name"] == "room" and "inner" in data["objects"][1]
+
+
+def test_what_a_scene_refuses(parts, tmp_path):
+    made = kaboum.certify_robot(parts / "arm.urdf", epsilon="5%")
+    scene = kaboum.Scene()
+    for call, says in ((lambda: scene.add_robot("arm", "arm.urdf"), "CertifiedRobot"),
+                       (lambda: scene.add_robot("arm", made, at=(1, 2)), "x, y, z"),
+                       (lambda: scene.add_robot("arm", made, links=[]), "follows from the sets"),
+                       (lambda: scene.add_object("o", kaboum.decompose(cube()), epsilon=1), "made already"),
+                       (lambda: scene.add_object("o", kaboum.decompose(cube(), direction="inner")), "an outer set"),
+                       (lambda: scene.add_region("o", kaboum.decompose(cube())), "an inner set"),
+                       (lambda: kaboum.World(3), "kaboum.Scene")):
+        with pytest.raises(kaboum.Error, match=re.escape(says)):
+            call()
+    with pytest.raises(ValueError):
+        scene.add_robot("arm", made, at=(float("nan"), 0, 0))
+    scene.add_robot("arm", made, nonsense=1)
+    with pytest.raises(kaboum.Error, match="nonsense"):
+        kaboum.World(scene)
+    with pytest.raises(kaboum.Error, match="nonsense"):
+        scene.write(tmp_path / "cell.json")
+    assert not (tmp_path / "cell.json").exists()
+    some = kaboum.Scene()
+    some.add_robot("arm", kaboum.certify_robot(parts / "arm.urdf", epsilon="5%", links=["tool"]))
+    with pytest.raises(kaboum.Error, match="no set"):
+        kaboum.World(some)
+    other = kaboum.Scene(unit="mm")
+    other.add_object("o", kaboum.decompose(cube()))
+    with pytest.raises(kaboum.Error, match="mm"):
+        kaboum.World(other)
+
+
+def test_a_robot_whose_file_changed_is_refused(parts):
+    scene = filled(parts)
+    (parts / "arm.urdf").write_text(ARM.replace('upper="0.3"', 'upper="0.2"'))
+    with pytest.raises(kaboum.Error, match="arm.urdf"):
+        kaboum.World(scene)
+
+
+def test_robots_are_named(parts):
+    scene = filled(parts)
+    scene.add_robot("second", kaboum.certify_robot(parts / "arm.urdf", epsilon="5%"), at=(0, 3, 0))
+    world = kaboum.World(scene)
+    with pytest.raises(kaboum.Error, match="several robots"):
+        world.home()
+    with pytest.raises(kaboum.Error, match="did you mean 'second'"):
+        world.home("secnd")
+    assert world.home("second").tolist() == [0, 0]

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <kaboum/scene/scene_maker.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// Things of a scene as a command line names them.
+namespace kaboum::tools {
+
+/// "NAME=FILE".
+/// @throws Error{InvalidArgument} naming the option.
+scene::NamedFile parse_named_file(const std::string& text, const char* option);
+
+/// "NAME=POSE" for each, see robot::parse_pose.
+/// @throws Error{InvalidArgument} naming the option.
+std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,
+                                                    const char* option);
+
+/// "NAME=FACTOR" for each.
+/// @throws Error{InvalidArgument} naming the option.
+std::map<std::string, double> parse_scales(const std::vector<std::string>& texts,
+                                           const char* option);
+
+}  // namespace kaboum::tools
