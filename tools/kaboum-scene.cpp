@@ -61,6 +61,7 @@ int make_scene(const tools::SceneOptions& o) {
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const scene::NamedFile& file : *files) inputs.push_back(file.file);
   maker.replace = o.force;
+  scene::require_free_place(o.scene, o.force);
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
   maker.inner = o.inner;
   if (o.inner_links) maker.options.inner_links.emplace();  // all

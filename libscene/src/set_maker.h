@@ -23,10 +23,6 @@ namespace kaboum::scene {
 std::optional<std::string> apply_parameters(const std::string& parameters,
                                             SceneSetOptions& options);
 
-/// Refuses a place that a scene cannot have, or where one is already.
-/// @throws Error{InvalidArgument}
-void require_free_place(const std::filesystem::path& scene, bool replace);
-
 /// Makes sets and keeps their containers until all are to be written.
 class SetMaker {
  public:

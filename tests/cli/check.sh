@@ -189,7 +189,7 @@ json.dump(deep, open("deep.json", "w"), indent=1)
 END
 shows 1 'arm/tip and box collide' "$BIN/kaboum-check" deep.json --configuration 1.5707963,0
 shows 0 '^free$' "$BIN/kaboum-check" deep.json --configuration=-1,0
-expect 2 'inner-links: no robot' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --inner-links
+expect 2 'inner sets of links: no robot' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --inner-links
 # They are made anew as the outer ones are, by the same options.
 cp meshes/bar.off kept.off
 cube 4 >meshes/bar.off

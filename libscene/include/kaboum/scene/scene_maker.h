@@ -54,6 +54,10 @@ struct MadeScene {
   std::vector<std::string> bad_links;
 };
 
+/// Refuses a place that a scene cannot have, or where one is already.
+/// @throws Error{InvalidArgument}
+void require_free_place(const std::filesystem::path& scene, bool replace);
+
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem
 /// beside it, then the scene.
 /// @throws Error naming the file; Error{InvalidArgument} where a place is of nothing, where the
