@@ -33,7 +33,7 @@ std::vector<char> picture_of(const world::Checker& checker, const world::WorldSt
   picture::Image image(kPanel, kPanel, Colour{1, 1, 1});
   geom::Mesh all;
   picture::Style style;
-  for (const world::Checker::Placed& placed : checker.places(state)) {
+  for (const world::Checker::PosedItem& placed : checker.places(state)) {
     const world::BoundingSet& set = placed.place.set();
     for (std::size_t i = 0; i < set.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(all.vertices.size());

@@ -139,7 +139,7 @@ bool has_plan_by_width(Task& task, Limits& limits, Statistics& statistics, Heuri
   GoalTarget goal(task);
   if (goal.reached(task.initial().data())) return true;
   const auto engine = width_engine({task, task.initial(), goal, limits, statistics, heuristics});
-  std::optional<Found> found;
+  std::optional<SearchResult> found;
   while (!found) found = engine->advance(10'000, 0);
   if (found->outcome != Outcome::Solved) return false;
   Knowledge state(task.layout());
