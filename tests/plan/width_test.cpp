@@ -128,10 +128,10 @@ TEST(Novelty, PairsAreForgottenWhereTheyWouldTakeTooMuch) {
   EXPECT_EQ(novelty.of(1, {3}, {3, 700}), 1);
 }
 
-using Search = Found (*)(const SearchInput&, std::uint64_t);
+using Search = SearchResult (*)(const SearchInput&, std::uint64_t);
 
 /// What a search finds with pauses after this much work.
-Found run(const Model& model, std::uint64_t work, Search search, Statistics& statistics,
+SearchResult run(const Model& model, std::uint64_t work, Search search, Statistics& statistics,
           const SolveOptions& options = {}) {
   Limits limits(options, statistics);
   Task task(model, limits);
@@ -139,12 +139,12 @@ Found run(const Model& model, std::uint64_t work, Search search, Statistics& sta
   GoalTarget target(task);
   return search({task, task.initial(), target, limits, statistics, heuristics}, work);
 }
-Found run(const Model& model, std::uint64_t work, Search search) {
+SearchResult run(const Model& model, std::uint64_t work, Search search) {
   Statistics statistics;
   return run(model, work, search, statistics);
 }
 
-Found by_width(const SearchInput& in, std::uint64_t work) {
+SearchResult by_width(const SearchInput& in, std::uint64_t work) {
   const auto engine = width_engine(in);
   for (;;)
     if (auto found = engine->advance(work, 0)) return *found;
@@ -153,7 +153,7 @@ Found by_width(const SearchInput& in, std::uint64_t work) {
 TEST(Width, PausesChangeNothing) {
   for (const auto& [domain, n] : {std::pair("stacked", "6"), std::pair("remove", "9")}) {
     const Model model = scenario(domain, n);
-    const Found whole = run(model, std::uint64_t{1} << 60U, by_width);
+    const SearchResult whole = run(model, std::uint64_t{1} << 60U, by_width);
     ASSERT_EQ(whole.outcome, Outcome::Solved);
     EXPECT_EQ(run(model, 1, by_width).steps, whole.steps);
     EXPECT_EQ(run(model, 1'000'000, by_width).steps, whole.steps);
@@ -228,8 +228,8 @@ TEST(Width, LongStatesAreSearchedAsShortOnes) {
     const Model longer = load({"domain.kpl", padded(domain, 3000), Language::Kpl}, &problem);
     for (const Search search : {by_width, take_turns}) {
       Statistics of_shorter, of_longer;
-      const Found a = run(shorter, 100'000'000, search, of_shorter);
-      const Found b = run(longer, 100'000'000, search, of_longer);
+      const SearchResult a = run(shorter, 100'000'000, search, of_shorter);
+      const SearchResult b = run(longer, 100'000'000, search, of_longer);
       ASSERT_EQ(a.outcome, Outcome::Solved);
       ASSERT_EQ(b.outcome, Outcome::Solved);
       EXPECT_EQ(a.steps.size(), b.steps.size());
@@ -246,7 +246,7 @@ TEST(Width, TheLimitOfMemoryIsKept) {
   options.max_memory = 32 << 20;
   Statistics statistics;
   const Search quietly = [](const SearchInput& in, std::uint64_t work) {
-    const Found found = by_width(in, work);
+    const SearchResult found = by_width(in, work);
     EXPECT_EQ(in.limits.reason(), "") << "another search may go on";
     return found;
   };
