@@ -126,7 +126,8 @@ std::optional<std::uint32_t> triangle_in_file(const MeshCase& run, std::uint32_t
   const auto& subject = run.original.subject;
   if (run.inner() || !subject) return triangle;
   if (run.verdict.surface_of_all) {
-    const std::size_t others = subject->refusal.empty() ? 0 : 2 * run.original.quads.size();
+    if (subject->refusal.empty()) return verify::source_of_held(*subject, triangle);
+    const std::size_t others = 2 * run.original.quads.size();
     const std::size_t count = subject->triangles.triangles.size() - others;
     if (triangle < count) return triangle;
     return run.original.quads[(triangle - count) / 2];  // split the other way

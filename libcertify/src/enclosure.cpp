@@ -6,6 +6,7 @@
 #include <kaboum/certify/enclosure.h>
 #include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/verify/subject.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another mesh: cached ones are then not found.
-constexpr const char* kDecimation = "distance 4";
+constexpr const char* kDecimation = "distance 5";
 
 // An entry's content is the certificate in one line, and the mesh's bytes.
 constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 2";
@@ -176,7 +177,7 @@ std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const Enclosur
   made.vertices = back.vertices.size();
   made.triangles = back.triangles.size();
   if (hooks.progress) hooks.progress("verifying");
-  made.inside = look_at(request.preparation.drop_sheets ? solid.solid.mesh() : mesh, back);
+  made.inside = look_at(given.wrap ? mesh : verify::held_triangles(mesh, solid), back);
   return Issuer::issue(std::move(back), std::move(made), std::move(bytes));
 }
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Changes whenever the same request may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 29";
+constexpr const char* kAlgorithm = "planes 30";
 
 /// The same of containers' bytes.
 constexpr const char* kContainer = "coloured";

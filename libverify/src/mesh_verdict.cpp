@@ -12,6 +12,22 @@
 namespace kaboum::verify {
 namespace {
 
+/// The mesh that the solid claim is about.
+const geom::Mesh& solid_of(const MeshQuestion& q, const MeshVerdict& verdict) {
+  return verdict.solid_part ? *verdict.solid_part : q.inner();
+}
+
+constexpr const char* kHollow =
+    "a part of the surface crosses itself, and which of what it winds round is meant is not known: "
+    "not all of that is inside";
+
+Claim claim_of(Answer answer, const char* reason) {
+  Claim out;
+  out.answer = answer;
+  out.reason = reason;
+  return out;
+}
+
 void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
   const double margin = q.relation == Relation::Cover ? q.set->margin : 0;
   const auto beyond_margin = [&](Bracket b) {
@@ -21,8 +37,7 @@ void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
   };
   const Inclusion& in = out.inclusion;
   if (in.solid.answer == Answer::Refuted && !in.relative && !in.limited)
-    out.solid_depth = beyond_margin(
-        bracket_solid(out.solid_backwards ? turned(q.inner()) : q.inner(), q.outer(), in.solid));
+    out.solid_depth = beyond_margin(bracket_solid(solid_of(q, out), q.outer(), in.solid));
   if (in.surface.answer != Answer::Refuted) return;
   BracketEffort effort;
   if (in.limited)  // its target is as hard to find
@@ -103,39 +118,78 @@ Inclusion inclusion_of(const MeshQuestion& q, const geom::Mesh& inner,
                                        : verify_inclusion(inner, q.outer(), options);
 }
 
-/// What a subject is beside its mesh as it is oriented.
-void decide_the_rest(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
-  if (q.subject == nullptr || q.relation == Relation::Inner) return;
-  Inclusion& all = out.inclusion;
-  const auto add = [&](const Inclusion& more) {
-    all.left_out += more.left_out;
-    all.limited = all.limited || more.limited;
-    all.contacts += more.contacts;
-    all.samples += more.samples;
-  };
-  if (q.subject->both_ways && all.inner_closed && all.solid.answer == Answer::Verified) {
-    const Inclusion back = inclusion_of(q, turned(q.original), options);
-    add(back);
-    out.solid_backwards = back.solid.answer != Answer::Verified;
-    all.solid = back.solid;
+/// The claims about a subject that its mesh as it is oriented does not settle.
+class RestOfSubject {
+ public:
+  RestOfSubject(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out)
+      : q_(q), subject_(*q.subject), options_(options), out_(out), all_(out.inclusion) {
+    options_.max_work = options.max_work.value_or(
+        usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
   }
-  InclusionOptions surface = options;
-  surface.surface_only = true;
-  if (q.subject->filled_triangles > 0 && all.surface.answer != Answer::Verified) {
-    const Inclusion own =
-        inclusion_of(q, without_filling(q.original, q.subject->filled_triangles), surface);
-    add(own);
-    all.surface = own.surface;
+
+  void decide() {
+    if (subject_.both_ways) decide_parts();
+    decide_surface();
+    // Nothing is known of the solid: only triangles that all lie inside say something.
+    if (subject_.refusal.empty() || all_.solid.answer != Answer::Verified) return;
+    if (q_.claims == Claims::Solid || all_.surface.answer == Answer::Undefined)
+      all_.solid = claim_of(Answer::Undefined, "which solid the triangles bound is not known");
   }
-  if (!q.subject->has_more) return;
-  surface.max_work = options.max_work.value_or(
-      usual_work(q.subject->triangles.triangles.size() + q.approximation.triangles.size()));
-  const Inclusion more = inclusion_of(q, q.subject->triangles, surface);
-  add(more);
-  if (worse(all.surface.answer, more.surface.answer) == all.surface.answer) return;
-  out.surface_of_all = true;
-  all.surface = more.surface;
-}
+
+ private:
+  /// What each part that is closed by itself winds round, either way.
+  void decide_parts() {
+    if (all_.inner_closed && all_.solid.answer != Answer::Verified) return;
+    const std::vector<geom::Mesh> parts = closed_parts(q_.original);
+    if (!all_.inner_closed)
+      all_.solid = parts.empty() ? claim_of(Answer::Undefined, "no part of the triangles is closed")
+                                 : claim_of(Answer::Verified, "");
+    for (const geom::Mesh& part : parts)
+      for (const bool backwards : {false, true}) {
+        geom::Mesh mesh = backwards ? turned(part) : part;
+        Inclusion found = inclusion_of(q_, mesh, options_);
+        add(found);
+        if (worse(all_.solid.answer, found.solid.answer) == all_.solid.answer) continue;
+        all_.solid = std::move(found.solid);
+        out_.solid_part = std::move(mesh);
+        if (subject_.refusal.empty() && all_.solid.answer == Answer::Refuted) {
+          all_.solid = claim_of(Answer::Undecided, kHollow);
+          out_.solid_part.reset();
+        }
+      }
+  }
+
+  /// The triangles that are to be held, filling apart.
+  void decide_surface() {
+    InclusionOptions surface = options_;
+    surface.surface_only = true;
+    if (subject_.filled_triangles > 0 && all_.surface.answer != Answer::Verified) {
+      const Inclusion own =
+          inclusion_of(q_, without_filling(q_.original, subject_.filled_triangles), surface);
+      add(own);
+      all_.surface = own.surface;
+    }
+    if (!subject_.has_more) return;
+    const Inclusion more = inclusion_of(q_, subject_.triangles, surface);
+    add(more);
+    if (worse(all_.surface.answer, more.surface.answer) == all_.surface.answer) return;
+    out_.surface_of_all = true;
+    all_.surface = more.surface;
+  }
+
+  void add(const Inclusion& more) {
+    all_.left_out = std::max(all_.left_out, more.left_out);
+    all_.limited = all_.limited || more.limited;
+    all_.contacts += more.contacts;
+    all_.samples += more.samples;
+  }
+
+  const MeshQuestion& q_;
+  const Subject& subject_;
+  InclusionOptions options_;
+  MeshVerdict& out_;
+  Inclusion& all_;
+};
 
 }  // namespace
 
@@ -186,9 +240,9 @@ MeshVerdict decide(const MeshQuestion& q,
   MeshVerdict out;
   if (q.set != nullptr) out.convex = verify_convexity(*q.set).convex;
   out.inclusion = inclusion_of(q, q.inner(), options);
-  decide_the_rest(q, options, out);
-  const bool both_ways =
-      q.subject != nullptr && q.subject->both_ways && q.relation != Relation::Inner;
+  const bool has_subject = q.subject != nullptr && q.relation != Relation::Inner;
+  if (has_subject) RestOfSubject(q, options, out).decide();
+  const bool both_ways = has_subject && q.subject->both_ways;
   out.vacuous = q.claims == Claims::Solid && !both_ways && is_inside_out(q.inner());
   show("measuring what sticks out");
   measure_depths(q, out);
@@ -217,7 +271,9 @@ geom::Mesh offending_triangles(const MeshQuestion& q, const MeshVerdict& verdict
   std::vector<std::uint32_t> of_inner, of_outer;
   for (const Claim* claim : {&verdict.inclusion.solid, &verdict.inclusion.surface}) {
     of_outer.insert(of_outer.end(), claim->outer_triangles.begin(), claim->outer_triangles.end());
-    if (verdict.surface_of_all && claim == &verdict.inclusion.surface)
+    if (verdict.solid_part && claim == &verdict.inclusion.solid)
+      take(*verdict.solid_part, claim->inner_triangles);
+    else if (verdict.surface_of_all && claim == &verdict.inclusion.surface)
       take(q.subject->triangles, claim->inner_triangles);
     else
       of_inner.insert(of_inner.end(), claim->inner_triangles.begin(), claim->inner_triangles.end());

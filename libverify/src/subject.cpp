@@ -1,8 +1,12 @@
 // The mesh that claims about the triangles of a file are about.
 #include <kaboum/base/error.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/verify/subject.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace kaboum::verify {
@@ -27,7 +31,92 @@ void add_other_ways(const std::vector<std::uint32_t>& quads, geom::Mesh& mesh) {
   }
 }
 
+/// The parts whose triangles hang together by edges.
+std::vector<geom::Mesh> parts_over_edges(const geom::Mesh& mesh) {
+  std::vector<std::uint32_t> root(mesh.triangles.size());
+  std::iota(root.begin(), root.end(), 0U);
+  const auto find = [&](std::uint32_t t) {
+    while (root[t] != t) t = root[t] = root[root[t]];
+    return t;
+  };
+  std::vector<std::array<std::uint32_t, 3>> edges;  // both ends and the triangle
+  edges.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), t});
+    }
+  std::ranges::sort(edges);
+  for (std::size_t i = 1; i < edges.size(); ++i)
+    if (edges[i][0] == edges[i - 1][0] && edges[i][1] == edges[i - 1][1])
+      root[find(edges[i][2])] = find(edges[i - 1][2]);
+  std::map<std::uint32_t, std::vector<geom::Triangle>> parts;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    parts[find(t)].push_back(mesh.triangles[t]);
+  std::vector<geom::Mesh> out;
+  out.reserve(parts.size());
+  for (auto& [name, triangles] : parts) {
+    geom::Mesh& part = out.emplace_back();
+    std::map<std::uint32_t, std::uint32_t> local;
+    for (geom::Triangle& t : triangles)
+      for (std::uint32_t& v : t) {
+        const auto [at, fresh] = local.emplace(v, static_cast<std::uint32_t>(part.vertices.size()));
+        if (fresh) part.vertices.push_back(mesh.vertices[v]);
+        v = at->second;
+      }
+    part.triangles = std::move(triangles);
+  }
+  return out;
+}
+
 }  // namespace
+
+geom::Mesh held_triangles(const geom::Mesh& file, const geom::Prepared& prepared) {
+  if (prepared.report.dropped_sheets == 0) return file;
+  geom::Mesh out = without_filling(prepared.solid.mesh(), prepared.solid.filled_triangles());
+  for (const geom::LeftOut& triangle : prepared.report.left_out) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), triangle.corners.begin(), triangle.corners.end());
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
+}
+
+std::uint32_t source_of_held(const Subject& subject, std::uint32_t triangle) {
+  const geom::PreparationReport& r = subject.report;
+  if (r.dropped_sheets == 0) return triangle;
+  const std::size_t first = subject.triangles.triangles.size() - r.left_out.size();
+  return triangle < first ? r.source.at(triangle) : r.left_out.at(triangle - first).source;
+}
+
+std::vector<geom::Mesh> closed_parts(const geom::Mesh& mesh) {
+  struct Group {
+    geom::Mesh mesh;
+    std::vector<geom::Box3> boxes;
+  };
+  std::vector<Group> groups;
+  for (const geom::Mesh& part : parts_over_edges(geom::weld(mesh))) {
+    if (!geom::analyse(part).closed()) continue;
+    const geom::Box3 box = geom::bounding_box(part);
+    const auto apart = [&](const geom::Box3& other) {
+      return (box.max.array() < other.min.array()).any() ||
+             (other.max.array() < box.min.array()).any();
+    };
+    auto group = std::ranges::find_if(
+        groups, [&](const Group& g) { return std::ranges::all_of(g.boxes, apart); });
+    if (group == groups.end()) group = groups.emplace(groups.end());
+    group->boxes.push_back(box);
+    const auto first = static_cast<std::uint32_t>(group->mesh.vertices.size());
+    group->mesh.vertices.insert(group->mesh.vertices.end(), part.vertices.begin(),
+                                part.vertices.end());
+    for (const geom::Triangle& t : part.triangles)
+      group->mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  std::vector<geom::Mesh> out;
+  out.reserve(groups.size());
+  for (Group& group : groups) out.push_back(std::move(group.mesh));
+  return out;
+}
 
 geom::Mesh without_filling(geom::Mesh mesh, std::size_t filled_triangles) {
   mesh.triangles.resize(mesh.triangles.size() - filled_triangles);
@@ -52,10 +141,10 @@ Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& opt
     Subject out;
     out.mesh = prepared.solid.mesh();
     out.filled_triangles = prepared.solid.filled_triangles();
+    out.both_ways = prepared.report.hollow.has_value();
+    out.has_more = !prepared.report.left_out.empty();
+    if (out.has_more) out.triangles = held_triangles(file, prepared);
     out.report = std::move(prepared.report);
-    const geom::PreparationReport& r = out.report;
-    out.has_more = r.dropped_sheets == 0 && r.collapsed_triangles + r.cancelled_walls > 0;
-    if (out.has_more) out.triangles = file;
     return out;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::InvalidInput || options.drop_sheets) throw;

@@ -77,6 +77,80 @@ TEST(MeshVerdict, TrianglesThatCloseHolesNeedNotLieInside) {
   EXPECT_EQ(decided_of(cube(0.25, 2)).answer, Answer::Refuted);
 }
 
+Mesh joined(Mesh a, const Mesh& b) {
+  const auto first = static_cast<std::uint32_t>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const auto& t : b.triangles)
+    a.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return a;
+}
+
+Mesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) { return {{a, b, c}, {{0, 1, 2}}}; }
+
+Answer answer_about(const verify::Subject& subject, const Mesh& result,
+                    Claims claims = Claims::All) {
+  MeshQuestion q{subject.mesh, result, nullptr, Relation::Outer, claims, {}};
+  q.subject = &subject;
+  return verify::decide(q).answer;
+}
+
+verify::Subject refused(const Mesh& mesh) {
+  verify::Subject out = verify::unprepared_subject(mesh);
+  out.refusal = "a test";
+  return out;
+}
+
+// Nothing is said of triangles that bound no solid but that they lie inside.
+TEST(MeshVerdict, RefusedTrianglesAreVerifiedByTheirSurfaceAlone) {
+  const Mesh open = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(answer_about(refused(open), cube(-1, 2)), Answer::Verified);
+  EXPECT_EQ(answer_about(refused(open), open), Answer::Undefined);  // the same border
+  EXPECT_EQ(answer_about(refused(open), cube(-1, 2), Claims::Solid), Answer::Undefined);
+  const Mesh sheet = joined(open, verify::turned(open));
+  EXPECT_EQ(answer_about(refused(sheet), cube(8, 9), Claims::Solid), Answer::Undefined);
+}
+
+// A part that is closed by itself is held with what it winds round, whatever lies beside it.
+TEST(MeshVerdict, ClosedPartsOfRefusedTrianglesAreHeld) {
+  const Mesh open = triangle({0, 0, 1.5}, {1, 0, 1.5}, {0, 1, 1.5});
+  const Mesh hollow = joined(cube(-1, 2), verify::turned(cube(0.3, 0.7)));
+  for (const Mesh& part : {cube(0, 1), verify::turned(cube(0, 1))}) {
+    EXPECT_EQ(answer_about(refused(joined(part, open)), hollow), Answer::Refuted);
+    EXPECT_EQ(answer_about(refused(joined(part, open)), cube(-1, 2)), Answer::Verified);
+  }
+  // Parts the windings of which cancel.
+  const Mesh cancelled = joined(cube(0, 1), verify::turned(cube(0.2, 0.8)));
+  EXPECT_EQ(answer_about(refused(joined(cancelled, open)), hollow), Answer::Refuted);
+}
+
+// What preparing had to guess is not verified unless all that it may be is held.
+TEST(MeshVerdict, HollowsOfSurfacesThatCrossThemselvesAreLeftOpen) {
+  verify::Subject guessed;
+  guessed.mesh = joined(cube(0, 1), verify::turned(cube(0.2, 0.8)));
+  guessed.both_ways = true;
+  const Mesh hollow = joined(cube(-1, 2), verify::turned(cube(0.3, 0.7)));
+  EXPECT_EQ(answer_about(guessed, hollow), Answer::Undecided);
+  EXPECT_EQ(answer_about(guessed, cube(-1, 2)), Answer::Verified);
+}
+
+// Sheets dropped on request are not asked for; what else preparing leaves out is.
+TEST(MeshVerdict, LeftOutTrianglesAreHeldBesideDroppedSheets) {
+  const Mesh flap = triangle({5, 5, 5}, {6, 5, 5}, {5, 6, 5});
+  Mesh file = joined(joined(cube(0, 1), flap), verify::turned(flap));
+  const geom::PrepareOptions options{.drop_sheets = true, .holes = geom::Holes::Fill};
+  EXPECT_EQ(answer_about(verify::prepared_subject(file, options), cube(-1, 2)), Answer::Verified);
+  const auto first = static_cast<std::uint32_t>(file.vertices.size());
+  file.vertices.push_back({0.5, 0.5, 0.5});
+  file.vertices.push_back({0.5, 0.5, 4});
+  file.triangles.push_back({first, first + 1, first + 1});
+  const verify::Subject subject = verify::prepared_subject(file, options);
+  EXPECT_EQ(subject.report.dropped_sheets, 2U);
+  EXPECT_EQ(answer_about(subject, cube(-1, 2)), Answer::Refuted);
+  EXPECT_EQ(verify::source_of_held(
+                subject, static_cast<std::uint32_t>(subject.triangles.triangles.size() - 1)),
+            file.triangles.size() - 1);
+}
+
 // Where preparing refuses the triangles, all of them are to be held, and all that they wind round.
 TEST(MeshVerdict, SubjectsThatCannotBePrepared) {
   Mesh file = verify::turned(cube(0, 1));

@@ -58,7 +58,6 @@ JudgedFile judged_file(const MeshFile& file, const RobotQuestion& q) {
                                                                      .holes = geom::Holes::Fill});
   });
   if (q.solid == Solid::AsFile) out.both_ways = false;
-  if (out.report.hollow) out.both_ways = true;
   return out;
 }
 
@@ -98,6 +97,7 @@ class Judgement {
     if (held.surface && subject_.has_more) look_at_file();
     if (!out_.triangles && !out_.solid) {
       out_.answer = Answer::Undefined;
+      if (!subject_.refusal.empty()) out_.text = "which solid the triangles bound is not known";
       return;
     }
     out_.answer = Answer::Verified;
@@ -109,39 +109,60 @@ class Judgement {
     put_into_words();
   }
 
-  /// Every triangle, and all that they wind round.
+  /// Every triangle, and all that the parts that are closed wind round, either way.
   HeldShape held_both_ways() {
     HeldShape out = holders_.hold_any(subject_.mesh, q_.claims, q_.limits);
-    if (!out.solid || out.inclusion->solid.answer != Answer::Verified) return out;
-    HeldShape back = holders_.hold_any(turned(subject_.mesh), Claims::Solid, q_.limits);
-    if (!back.inclusion) return out;
+    if (!out.inclusion || q_.claims == Claims::Surface) return out;
     Inclusion& in = *out.inclusion;
-    in.solid = back.inclusion->solid;
-    in.left_out += back.inclusion->left_out;
-    in.limited = in.limited || back.inclusion->limited;
+    if (in.inner_closed && in.solid.answer != Answer::Verified) return out;
+    const std::vector<geom::Mesh> parts = closed_parts(subject_.mesh);
+    const bool is_known = subject_.refusal.empty() || q_.claims != Claims::Solid;
+    out.solid = !parts.empty() && is_known;  // of triangles alone nothing says which solid is meant
+    if (!out.solid) return out;
+    in.solid.answer = Answer::Verified;
+    for (const geom::Mesh& part : parts)
+      for (const bool backwards : {false, true}) {
+        const Inclusion found = holders_.inclusion_of(backwards ? turned(part) : part, limits());
+        in.left_out = std::max(in.left_out, found.left_out);
+        in.limited = in.limited || found.limited;
+        if (worse(in.solid.answer, found.solid.answer) == in.solid.answer) continue;
+        in.solid = found.solid;
+        if (!subject_.refusal.empty() || in.solid.answer != Answer::Refuted) continue;
+        in.solid.answer = Answer::Undecided;
+        in.solid.reason =
+            "a part of the surface crosses itself, and which of what it winds round is meant is "
+            "not known: not all of that is inside";
+      }
+    return out;
+  }
+
+  /// One look, which ends in any case.
+  [[nodiscard]] InclusionOptions limits() const {
+    InclusionOptions out = q_.limits;
+    out.max_work = out.max_work.value_or(usual_work(subject_.mesh.triangles.size()));
     return out;
   }
 
   /// Triangles that close holes are none of the file's: they need not lie inside themselves.
   void look_past_filling() {
     if (out_.triangles->answer == Answer::Verified) return;
-    InclusionOptions options = q_.limits;
+    InclusionOptions options = limits();
     options.surface_only = true;
     const Inclusion in =
         holders_.inclusion_of(without_filling(subject_.mesh, subject_.filled_triangles), options);
     out_.triangles = in.surface;
-    out_.left_out += in.left_out;
+    out_.left_out = std::max(out_.left_out, in.left_out);
     out_.limited = out_.limited || in.limited;
   }
 
   /// The file's triangles that preparing has left out lie inside as well.
   void look_at_file() {
-    InclusionOptions options = q_.limits;
+    InclusionOptions options = limits();
     options.surface_only = true;
     const Inclusion in = holders_.inclusion_of(subject_.triangles, options);
     if (worse(out_.triangles->answer, in.surface.answer) == out_.triangles->answer) return;
     out_.triangles = in.surface;
-    out_.left_out += in.left_out;
+    out_.left_out = std::max(out_.left_out, in.left_out);
     out_.limited = out_.limited || in.limited;
     measured_ = &subject_.triangles;
   }

@@ -2,7 +2,9 @@
 
 #include <kaboum/geom/prepare.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace kaboum::verify {
 
@@ -10,13 +12,13 @@ namespace kaboum::verify {
 /// refuses them, as they are.
 struct Subject {
   geom::Mesh mesh;  ///< whose solid is judged
-  /// What `mesh` winds round backwards is to be held as well, for which way it is oriented is not
-  /// known.
+  /// Which solid is meant is not known, for preparing refuses the mesh or had to guess: what each
+  /// part that is closed by itself winds round, either way, is to be held as well.
   bool both_ways = false;
   /// Preparing left out triangles, or split quads that are not plane one way: `triangles` are to
   /// lie inside as well.
   bool has_more = false;
-  geom::Mesh triangles;  ///< with has_more: those of the file and, of such quads, the other ways
+  geom::Mesh triangles;  ///< with has_more: held_triangles and, of such quads, the other ways
   geom::PreparationReport report;  ///< where it was prepared
   /// The last triangles of `mesh`, which close holes. They bound its solid, but none of them is in
   /// the file: they need not lie inside themselves.
@@ -39,6 +41,17 @@ struct MeasuredMesh {
 };
 
 MeasuredMesh measured_mesh(const Subject& subject, const geom::Mesh& file);
+
+/// The triangles of a file that are to lie inside whatever is its solid: all but sheets that were
+/// dropped on request.
+geom::Mesh held_triangles(const geom::Mesh& file, const geom::Prepared& prepared);
+
+/// The index in the file of a triangle of held_triangles.
+std::uint32_t source_of_held(const Subject& subject, std::uint32_t triangle);
+
+/// The connected parts of a mesh that are closed by themselves; those whose boxes do not meet are in
+/// one mesh together.
+std::vector<geom::Mesh> closed_parts(const geom::Mesh& mesh);
 
 /// The mesh without its last triangles, which close holes.
 geom::Mesh without_filling(geom::Mesh mesh, std::size_t filled_triangles);
