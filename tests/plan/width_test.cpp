@@ -132,7 +132,7 @@ using Search = SearchResult (*)(const SearchInput&, std::uint64_t);
 
 /// What a search finds with pauses after this much work.
 SearchResult run(const Model& model, std::uint64_t work, Search search, Statistics& statistics,
-          const SolveOptions& options = {}) {
+                 const SolveOptions& options = {}) {
   Limits limits(options, statistics);
   Task task(model, limits);
   Heuristics heuristics;

@@ -76,7 +76,7 @@ struct MeshVerdict {
   /// Of the points of exact faces, where they were asked for: they refute, and prove nothing.
   std::optional<PointClaim> exact_points;
   std::optional<geom::Mesh> solid_part;  ///< the solid claim is that of this part of the original
-  bool surface_of_all = false;   ///< the surface claim is that of Subject::triangles
+  bool surface_of_all = false;           ///< the surface claim is that of Subject::triangles
   /// The solid claim alone decides, and the enclosed mesh is inside out: its solid is empty, or
   /// nearly so, and within any other.
   bool vacuous = false;
