@@ -237,7 +237,7 @@ int decompose_robot(const DecomposeOptions& o) {
   require_formats(meshes, o.input_format);
   certify_links(run);
   if (o.srdf) {
-    run.pairs = scene::pairs_of(run.robot.robot, run.made.links);
+    run.pairs = scene::pairs_of(run.robot.robot, run.made);
     output.add_document(".srdf", run.pairs->srdf);
   }
   write(run, output);

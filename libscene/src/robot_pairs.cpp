@@ -1,5 +1,6 @@
 // Pairs of a robot's links that need no check, proved of the bodies that were made.
 
+#include <kaboum/base/error.h>
 #include <kaboum/scene/robot_pairs.h>
 #include <kaboum/world/allowed_pairs.h>
 
@@ -24,8 +25,16 @@ world::RobotModel robot_model(const robot::Robot& robot,
   return model;
 }
 
-RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links) {
-  const world::RobotModel model = robot_model(robot, links);
+RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made) {
+  const robot::ShapeChoice& choice = made.bodies.certificate().choice;
+  if (!choice.links.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "pairs of links (srdf) are about all links of a robot: only some have sets here");
+  world::RobotModel model = robot_model(robot, made.links);
+  // A link whose shapes for drawing could not be held is no frame across which others are adjacent.
+  if (choice.visual)
+    for (robot::Link& link : model.kinematics.links)
+      link.collision.insert(link.collision.end(), link.visual.begin(), link.visual.end());
   const std::vector<world::LinkPair> examined = examine_pairs(model, {});
   const std::vector<world::AllowedPair> allowed = pairs_without_check(model, examined);
   RobotPairs out;

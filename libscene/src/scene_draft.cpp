@@ -1,10 +1,12 @@
 // Scenes put together in process: entries are made when it is known where the scene is to be.
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/scene/scene_draft.h>
 
 #include <algorithm>
+#include <mutex>
 #include <system_error>
 #include <utility>
 
@@ -39,6 +41,29 @@ Json object_of(const std::string& text, const std::string& name,
   return out;
 }
 
+/// By its record, what a set's mesh was multiplied by.
+double scale_of(const geom::Provenance& record) {
+  certify::SetOptions stated;
+  static_cast<void>(read_record(certify::set_options(), record.parameters, stated));
+  return stated.request.scale;
+}
+
+/// An inner set of another scale is not in the object: contacts with it would be called certain.
+void require_one_scale(const std::string& name, const SceneSet& outer, const SceneSet& inner) {
+  const geom::Provenance& out = outer.set.artefact().provenance;
+  const geom::Provenance& in = inner.set.artefact().provenance;
+  if (out.source_sha256 == in.source_sha256 && scale_of(out) != scale_of(in))
+    throw Error(ErrorCode::InvalidArgument,
+                "object '" + name +
+                    "': its inner set is of another scale than the outer one, and not inside it");
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  return fs::absolute(a, error).lexically_normal() == fs::absolute(b, error).lexically_normal();
+}
+
 }  // namespace
 
 struct SceneDraft::State {
@@ -57,13 +82,17 @@ struct SceneDraft::State {
   };
 
   Json base;
-  fs::path file = {};  ///< where it was read or written last
+  fs::path file = {};       ///< where it was read or written last
+  std::string sha256 = {};  ///< of this file then
   bool was_read = false;
+  std::vector<std::string> stems = {};  ///< stems of the containers that were there when read
   std::vector<AddedRobot> robots = {};
   std::vector<AddedThing> objects = {}, regions = {};
+  mutable std::mutex mutex = {};  ///< of all that is above
 
   [[nodiscard]] std::string unit() const { return base.value("unit", "m"); }
   void require_new(const std::string& name) const;
+  void require_unchanged() const;
   [[nodiscard]] Json entry_of(const AddedThing& thing, SetMaker& sets, const fs::path& folder,
                               io::FileNames& names) const;
   [[nodiscard]] Json made_by(SetMaker& sets, const fs::path& scene) const;
@@ -80,6 +109,16 @@ void SceneDraft::State::require_new(const std::string& name) const {
   if (taken) throw Error(ErrorCode::InvalidArgument, "the name '" + name + "' is used twice");
 }
 
+/// Refuses to replace what somebody else has written meanwhile.
+void SceneDraft::State::require_unchanged() const {
+  std::error_code error;
+  if (fs::exists(file, error) && io::sha256(io::read_file(file)) != sha256)
+    throw Error(ErrorCode::InvalidArgument,
+                file.string() +
+                    " has changed since it was read or written here; replacing it "
+                    "(force) loses all that was edited in it");
+}
+
 Json SceneDraft::State::entry_of(const AddedThing& thing, SetMaker& sets, const fs::path& folder,
                                  io::FileNames& names) const {
   Json out = {{"name", thing.name}, {"pose", {{"position", {0, 0, 0}}}}};
@@ -87,10 +126,11 @@ Json SceneDraft::State::entry_of(const AddedThing& thing, SetMaker& sets, const 
     return folder / (names.unique(stem) + ".glb");
   };
   if (thing.outer)
-    out["outer"] = sets.set_of(thing.outer->set, thing.outer->sources, container(thing.name));
+    out["outer"] =
+        sets.set_of(thing.name, thing.outer->set, thing.outer->sources, container(thing.name));
   if (thing.inner)
-    out["inner"] =
-        sets.set_of(thing.inner->set, thing.inner->sources, container(thing.name + "-inner"));
+    out["inner"] = sets.set_of(thing.name, thing.inner->set, thing.inner->sources,
+                               container(thing.name + "-inner"));
   for (const auto& [member, value] : thing.members.items()) out[member] = value;
   return out;
 }
@@ -98,11 +138,7 @@ Json SceneDraft::State::entry_of(const AddedThing& thing, SetMaker& sets, const 
 Json SceneDraft::State::made_by(SetMaker& sets, const fs::path& scene) const {
   const fs::path folder = fs::path(scene).replace_extension();
   io::FileNames names;
-  if (was_read) {  // containers that are there stay
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      names.reserve(entry.path().stem().string());
-  }
+  for (const std::string& stem : stems) names.reserve(stem);  // what was there stays
   Json out = base;
   for (const char* list : {"robots", "objects", "regions"})
     if (!out.contains(list)) out[list] = Json::array();
@@ -136,7 +172,11 @@ SceneDraft SceneDraft::read(const fs::path& file) {
   out.state_->base =
       parsed(world::scene_as_json({bytes.data(), bytes.size()}, file.string()), file.string());
   out.state_->file = file;
+  out.state_->sha256 = io::sha256(bytes);
   out.state_->was_read = true;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(fs::path(file).replace_extension(), error))
+    out.state_->stems.push_back(entry.path().stem().string());
   return out;
 }
 
@@ -144,11 +184,19 @@ SceneDraft::SceneDraft(SceneDraft&&) noexcept = default;
 SceneDraft& SceneDraft::operator=(SceneDraft&&) noexcept = default;
 SceneDraft::~SceneDraft() = default;
 
-std::string SceneDraft::unit() const { return state_->unit(); }
-const fs::path& SceneDraft::file() const { return state_->file; }
+std::string SceneDraft::unit() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->unit();
+}
+
+fs::path SceneDraft::file() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->file;
+}
 
 void SceneDraft::add_robot(const std::string& name, std::shared_ptr<const robot::RobotFile> file,
                            certify::CertifiedRobot made, const std::string& members) {
+  const std::scoped_lock lock(state_->mutex);
   state_->require_new(name);
   Json extra = object_of(members, "robot '" + name + "'",
                          {"name", "urdf", "links", "links_without_set", "shapes"});
@@ -157,12 +205,15 @@ void SceneDraft::add_robot(const std::string& name, std::shared_ptr<const robot:
 
 void SceneDraft::add_object(const std::string& name, SceneSet outer, std::optional<SceneSet> inner,
                             const std::string& members) {
+  if (inner) require_one_scale(name, outer, *inner);
+  const std::scoped_lock lock(state_->mutex);
   state_->require_new(name);
   Json extra = object_of(members, "object '" + name + "'", {"name", "outer", "inner"});
   state_->objects.push_back({name, std::move(outer), std::move(inner), std::move(extra)});
 }
 
 void SceneDraft::add_region(const std::string& name, SceneSet inner, const std::string& members) {
+  const std::scoped_lock lock(state_->mutex);
   state_->require_new(name);
   Json extra = object_of(members, "region '" + name + "'", {"name", "outer", "inner"});
   state_->regions.push_back({name, std::nullopt, std::move(inner), std::move(extra)});
@@ -170,18 +221,21 @@ void SceneDraft::add_region(const std::string& name, SceneSet inner, const std::
 
 void SceneDraft::add_entry(const std::string& list, const std::string& entry) {
   ensure(list == "allowed_contacts" || list == "attachments", "a list of a scene");
+  const std::scoped_lock lock(state_->mutex);
   Json& entries = state_->base[list];
   if (entries.is_null()) entries = Json::array();
   entries.push_back(parsed(entry, list));
 }
 
 std::string SceneDraft::json() const {
+  const std::scoped_lock lock(state_->mutex);
   const fs::path scene = state_->file.empty() ? fs::path(kUnnamed) : state_->file;
   SetMaker sets(scene);
   return state_->made_by(sets, scene).dump(2) + "\n";
 }
 
 world::SceneFile SceneDraft::world() const {
+  const std::scoped_lock lock(state_->mutex);
   const fs::path scene = state_->file.empty() ? fs::path(kUnnamed) : state_->file;
   SetMaker sets(scene);
   const std::string text = state_->made_by(sets, scene).dump(2) + "\n";
@@ -202,13 +256,14 @@ world::SceneFile SceneDraft::world() const {
 
 MadeScene SceneDraft::write(const fs::path& scene, bool replace) {
   State& s = *state_;
-  std::error_code error;
-  const bool is_here = !s.file.empty() && fs::equivalent(scene, s.file, error);
+  const std::scoped_lock lock(s.mutex);
+  const bool is_here = !s.file.empty() && is_same_file(scene, s.file);
   if (s.was_read && !is_here)
     throw Error(ErrorCode::InvalidArgument,
                 scene.string() + ": a scene that was read is written where it was, " +
                     s.file.string() + ", since it names its files from there");
   require_free_place(scene, replace || is_here);
+  if (is_here && !replace) s.require_unchanged();
   SetMaker sets(scene);
   const Json text = s.made_by(sets, scene);
   MadeScene out;
@@ -218,6 +273,7 @@ MadeScene SceneDraft::write(const fs::path& scene, bool replace) {
   out.sizes = std::move(sets.sizes);
   out.bad_links = std::move(sets.bad_links);
   s.file = scene;
+  s.sha256 = io::sha256(io::read_file(scene));
   return out;
 }
 

@@ -77,8 +77,11 @@ void require_free_place(const fs::path& scene, bool replace) {
   const std::string name = scene.string();
   if (!name.ends_with(".json") && !name.ends_with(".yaml") && !name.ends_with(".yml"))
     throw Error(ErrorCode::InvalidArgument, name + ": a scene's name ends in .json, .yaml or .yml");
-  if (replace) return;
   std::error_code error;
+  if (const fs::path parent = scene.parent_path(); !parent.empty() && !fs::exists(parent, error))
+    throw Error(ErrorCode::OutputFailed,
+                name + ": there is no folder " + parent.string() + "; create it first");
+  if (replace) return;
   if (fs::exists(scene, error))
     throw Error(ErrorCode::InvalidArgument,
                 name + " exists; replacing it (force) loses all that was edited in it");

@@ -103,7 +103,6 @@ void SetMaker::add_sources(Json& sources, const fs::path& file,
 Json SetMaker::robot(const std::string& name, const std::string& path, const fs::path& folder,
                      const SceneSetOptions& options) {
   const robot::RobotFile file = robot::read_robot(path);
-  inputs.insert(path);
   certify::RobotRequest request{
       options.sets, {options.links, options.visual, options.packages}, {}, {}};
   request.tool = "kaboum-scene " KABOUM_VERSION;
@@ -118,8 +117,6 @@ Json SetMaker::robot(const std::string& name, const std::string& path, const fs:
                     "the decomposition does not reach " + mesh.epsilon->text());
   };
   const certify::CertifiedRobot made = certify::certify_robot(file, request, options.cache, hooks);
-  const certify::BodiesCertificate& bodies = made.bodies.certificate();
-  for (const fs::path& input : bodies.files) inputs.insert(input.string());
   for (std::string& note : robot::notes_on_flat_shapes(file, options.visual))
     notes.push_back(std::move(note));
   for (std::string& line : of_meshes.lines()) notes.push_back(std::move(line));
@@ -133,6 +130,8 @@ Json SetMaker::robot_of(const std::string& name, const robot::RobotFile& file,
                         const certify::CertifiedRobot& made, const fs::path& folder,
                         io::FileNames& names) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
+  inputs.insert(file.path.string());
+  for (const fs::path& input : bodies.files) inputs.insert(input.string());
   add_bad_links(name, file.robot, certify::verdicts(made));
   Json links = Json::array(), without = Json::array();
   for (const certify::CertifiedLink& link : made.links) {
@@ -156,12 +155,15 @@ Json SetMaker::robot_of(const std::string& name, const robot::RobotFile& file,
   return out;
 }
 
-Json SetMaker::set_of(const certify::CertifiedSet& set, const std::vector<fs::path>& sources,
-                      const fs::path& container) {
+Json SetMaker::set_of(const std::string& name, const certify::CertifiedSet& set,
+                      const std::vector<fs::path>& sources, const fs::path& container) {
   Json made_from = Json::array();
-  for (const fs::path& source : sources)
+  for (const fs::path& source : sources) {
     made_from.push_back(
         {{"file", seen_from_scene(source)}, {"sha256", io::sha256(io::read_file(source))}});
+    inputs.insert(source.string());
+  }
+  say_size(name, set.artefact(), set.artefact().provenance.unit);
   Json out = keep(container, set.bytes(), made_from);
   if (sources.empty()) out.erase("made_from");
   return out;

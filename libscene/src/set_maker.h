@@ -41,8 +41,10 @@ class SetMaker {
                 const certify::CertifiedRobot& made, const std::filesystem::path& folder,
                 io::FileNames& names);
 
-  /// A set as an entry of a scene. @param sources  that it was made from, itself first
-  Json set_of(const certify::CertifiedSet& set, const std::vector<std::filesystem::path>& sources,
+  /// A set as an entry of a scene. @param name  of its object or region
+  /// @param sources  that it was made from, itself first
+  Json set_of(const std::string& name, const certify::CertifiedSet& set,
+              const std::vector<std::filesystem::path>& sources,
               const std::filesystem::path& container);
 
   /// What is read of a scene that is to be written: files that are kept here, else those on disk.

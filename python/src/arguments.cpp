@@ -63,13 +63,22 @@ void require_doubles(const py::array& array, const std::string& name) {
   }
 }
 
+std::optional<double> number_of(const py::handle& value) {
+  if (PyNumber_Check(value.ptr()) == 0 || PyBool_Check(value.ptr()) ||
+      PyComplex_Check(value.ptr()) != 0)
+    return std::nullopt;
+  const double out = PyFloat_AsDouble(value.ptr());
+  if (out != -1 || PyErr_Occurred() == nullptr) return out;
+  PyErr_Clear();  // arrays of several numbers, integers beyond doubles
+  return std::nullopt;
+}
+
 std::optional<Length> length_of(const py::object& value, const char* argument) {
   if (value.is_none()) return std::nullopt;
   if (py::isinstance<py::str>(value)) {
     if (const auto length = parse_length(value.cast<std::string>())) return length;
-  } else if (PyNumber_Check(value.ptr()) != 0 && !PyBool_Check(value.ptr())) {
-    const Length length{value.cast<double>(), false};
-    if (length.value > 0 && std::isfinite(length.value)) return length;
+  } else if (const auto number = number_of(value)) {
+    if (*number > 0 && std::isfinite(*number)) return Length{*number, false};
   }
   throw Error(
       ErrorCode::InvalidArgument,

@@ -18,6 +18,10 @@
 /// Values of keyword arguments, which have the tools' names and meanings.
 namespace kaboum::python {
 
+/// The value of a number, also NumPy's; nullopt for all else, True, False and arrays of several
+/// too.
+std::optional<double> number_of(const py::handle& value);
+
 /// A number, or a text as the tools take it ('1%', '0.002'); None: nullopt.
 /// @throws Error{InvalidArgument} naming the argument.
 std::optional<Length> length_of(const py::object& value, const char* argument);
@@ -47,13 +51,13 @@ geom::Holes holes_of(const std::string& name, bool may_keep);
 /// nullopt.
 std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument);
 
-/// A str or os.PathLike as a path; nullopt: it is neither.
 /// Checks that nothing is rounded when a two-dimensional array becomes one of doubles: numbers of
 /// other types must be doubles all the same.
 /// @param name  what it is, for messages
 /// @throws Error{InvalidArgument} naming the first that is none
 void require_doubles(const py::array& array, const std::string& name);
 
+/// A str or os.PathLike as a path; nullopt: it is neither.
 std::optional<std::string> path_of(const py::object& value);
 
 }  // namespace kaboum::python

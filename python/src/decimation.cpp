@@ -217,12 +217,12 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshO
 
 py::object decimate(const py::object& mesh, const py::kwargs& given) {
   py::dict keywords = given;
-  const bool several =
-      keywords.contains("vertices") && py::isinstance<py::sequence>(keywords["vertices"]);
+  const py::object vertices = keywords.attr("get")("vertices");
+  const bool several = !vertices.is_none() && !whole_number(vertices);
   DecimateOptions options;
   const std::set<std::string> stated = take_options(decimate_options(), keywords, options);
   const RunKeywords running = take_run_keywords(keywords, false);
-  require_all_taken("decimate", keywords, keywords_of(decimate_options()));
+  require_all_taken("decimate", keywords, keywords_of(decimate_options()), false);
   require_none(certify::contradiction(options.mesh, stated));
   options.mesh.request.format = *format_of(options.format, "output_format");
   options.mesh.request.comment = "bmesh-decimate " KABOUM_VERSION;

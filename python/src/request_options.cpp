@@ -8,17 +8,14 @@
 #include <charconv>
 #include <sstream>
 
+#include "arguments.h"
+
 namespace kaboum::python {
 namespace {
 
 using Kind = OptionDescription::Kind;
 
 constexpr std::size_t kWidth = 96;  ///< of lines of docstrings
-
-bool is_number(const py::object& value) {
-  return PyNumber_Check(value.ptr()) != 0 && !PyBool_Check(value.ptr()) &&
-         PyComplex_Check(value.ptr()) == 0;
-}
 
 [[noreturn]] void refuse(const OptionDescription& option, const std::string& what,
                          const py::object& value) {
@@ -47,20 +44,15 @@ const char* type_words(Kind kind) {
 }
 
 std::string text_of_counts(const OptionDescription& option, const py::object& value) {
-  const auto is_count = [](const py::handle& one) {
-    return PyBool_Check(one.ptr()) == 0 && PyIndex_Check(one.ptr()) != 0;
-  };
-  const auto digits = [](const py::handle& one) -> std::string {
-    return py::str(py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr())));
-  };
-  if (is_count(value)) return digits(value);
+  if (const auto digits = whole_number(value)) return *digits;
   const char* what = "an int or a sequence of them";
   if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value))
     refuse(option, what, value);
   std::string out;
   for (const py::handle one : value) {
-    if (!is_count(one)) refuse(option, what, value);
-    out.append(out.empty() ? "" : ",").append(digits(one));
+    const auto digits = whole_number(one);
+    if (!digits) refuse(option, what, value);
+    out.append(out.empty() ? "" : ",").append(*digits);
   }
   return out;
 }
@@ -129,6 +121,16 @@ std::string with_underscores(const std::string& name) {
   return out;
 }
 
+std::optional<std::string> whole_number(const py::handle& value) {
+  if (PyBool_Check(value.ptr()) || PyIndex_Check(value.ptr()) == 0) return std::nullopt;
+  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  if (!index) {  // arrays of several numbers
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  return py::str(index).cast<std::string>();
+}
+
 std::optional<std::string> text_of(const OptionDescription& option, const py::object& value) {
   if (value.is_none()) return std::nullopt;
   std::string text;
@@ -139,21 +141,27 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       text = value.cast<bool>() ? "true" : "false";
       break;
     case Kind::Count:
-      if (PyBool_Check(value.ptr()) || PyIndex_Check(value.ptr()) == 0)
+      if (const auto digits = whole_number(value))
+        text = *digits;
+      else
         refuse(option, "an int", value);
-      text = py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
       break;
     case Kind::Counts:
       text = text_of_counts(option, value);
       break;
     case Kind::Number:
-      if (!is_number(value)) refuse(option, "a number", value);
-      text = option_text::of(value.cast<double>());
+      if (const auto given = number_of(value))
+        text = option_text::of(*given);
+      else
+        refuse(option, "a number", value);
       break;
     case Kind::Length:
-      if (!is_text && !is_number(value))
+      if (is_text)
+        text = value.cast<std::string>();
+      else if (const auto given = number_of(value))
+        text = option_text::of(*given);
+      else
         refuse(option, "a positive number, or a percentage of the diagonal such as '0.5%'", value);
-      text = is_text ? value.cast<std::string>() : option_text::of(value.cast<double>());
       break;
     case Kind::Choice:
     case Kind::Text:
@@ -179,18 +187,23 @@ RunKeywords take_run_keywords(py::dict& keywords, bool cached) {
     out.no_cache = value.cast<bool>();
   }
   if (const py::object value = take("threads"); !value.is_none()) {
-    if (PyIndex_Check(value.ptr()) == 0) throw wrong("threads", "an int");
-    out.threads = value.cast<int>();
+    try {
+      if (!whole_number(value)) throw wrong("threads", "an int");
+      out.threads = value.cast<int>();
+    } catch (const py::cast_error&) {
+      throw wrong("threads", "an int from 0 to 1024");
+    }
   }
   out.progress = take("progress");
   return out;
 }
 
 void require_all_taken(const char* function, const py::dict& keywords,
-                       const std::vector<Keyword>& known) {
+                       const std::vector<Keyword>& known, bool cached) {
   if (keywords.empty()) return;
   const std::string first = py::str(keywords.attr("__iter__")().attr("__next__")());
-  std::vector<std::string> names{"no_cache", "threads", "progress"};
+  std::vector<std::string> names{"threads", "progress"};
+  if (cached) names.emplace_back("no_cache");
   for (const Keyword& keyword : known) names.push_back(with_underscores(keyword.option.name));
   throw py::type_error(std::string(function) + "() got an unexpected keyword argument '" + first +
                        "'" + did_you_mean(first, names));

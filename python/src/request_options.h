@@ -35,6 +35,9 @@ std::vector<Keyword> keywords_of(const std::vector<Option<Request>>& options) {
 /// "max_bodies" of "max-bodies".
 std::string with_underscores(const std::string& name);
 
+/// The digits of an int, also NumPy's; nullopt for all else, True and False too.
+std::optional<std::string> whole_number(const py::handle& value);
+
 /// The value of a keyword as text; nullopt for None.
 /// @throws Error{InvalidArgument} naming the keyword: a value of another type, or a wrong one
 std::optional<std::string> text_of(const OptionDescription& option, const py::object& value);
@@ -44,9 +47,10 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
 /// @throws py::type_error on other types
 RunKeywords take_run_keywords(py::dict& keywords, bool cached = true);
 
+/// @param cached  whether there is no_cache
 /// @throws py::type_error naming a keyword that nothing took, and one like it
 void require_all_taken(const char* function, const py::dict& keywords,
-                       const std::vector<Keyword>& known);
+                       const std::vector<Keyword>& known, bool cached = true);
 
 /// @param contradiction  why options do not go together; empty: they do
 /// @throws Error{InvalidArgument}

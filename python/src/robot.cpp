@@ -171,8 +171,7 @@ py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
   std::vector<std::string> notes;
   const robot_folder::WrittenRobot written = run(0, [&] {
     std::vector<std::pair<std::string, std::string>> documents;
-    if (srdf)
-      documents.emplace_back(".srdf", scene::pairs_of(robot.file->robot, robot.made.links).srdf);
+    if (srdf) documents.emplace_back(".srdf", scene::pairs_of(robot.file->robot, robot.made).srdf);
     std::optional<certify::CacheFolder> cache;
     if (!no_cache) cache.emplace(certify::CacheFolder::default_folder());
     return robot_folder::write_robot(*place, *robot.file, robot.made, options, documents,
@@ -208,7 +207,7 @@ loader : str, optional
 mesh_prefix : str, optional
     Put before the new meshes' names, as in 'package://arm'; by default they are relative.
 srdf : bool
-    Also write pairs of links that need no check, for MoveIt. Not where only some `links` were
+    Also write pairs of links that need no check, for MoveIt. Refused where only some `links` were
     asked for.
 no_cache : bool
     Write all files, also those that an earlier run has written just so.
@@ -222,7 +221,7 @@ dict
 Raises
 ------
 Error
-    'output_failed' where something else is in the folder's place.)";
+    'output_failed' where something else is in the folder's place; 'invalid_argument'.)";
 
 void bind_certified(py::module_& module) {
   using Value = CertifiedValue;

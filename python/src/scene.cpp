@@ -69,17 +69,24 @@ std::vector<std::filesystem::path> sources_of(const std::string& file) {
   return out;
 }
 
-/// A CertifiedSet, or one made of a mesh.
-scene::SceneSet set_from(const py::object& shape, py::dict options, const char* direction,
+bool is_made(const py::object& shape) { return py::isinstance<CertifiedSetValue>(shape); }
+
+/// Refuses options that no mesh is made into a set with.
+void require_mesh(const py::dict& options, bool all_made) {
+  if (!options.empty() && all_made)
+    throw Error(ErrorCode::InvalidArgument,
+                "options of `decompose` are for meshes: this is a set that was made already");
+}
+
+/// A CertifiedSet, or one made of a mesh. @param given  options for a mesh
+scene::SceneSet set_from(const py::object& shape, const py::dict& given, const char* direction,
                          const std::string& unit) {
   py::object made = shape;
-  if (!py::isinstance<CertifiedSetValue>(shape)) {
+  if (!is_made(shape)) {
+    const py::dict options = given.attr("copy")();
     if (!options.contains("unit")) options["unit"] = unit;
     if (!options.contains("direction")) options["direction"] = direction;
     made = py::module_::import("kaboum").attr("decompose")(shape, **options);
-  } else if (!options.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "options of `decompose` are for meshes: this is a set that was made already");
   }
   const auto& value = made.cast<const CertifiedSetValue&>();
   using Direction = certify::SetRequest::Direction;
@@ -103,6 +110,20 @@ py::dict dict_of(const scene::MadeScene& made) {
   return out;
 }
 
+// A draft waits for other threads that use it: not with the interpreter's lock.
+std::string unit_of(const SceneValue& scene) {
+  return run(0, [&] { return scene.draft->unit(); });
+}
+
+std::string file_of(const SceneValue& scene) {
+  return run(0, [&] { return scene.draft->file().string(); });
+}
+
+void add_entry(SceneValue& scene, const char* list, const py::object& entry) {
+  const std::string text = json_text(entry);
+  run(0, [&] { scene.draft->add_entry(list, text); });
+}
+
 std::string path_text(const py::object& path, const char* argument) {
   const auto file = path_of(path);
   if (!file)
@@ -117,13 +138,15 @@ void add_robot(SceneValue& scene, const std::string& name, const py::object& rob
     throw Error(ErrorCode::InvalidArgument, "robot must be a kaboum.CertifiedRobot");
   const auto& value = robot.cast<const CertifiedValue&>();
   if (!at.is_none()) members["base"] = pose_dict(at, name);
-  scene.draft->add_robot(name, value.file, value.made, json_text(members));
+  const std::string text = json_text(members);
+  run(0, [&] { scene.draft->add_robot(name, value.file, value.made, text); });
 }
 
 void add_object(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::object& inner, const py::object& features,
                 const py::object& grasps, const py::kwargs& options) {
-  const std::string unit = scene.draft->unit();
+  require_mesh(options, is_made(shape) && (inner.is_none() || is_made(inner)));
+  const std::string unit = unit_of(scene);
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   if (!features.is_none()) members["features"] = features;
@@ -131,16 +154,19 @@ void add_object(SceneValue& scene, const std::string& name, const py::object& sh
   const std::string text = json_text(members);
   scene::SceneSet outer = set_from(shape, options, "outer", unit);
   std::optional<scene::SceneSet> in;
-  if (!inner.is_none()) in = set_from(inner, py::dict(), "inner", unit);
-  scene.draft->add_object(name, std::move(outer), std::move(in), text);
+  // With the same options: a set of another scale, or of the sheets too, is not inside the other.
+  if (!inner.is_none()) in = set_from(inner, options, "inner", unit);
+  run(0, [&] { scene.draft->add_object(name, std::move(outer), std::move(in), text); });
 }
 
 void add_region(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::kwargs& options) {
+  require_mesh(options, is_made(shape));
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
-  scene.draft->add_region(name, set_from(shape, options, "inner", scene.draft->unit()),
-                          json_text(members));
+  const std::string text = json_text(members);
+  scene::SceneSet inner = set_from(shape, options, "inner", unit_of(scene));
+  run(0, [&] { scene.draft->add_region(name, std::move(inner), text); });
 }
 
 /// A dict of names and files.
@@ -214,7 +240,7 @@ constexpr const char* kSceneDoc =
     R"(Robots, objects and regions with certified sets, put together in process (docs/scene.md).
 
 `World` takes it as it is; `write` makes the files that the programs read. Lengths are in its unit,
-angles in radians.)";
+angles in radians. Several threads may use it at once.)";
 
 constexpr const char* kAddRobotDoc =
     R"(Adds a robot.
@@ -241,11 +267,11 @@ shape : CertifiedSet or mesh
 at : sequence of float, optional
     Where it stands: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 inner : CertifiedSet or mesh, optional
-    A set inside it, so that contacts can be certain.
+    A set inside it, so that contacts can be certain; of the same mesh, at the same scale.
 features, grasps : list of dict, optional
     As in scene files.
 **options
-    Of `decompose`, for a mesh.)";
+    Of `decompose`, for a mesh: the same for `shape` and `inner`, so that one is inside the other.)";
 
 constexpr const char* kWriteDoc =
     R"(Writes the scene (.json or .yaml), and its sets into a folder of its name beside it.
@@ -253,13 +279,15 @@ constexpr const char* kWriteDoc =
 Parameters
 ----------
 path : str or path
+    In a folder that is there.
 force : bool
-    Replace a scene that exists.
+    Replace a scene that exists, or one that has changed since it was read or written here.
 
 Returns
 -------
 dict
-    'containers', 'inputs', 'sizes', 'bad_links' (of robots, that are not held as asked for),
+    'containers': written. 'inputs': files that sets were made from, and 'sizes' of objects and
+    regions, of those that were added. 'bad_links': of robots, that are not held as asked for.
     'notes'.)";
 
 constexpr const char* kMakeDoc =
@@ -326,13 +354,13 @@ void bind_scene(py::module_& module) {
             });
           },
           py::arg("path"), "A scene that was written; it is written where it was.")
-      .def_property_readonly(
-          "unit", [](const SceneValue& s) { return s.draft->unit(); }, "Of length.")
+      .def_property_readonly("unit", &unit_of, "Of length.")
       .def_property_readonly(
           "path",
           [](const SceneValue& s) -> py::object {
-            if (s.draft->file().empty()) return py::none();
-            return py::str(s.draft->file().string());
+            const std::string file = file_of(s);
+            if (file.empty()) return py::none();
+            return py::str(file);
           },
           "Where it was read or written last, or None.")
       .def_property_readonly(
@@ -356,14 +384,12 @@ void bind_scene(py::module_& module) {
             py::list pair;
             pair.append(a);
             pair.append(b);
-            s.draft->add_entry("allowed_contacts", json_text(pair));
+            add_entry(s, "allowed_contacts", pair);
           },
           py::arg("a"), py::arg("b"), "Lets 'OBJECT', 'ROBOT/LINK' or 'ROBOT' touch another one.")
       .def(
           "attach",
-          [](SceneValue& s, const py::kwargs& members) {
-            s.draft->add_entry("attachments", json_text(members));
-          },
+          [](SceneValue& s, const py::kwargs& members) { add_entry(s, "attachments", members); },
           "Has an object move with a robot: `object`, `robot`, `link`, `tool` or `gripper`, "
           "`grasp` "
           "or a pose, as in scene files.")
@@ -375,8 +401,8 @@ void bind_scene(py::module_& module) {
           },
           py::arg("path"), py::kw_only(), py::arg("force") = false, kWriteDoc)
       .def("__repr__", [](const SceneValue& s) {
-        return "<kaboum.Scene" +
-               (s.draft->file().empty() ? "" : " '" + s.draft->file().string() + "'") + ">";
+        const std::string file = file_of(s);
+        return "<kaboum.Scene" + (file.empty() ? "" : " '" + file + "'") + ">";
       });
 }
 

@@ -67,6 +67,33 @@ def test_series_is_nested(ring):
     assert kaboum.verify_mesh(fine, coarse)
 
 
+@pytest.mark.parametrize("several", [
+    np.array([300, 100]), {300, 100}, (n for n in (300, 100)), {300: 1, 100: 2}.keys(), map(int, "300 100".split())])
+def test_any_series_of_numbers_gives_all_results(ring, several):
+    assert [len(made.vertices) for made in kaboum.decimate(ring, vertices=several)] == [300, 100]
+
+
+def test_one_number_gives_one_result(ring):
+    for one in (300, np.int64(300), np.array(300)):
+        assert len(kaboum.decimate(ring, vertices=one).vertices) == 300
+    for series in ([300], np.array([300])):
+        assert [len(made.vertices) for made in kaboum.decimate(ring, vertices=series)] == [300]
+
+
+def test_arrays_in_place_of_numbers_are_refused(ring):
+    pair = np.array([3, 4])
+    for call, name in ((lambda: kaboum.decimate(ring, vertices=np.array([300.0, 100.0])), "vertices"),
+                       (lambda: kaboum.decimate(ring, epsilon=pair), "epsilon"),
+                       (lambda: kaboum.decimate(ring, ratio=pair), "ratio"),
+                       (lambda: kaboum.decompose(ring, max_bodies=pair), "max_bodies"),
+                       (lambda: kaboum.decompose(ring, scale=pair), "scale")):
+        with pytest.raises(kaboum.Error, match=name + " must be"):
+            call()
+    for threads in (pair, 1 << 80, "1"):
+        with pytest.raises(TypeError, match="threads must be"):
+            kaboum.decimate(ring, vertices=100, threads=threads)
+
+
 def test_same_bytes_as_the_tool(bracket, tmp_path):
     result = tmp_path / "b.ply"
     subprocess.run([f"{BIN}/bmesh-decimate", bracket, "-o", result, "--vertices", "300"], check=True,
@@ -154,6 +181,12 @@ def test_unknown_names_are_explained(ring):
         kaboum.decimate(ring, vertices=100, direction="outr")
     with pytest.raises(TypeError):
         kaboum.decimate(ring, vertexes=100)
+    for call, other in ((lambda: kaboum.decimate(ring, vertices=100, no_cache=True), ""),
+                        (lambda: kaboum.decimate(ring, vertices=100, thread=1), "threads"),
+                        (lambda: kaboum.decompose(ring, no_cach=True), "no_cache")):
+        with pytest.raises(TypeError) as error:
+            call()
+        assert ("did you mean" in str(error.value)) == bool(other) and other in str(error.value)
 
 
 def test_progress_is_told_and_may_cancel():

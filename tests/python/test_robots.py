@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy as np
@@ -192,6 +193,47 @@ def test_what_is_kept_is_written_as_the_program_does(arm, tmp_path):
     made = kaboum.certify_robot(arm, epsilon="5%", partial=True)
     made.write(tmp_path / "b")
     assert files_in(tmp_path / "a") == files_in(tmp_path / "b")
+
+
+def test_pairs_of_some_links_are_refused(arm, tmp_path):
+    """Links that were not asked for are no frames without shapes, across which others would be adjacent."""
+    for links in (["base", "tool"], ["base", "upper", "tool"]):
+        made = kaboum.certify_robot(arm, epsilon="5%", links=links)
+        with pytest.raises(kaboum.Error, match="all links") as error:
+            made.write(tmp_path / "new", srdf=True)
+        assert error.value.code == "invalid_argument" and not (tmp_path / "new").exists()
+    made.write(tmp_path / "new")
+
+
+SHOWN = """<robot name="r">
+  <link name="base"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
+  <link name="turned"><visual><geometry><mesh filename="tool.ply"/></geometry></visual></link>
+  <link name="tip"><visual><origin xyz="0 0 0.02"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="turned"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="k" type="fixed"><parent link="turned"/><child link="tip"/></joint>
+</robot>
+"""
+
+
+def test_links_that_could_not_be_held_are_no_frames(arm, tmp_path):
+    """By shapes for drawing: base and tip are adjacent only where the link between them has no shape."""
+    shown = tmp_path / "shown.urdf"
+    shown.write_text(SHOWN)
+
+    def pairs(folder):
+        text = (folder / "shown.srdf").read_text()
+        return set(re.findall(r'link1="(\w+)" link2="(\w+)" reason="(\w+)"', text))
+
+    kaboum.certify_robot(shown, geometry="visual", epsilon="5%").write(tmp_path / "all", srdf=True)
+    assert pairs(tmp_path / "all") == {("base", "turned", "Adjacent"), ("turned", "tip", "Adjacent")}
+    (arm.parent / "tool.ply").write_bytes(b"nothing")
+    some = kaboum.certify_robot(shown, geometry="visual", epsilon="5%", partial=True)
+    assert set(some.links) == {"base", "tip"}
+    some.write(tmp_path / "some", srdf=True)
+    assert pairs(tmp_path / "some") == pairs(tmp_path / "all")
+    program("bcd-decompose", shown, "-o", tmp_path / "by-program", "--visual", "--epsilon", "5%", "--srdf", code=1)
+    assert files_in(tmp_path / "by-program") == files_in(tmp_path / "some")
 
 
 def test_a_function_that_raises_ends_the_work(arm):

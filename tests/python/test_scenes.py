@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import subprocess
+import threading
 
 import numpy as np
 import pytest
@@ -168,3 +169,119 @@ def test_robots_are_named(parts):
     with pytest.raises(kaboum.Error, match="did you mean 'second'"):
         world.home("secnd")
     assert world.home("second").tolist() == [0, 0]
+
+
+def extent(world_or_set):
+    vertices = np.vstack([body.vertices for body in world_or_set.bodies])
+    return vertices.max(0) - vertices.min(0)
+
+
+def test_inner_meshes_get_the_options_of_outer_ones(parts, tmp_path):
+    """An inner set of another scale would reach out of the object, and call free places contacts."""
+    vertices, faces = cube(0.2)
+    given = kaboum.Mesh(vertices, faces)
+    scene = kaboum.Scene(unit="mm")
+    scene.add_object("box", parts / "box.off", inner=parts / "box.off", scale=0.5, unit="mm", epsilon="5%")
+    scene.add_object("array", given, inner=given, scale=0.5, unit="mm", epsilon="5%")
+    scene.write(tmp_path / "cell.json")
+    for name in ("box", "array"):
+        outer, inner = (kaboum.read_set(tmp_path / "cell" / f"{name}{end}.glb") for end in ("", "-inner"))
+        assert np.all(extent(inner) <= 0.1) and np.all(extent(inner) > 0.09) and np.all(extent(outer) >= 0.1)
+        assert inner.record["unit"] == outer.record["unit"] == "mm"
+    # A box and a sheet beside it: what is dropped outside is dropped inside.
+    sheet = np.array([[0, 0, 5], [1, 0, 5], [0, 1, 5]]) * 0.1
+    part = np.vstack([vertices, sheet]), np.vstack([faces, [[8, 9, 10], [8, 10, 9]]])
+    scene = kaboum.Scene()
+    scene.add_object("part", part, inner=part, drop_sheets=True)
+    scene.write(tmp_path / "part.json")
+    for end in ("", "-inner"):
+        assert "--drop-sheets" in kaboum.read_set(tmp_path / "part" / f"part{end}.glb").record["parameters"]
+    for options in ({"prepare": "wrap"}, {"simplify": 0.2}):
+        with pytest.raises(kaboum.Error, match="direction outer"):
+            scene.add_object("other", given, inner=given, **options)
+
+
+def test_inner_sets_of_another_scale_are_refused(parts):
+    scene = kaboum.Scene()
+    box = parts / "box.off"
+    with pytest.raises(kaboum.Error, match="scale"):
+        scene.add_object("box", box, inner=kaboum.decompose(box, direction="inner"), scale=0.5)
+    with pytest.raises(kaboum.Error, match="scale"):
+        scene.add_object("box", kaboum.decompose(box, scale=2), inner=box)
+    # With a set that was made already, options are the inner mesh's.
+    scene.add_object("box", kaboum.decompose(box, scale=2), inner=box, scale=2)
+    assert kaboum.World(scene).objects == ["box"]
+
+
+def test_scenes_are_used_by_several_threads(parts, tmp_path):
+    box = kaboum.decompose(parts / "box.off", epsilon="5%")
+    scene = kaboum.Scene()
+    scene.add_object("first", box)
+    ended = threading.Event()
+    seen, failed = [], []
+
+    def look(what):
+        try:
+            while not ended.is_set():
+                seen.append(what())
+        except Exception as error:
+            failed.append(error)
+
+    def written():
+        scene.write(tmp_path / "cell.json", force=True)
+        return len(kaboum.World(tmp_path / "cell.json").objects)
+
+    threads = [threading.Thread(target=look, args=(what,)) for what in (
+        lambda: len(scene.data["objects"]), lambda: len(kaboum.World(scene).objects), written, lambda: repr(scene) and scene.unit and 1)]
+    for thread in threads:
+        thread.start()
+    for i in range(200):
+        scene.add_object(f"box{i}", box)
+        scene.allow_contact(f"box{i}", "first")
+    ended.set()
+    for thread in threads:
+        thread.join()
+    assert not failed and all(1 <= number <= 201 for number in seen)
+    assert len(scene.data["objects"]) == 201 and len(scene.data["allowed_contacts"]) == 200
+
+
+def test_what_was_edited_is_not_overwritten(parts, tmp_path):
+    file = tmp_path / "cell.json"
+    filled(parts).write(file)
+    scene = kaboum.Scene.read(file)
+    edited = file.read_text().replace('"allowed_contacts": []', '"allowed_contacts": [["arm/base", "box"]]')
+    assert edited != file.read_text()
+    file.write_text(edited)
+    scene.add_object("second", parts / "box.off", at=(0, 1, 0), epsilon="5%")
+    containers = files_in(tmp_path / "cell")
+    with pytest.raises(kaboum.Error, match="has changed since"):
+        scene.write(file)
+    assert file.read_text() == edited and files_in(tmp_path / "cell") == containers
+    scene.write(file, force=True)
+    assert kaboum.World(file).objects == ["box", "second"]
+    # What it wrote itself it may replace; not what came after that.
+    scene.allow_contact("arm/base", "second")
+    scene.write(file)
+    file.write_text(edited)
+    with pytest.raises(kaboum.Error, match="has changed since"):
+        scene.write(file)
+    file.unlink()
+    scene.write(file)
+    assert kaboum.Scene.read(file).data == scene.data
+
+
+def test_what_write_says_of_the_scene(parts, tmp_path):
+    scene = filled(parts)
+    vertices, faces = cube(0.2)
+    scene.add_region("room", (vertices * 4, faces), epsilon="2%")
+    written = scene.write(tmp_path / "cell.json")
+    assert {pathlib.Path(file).name for file in written["inputs"]} == {"arm.urdf", "tool.ply", "box.off"}
+    assert [size.split(":")[0] for size in written["sizes"]] == ["box", "room"]
+    assert all(re.fullmatch(r"\w+: \S+ x \S+ x \S+ m", size) for size in written["sizes"])
+
+
+def test_a_scene_needs_its_folder(parts, tmp_path):
+    for scene in (filled(parts), kaboum.Scene()):
+        with pytest.raises(kaboum.Error, match="no folder.*absent"):
+            scene.write(tmp_path / "absent" / "cell.json")
+        assert not (tmp_path / "absent").exists()

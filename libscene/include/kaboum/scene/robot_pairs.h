@@ -22,8 +22,9 @@ struct RobotPairs {
 };
 
 /// Pairs of links that need no check: connected ones, and those whose bodies are proved never to
-/// touch within the limits (world::examine_pairs).
-/// @pre all links with shapes are among the certified ones
-RobotPairs pairs_of(const robot::Robot& robot, const std::vector<certify::CertifiedLink>& links);
+/// touch within the limits (world::examine_pairs). Links that have shapes but no set are no frames:
+/// their pairs are left to the checks, but for those that a joint connects or that are fixed.
+/// @throws Error{InvalidArgument} where sets of some links only were asked for
+RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made);
 
 }  // namespace kaboum::scene

@@ -23,6 +23,7 @@ struct SceneSet {
 ///
 /// What scene files say besides sets (docs/scene.md) is given as JSON objects, `members`: of a
 /// robot "base", "home", "limits", "tools", ...; of an object "pose", "features", "grasps".
+/// Several threads may call its functions at once: one waits for the other.
 class SceneDraft {
  public:
   explicit SceneDraft(const std::string& unit = "m");
@@ -37,13 +38,15 @@ class SceneDraft {
 
   [[nodiscard]] std::string unit() const;
   /// Where it was read or written last; empty: nowhere.
-  [[nodiscard]] const std::filesystem::path& file() const;
+  [[nodiscard]] std::filesystem::path file() const;
 
   /// @throws Error{InvalidArgument} where the name is taken, `members` is no object or names what
   ///   this function states itself; Error{InvalidInput} where it is no JSON
   void add_robot(const std::string& name, std::shared_ptr<const robot::RobotFile> file,
                  certify::CertifiedRobot made, const std::string& members);
   /// @param inner  lies in the object; none: its contacts are never certain
+  /// @throws as add_robot; Error{InvalidArgument} where both sets are of one mesh, but not of one
+  ///   scale
   void add_object(const std::string& name, SceneSet outer, std::optional<SceneSet> inner,
                   const std::string& members);
   void add_region(const std::string& name, SceneSet inner, const std::string& members);
@@ -58,7 +61,8 @@ class SceneDraft {
   [[nodiscard]] world::SceneFile world() const;
 
   /// Writes containers into the folder with the scene's stem beside it, then the scene.
-  /// @param replace  a scene that exists
+  /// @param replace  a scene that exists, or one that has changed since it was read or written
+  /// @return inputs, sizes and notes of what was added
   /// @throws Error{InvalidArgument} where a scene is there, or it was read elsewhere;
   ///   Error{InvalidInput} where reading would refuse it; Error{OutputFailed}
   MadeScene write(const std::filesystem::path& scene, bool replace);

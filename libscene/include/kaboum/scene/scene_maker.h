@@ -55,7 +55,7 @@ struct MadeScene {
 };
 
 /// Refuses a place that a scene cannot have, or where one is already.
-/// @throws Error{InvalidArgument}
+/// @throws Error{InvalidArgument}; Error{OutputFailed} where its folder is not there
 void require_free_place(const std::filesystem::path& scene, bool replace);
 
 /// Computes what the cache lacks, writes the containers into the folder with the scene's stem
