@@ -19,7 +19,8 @@ std::array<std::string, 2> sorted(std::string a, std::string b) {
 
 }  // namespace
 
-std::size_t Cell::add_robot(std::string name, robot::Robot kinematics, geom::Transform base) {
+std::size_t Cell::add_robot(std::string name, robot::Robot kinematics,
+                            const geom::Transform& base) {
   robots_.push_back({std::move(name), std::move(kinematics), base});
   return robots_.size() - 1;
 }

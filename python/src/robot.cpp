@@ -37,6 +37,7 @@ py::list limits_of(const robot::Robot& robot) {
 
 std::vector<std::string> names_of(const std::vector<robot::Link>& links) {
   std::vector<std::string> out;
+  out.reserve(links.size());
   for (const robot::Link& link : links) out.push_back(link.name);
   return out;
 }

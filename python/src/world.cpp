@@ -240,6 +240,9 @@ void bind_answers(py::module_& module) {
       .def("__repr__", [](const MotionValue& m) {
         return std::string("<kaboum.MotionCheck: ") + outcome_of(m.answer) + ">";
       });
+}
+
+void bind_path(py::module_& module) {
   py::class_<PathValue>(module, "Path",
                         "A path that is free at every instant, or why there is none; true where "
                         "one was found.")
@@ -285,51 +288,10 @@ void bind_answers(py::module_& module) {
       });
 }
 
-void bind_world(py::module_& module) {
-  py::class_<WorldValue>(
-      module, "World",
-      R"(Robots and objects of a scene by their bounding sets, as kaboum-check and kaboum-move read it.
+using WorldClass = py::class_<WorldValue>;
 
-It never changes. Angles are in radians, lengths in the scene's unit.)")
-      .def(py::init(&read_world), py::arg("scene"), "Of a Scene, or of its file (docs/scene.md).")
-      .def_property_readonly(
-          "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
-      .def_property_readonly(
-          "robots",
-          [](const WorldValue& w) {
-            std::vector<std::string> out;
-            for (const world::RobotModel& robot : w.world().robots) out.push_back(robot.name);
-            return out;
-          },
-          "Names.")
-      .def_property_readonly(
-          "objects",
-          [](const WorldValue& w) {
-            std::vector<std::string> out;
-            for (const world::Object& object : w.world().objects) out.push_back(object.name);
-            return out;
-          },
-          "Names.")
-      .def_property_readonly(
-          "notes", [](const WorldValue& w) { return w.scene->notes; },
-          "What a user should know of the scene.")
-      .def(
-          "variables",
-          [](const WorldValue& w, const std::optional<std::string>& robot) {
-            std::vector<std::string> out;
-            for (const robot::Variable& v :
-                 w.world().robots[robot_index(w.world(), robot)].kinematics.variables)
-              out.push_back(v.name);
-            return out;
-          },
-          py::arg("robot") = py::none(), "Names of what a configuration has values for.")
-      .def(
-          "home",
-          [](const WorldValue& w, const std::optional<std::string>& robot) {
-            const std::vector<double>& home = w.world().robots[robot_index(w.world(), robot)].home;
-            return py::array_t<double>(static_cast<py::ssize_t>(home.size()), home.data());
-          },
-          py::arg("robot") = py::none(), "The configuration that the scene gives a robot.")
+void bind_questions(WorldClass& world) {
+  world
       .def("check", &check, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
            py::arg("resting") = false,
            R"(All contacts of the world with a robot at a configuration, the other robots at home.
@@ -379,17 +341,66 @@ max_nodes : int
 shortcuts : int
     That are tried to shorten a path.
 resolution : float
-    As of `check_motion`. [length])")
+    As of `check_motion`. [length])");
+}
+
+void bind_world(py::module_& module) {
+  WorldClass world(
+      module, "World",
+      R"(Robots and objects of a scene by their bounding sets, as kaboum-check and kaboum-move read it.
+
+It never changes. Angles are in radians, lengths in the scene's unit.)");
+  world.def(py::init(&read_world), py::arg("scene"), "Of a Scene, or of its file (docs/scene.md).")
+      .def_property_readonly(
+          "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
+      .def_property_readonly(
+          "robots",
+          [](const WorldValue& w) {
+            std::vector<std::string> out;
+            for (const world::RobotModel& robot : w.world().robots) out.push_back(robot.name);
+            return out;
+          },
+          "Names.")
+      .def_property_readonly(
+          "objects",
+          [](const WorldValue& w) {
+            std::vector<std::string> out;
+            for (const world::Object& object : w.world().objects) out.push_back(object.name);
+            return out;
+          },
+          "Names.")
+      .def_property_readonly(
+          "notes", [](const WorldValue& w) { return w.scene->notes; },
+          "What a user should know of the scene.")
+      .def(
+          "variables",
+          [](const WorldValue& w, const std::optional<std::string>& robot) {
+            std::vector<std::string> out;
+            for (const robot::Variable& v :
+                 w.world().robots[robot_index(w.world(), robot)].kinematics.variables)
+              out.push_back(v.name);
+            return out;
+          },
+          py::arg("robot") = py::none(), "Names of what a configuration has values for.")
+      .def(
+          "home",
+          [](const WorldValue& w, const std::optional<std::string>& robot) {
+            const std::vector<double>& home = w.world().robots[robot_index(w.world(), robot)].home;
+            return py::array_t<double>(static_cast<py::ssize_t>(home.size()), home.data());
+          },
+          py::arg("robot") = py::none(), "The configuration that the scene gives a robot.")
       .def("__repr__", [](const WorldValue& w) {
         return "<kaboum.World of " + std::to_string(w.world().robots.size()) + " robots and " +
                std::to_string(w.world().objects.size()) + " objects>";
       });
+  bind_questions(world);
 }
 
 }  // namespace
 
 void bind_worlds(py::module_& module) {
   bind_answers(module);
+  bind_path(module);
   bind_world(module);
 }
 

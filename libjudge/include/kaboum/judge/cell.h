@@ -44,7 +44,7 @@ class Cell {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
   /// @return its number. Robots are added before their links and before objects.
-  std::size_t add_robot(std::string name, robot::Robot kinematics, geom::Transform base);
+  std::size_t add_robot(std::string name, robot::Robot kinematics, const geom::Transform& base);
   /// A link's shapes as one mesh in its frame.
   void add_link(std::size_t robot, std::uint32_t link, const geom::Mesh& mesh);
   std::size_t add_object(std::string name, const geom::Mesh& mesh);
