@@ -87,7 +87,7 @@ void certify_links(Run& run) {
   if (run.o.robot_bodies + run.o.robot_vertices > 0) share_out(run, cache);
   Progress progress(run.o.common.quiet);
   certify::RobotHooks hooks =
-      hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
+      certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
   hooks.made = [&, last = Clock::now()](const certify::CertifiedLinkMesh& mesh) mutable {
     run.seconds.push_back(std::chrono::duration<double>(Clock::now() - last).count());
     last = Clock::now();

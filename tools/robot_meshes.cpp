@@ -5,7 +5,6 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/mesh_files.h>
-#include <kaboum/verify/exact_points.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -28,22 +27,7 @@ const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::Rob
 const verify::MeshFile& RobotMeshes::read(const std::string& path) {
   const auto at = files_.find(path);
   if (at != files_.end()) return at->second;
-  verify::MeshFile file{path, {}, {}};
-  try {
-    std::vector<char> bytes;
-    io::ReadResult read = io::read_mesh(path, {}, &bytes);
-    file.sha256 = io::sha256(bytes);
-    if (exact_points_ > 0 && io::is_cad(read.format))
-      file.exact =
-          verify::read_exact_points(bytes, read.format, path, exact_points_, 1, read.exact_faces);
-    file.mesh = std::move(read.mesh);
-    file.notes = std::move(read.notes);
-  } catch (const Error& error) {
-    if (!verify::is_of_one_mesh(error)) throw;
-    file.sha256 = io::sha256(io::read_file(path));
-    file.error = error;
-  }
-  return files_.emplace(path, std::move(file)).first->second;
+  return files_.emplace(path, verify::read_mesh_file(path, exact_points_)).first->second;
 }
 
 std::string RobotMeshes::record_of_other_kind(const robot::RobotFile& original, bool visual) const {

@@ -50,7 +50,7 @@ certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::R
     log(o.common.quiet, note);
   Progress progress(o.common.quiet);
   certify::RobotHooks hooks =
-      hooks_of(notes, [&](const std::string& stage) { progress.show(stage); });
+      certify::hooks_of(notes, [&](const std::string& stage) { progress.show(stage); });
   hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
     if (mesh.held && !mesh.made.found.set.certificate().reached())
       notes.add(mesh.mesh.file.string(),

@@ -131,6 +131,15 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
 
 }  // namespace
 
+RobotHooks hooks_of(Notes& notes, std::function<void(const std::string&)> progress) {
+  RobotHooks hooks;
+  hooks.progress = std::move(progress);
+  hooks.note = [&notes](const std::string& file, const std::string& text) {
+    notes.add(file, text);
+  };
+  return hooks;
+}
+
 std::string RobotRequest::parameters() const {
   RobotSetOptions options{options_of(set), shapes.visual};
   options.set.request.epsilon = set.wanted_epsilon();

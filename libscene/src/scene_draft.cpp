@@ -266,12 +266,7 @@ MadeScene SceneDraft::write(const fs::path& scene, bool replace) {
   if (is_here && !replace) s.require_unchanged();
   SetMaker sets(scene);
   const Json text = s.made_by(sets, scene);
-  MadeScene out;
-  out.containers = sets.write(text);
-  out.inputs.assign(sets.inputs.begin(), sets.inputs.end());
-  out.notes = std::move(sets.notes);
-  out.sizes = std::move(sets.sizes);
-  out.bad_links = std::move(sets.bad_links);
+  MadeScene out = sets.write(text);
   s.file = scene;
   s.sha256 = io::sha256(io::read_file(scene));
   return out;

@@ -156,13 +156,7 @@ MadeScene make_scene(const SceneMaker& maker) {
                       {"regions", regions},
                       {"allowed_contacts", Json::array()},
                       {"attachments", Json::array()}};
-  MadeScene out;
-  out.containers = sets.write(scene);
-  out.inputs.assign(sets.inputs.begin(), sets.inputs.end());
-  out.notes = std::move(sets.notes);
-  out.sizes = std::move(sets.sizes);
-  out.bad_links = std::move(sets.bad_links);
-  return out;
+  return sets.write(scene);
 }
 
 }  // namespace kaboum::scene

@@ -34,13 +34,7 @@ class Update {
       if (object.contains("inner")) set(object, "inner", Direction::Inner);
     }
     for (Json& region : list("regions")) set(region, "inner", Direction::Inner);
-    MadeScene out;
-    if (made_) out.containers = sets_.write(scene_);
-    out.inputs.assign(sets_.inputs.begin(), sets_.inputs.end());
-    out.notes = std::move(sets_.notes);
-    out.sizes = std::move(sets_.sizes);
-    out.bad_links = std::move(sets_.bad_links);
-    return out;
+    return made_ ? sets_.write(scene_) : sets_.report();
   } catch (const Json::exception&) {
     fail("a part of it is missing, or of another kind; kaboum-check says where it is wrong");
   }

@@ -40,16 +40,6 @@ void require_unit(const std::string& file, double scale, const std::string& need
                                            " (scale), or make a scene of this unit (unit)");
 }
 
-/// Notes of meshes that are made, for later; progress as it comes.
-certify::RobotHooks hooks_of(Notes& notes, std::function<void(const std::string&)> progress) {
-  certify::RobotHooks hooks;
-  hooks.progress = std::move(progress);
-  hooks.note = [&notes](const std::string& file, const std::string& text) {
-    notes.add(file, text);
-  };
-  return hooks;
-}
-
 io::Format format_of(const std::string& file, const SceneSetOptions& options) {
   if (options.format_of) return options.format_of(file);
   if (const auto format = io::format_from_name(fs::path(file).extension().string())) return *format;
@@ -110,7 +100,7 @@ Json SetMaker::robot(const std::string& name, const std::string& path, const fs:
   request.partial = true;
   require_formats(robot::link_meshes(file, request.shapes), options);
   Notes of_meshes;
-  certify::RobotHooks hooks = hooks_of(of_meshes, options.progress);
+  certify::RobotHooks hooks = certify::hooks_of(of_meshes, options.progress);
   hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
     if (mesh.held && !mesh.made.found.set.certificate().reached())
       of_meshes.add(mesh.mesh.file.string(),
@@ -213,7 +203,7 @@ void SetMaker::add_inner_links(Json& links, const robot::RobotFile& file,
   if (request.shapes.links.empty()) return;
   Notes of_meshes;  // said of the outer sets
   const certify::InnerLinks made = certify::certify_inner_links(
-      file, request, options.cache, hooks_of(of_meshes, options.progress));
+      file, request, options.cache, certify::hooks_of(of_meshes, options.progress));
   for (const certify::CertifiedInnerLink& link : made.links) {
     const std::uint32_t number = link.certificate().link;
     const std::string& name = file.robot.links[number].name;
@@ -267,7 +257,16 @@ Json SetMaker::mesh(const std::string& name, const std::string& file,
   return keep(container, made.found.set.bytes(), sources);
 }
 
-std::vector<fs::path> SetMaker::write(const Json& scene) {
+MadeScene SetMaker::report() {
+  MadeScene out;
+  out.inputs.assign(inputs.begin(), inputs.end());
+  out.notes = std::move(notes);
+  out.sizes = std::move(sizes);
+  out.bad_links = std::move(bad_links);
+  return out;
+}
+
+MadeScene SetMaker::write(const Json& scene) {
   const bool yaml = scene_.extension() != ".json";
   const std::string text = yaml ? to_yaml(scene) : scene.dump(2) + "\n";
   const fs::path folder = scene_.parent_path();
@@ -278,11 +277,11 @@ std::vector<fs::path> SetMaker::write(const Json& scene) {
   static_cast<void>(
       world::parse_scene(readable.dump(2), scene_.string() + " (as JSON)",
                          [&](const std::string& file) { return read(folder, file); }));
-  std::vector<fs::path> out;
+  MadeScene out = report();
   for (const auto& [path, bytes] : files_) {
     create(path.parent_path());
     io::write_file(path, bytes);
-    out.push_back(path);
+    out.containers.push_back(path);
   }
   io::write_file(scene_, {text.data(), text.size()});
   return out;

@@ -60,9 +60,11 @@ class SetMaker {
 
   /// Writes the containers, then the scene, each whole or not at all, if it can be read then but
   /// for links that could not be held, which have no set.
-  /// @return the containers
+  /// @return the containers, and what was noted
   /// @throws Error{InvalidInput} where reading refuses it; nothing is written then.
-  std::vector<std::filesystem::path> write(const Json& scene);
+  MadeScene write(const Json& scene);
+  /// What was noted, where nothing is written.
+  MadeScene report();
 
   std::set<std::string> inputs;
   std::vector<std::string> notes;

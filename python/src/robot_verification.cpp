@@ -28,22 +28,7 @@ class Files {
     const std::string path = robot::find_only_mesh(mesh.mesh, robot.path, packages_).string();
     const auto at = files_.find(path);
     if (at != files_.end()) return at->second;
-    verify::MeshFile file{path, {}, {}};
-    try {
-      std::vector<char> bytes;
-      io::ReadResult read = io::read_mesh(path, {}, &bytes);
-      file.sha256 = sha256(bytes);
-      if (exact_points_ > 0 && io::is_cad(read.format))
-        file.exact =
-            verify::read_exact_points(bytes, read.format, path, exact_points_, 1, read.exact_faces);
-      file.mesh = std::move(read.mesh);
-      file.notes = std::move(read.notes);
-    } catch (const Error& error) {
-      if (!verify::is_of_one_mesh(error)) throw;
-      file.sha256 = sha256(io::read_file(path));
-      file.error = error;
-    }
-    return files_.emplace(path, std::move(file)).first->second;
+    return files_.emplace(path, verify::read_mesh_file(path, exact_points_)).first->second;
   }
 
  private:

@@ -29,7 +29,7 @@ struct EnclosureRequest {
   /// these are enclosed. False: what is claimed is about the triangles.
   bool hold_exact_faces = true;
 
-  /// What the result depends on, as records have it; for keys of caches.
+  /// One line of all options that the result depends on: a part of the cache's key.
   [[nodiscard]] std::string parameters() const;
 };
 

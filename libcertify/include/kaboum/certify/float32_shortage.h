@@ -25,19 +25,21 @@ struct SpacingShares {
   double of_diagonal, of_epsilon;
 };
 constexpr SpacingShares kMeshSpacing{1e-6, 1e-2};
-/// Of convex sets with an epsilon; without, as for meshes (libbcd).
+/// Shares of convex sets with an epsilon; those without one have kMeshSpacing's (libbcd).
 constexpr SpacingShares kSetSpacing{1e-4, 1e-2};
 
+/// The shortage of float32 numbers in a box.
 /// @param epsilon  none: only the diagonal counts. [length]
 /// @return nullopt where the numbers are near enough to each other.
 std::optional<Float32Shortage> too_coarse(const geom::Box3& box, std::optional<double> epsilon,
                                           const SpacingShares& shares = kMeshSpacing);
 
-/// What is wrong, with figures: begins with a small letter, ends without a full stop.
+/// Clause that says what is wrong, with figures: begins with a small letter, ends without a full
+/// stop.
 std::string reason_of(const Float32Shortage& shortage);
 
-/// What can be done, other than numbers that are finer: "move the mesh to the origin", where that
-/// helps.
+/// Clause that says what can be done, other than numbers that are finer: "move the mesh to the
+/// origin", where that helps.
 std::string remedy_of(const Float32Shortage& shortage);
 
 }  // namespace kaboum::certify

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/base/notes.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/certify/wanted_meshes.h>
 #include <kaboum/robot/link_body.h>
@@ -51,6 +52,9 @@ struct RobotHooks {
   std::function<void(const std::string& file, const std::string& text)> note;
   std::function<void(const CertifiedLinkMesh& mesh)> made;  ///< when a mesh has its set
 };
+
+/// Hooks that collect the notes on meshes, and show progress as it comes.
+RobotHooks hooks_of(Notes& notes, std::function<void(const std::string&)> progress);
 
 /// What bodies of a robot's links stand for.
 struct BodiesCertificate {

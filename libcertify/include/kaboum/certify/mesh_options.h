@@ -12,7 +12,7 @@
 
 namespace kaboum::certify {
 
-/// What a user states of a bounding mesh. A request follows from it.
+/// Options of a bounding mesh as a user states them; a request follows from them.
 struct MeshOptions {
   /// Distances are measured and claims decided only where that is stated.
   MeshOptions() { request.measure = request.decide = false; }

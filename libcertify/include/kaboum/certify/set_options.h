@@ -10,7 +10,7 @@
 
 namespace kaboum::certify {
 
-/// What a user states of a set of convex bodies. A request follows from it.
+/// Options of a set of convex bodies as a user states them; a request follows from them.
 struct SetOptions {
   SetRequest request;  ///< all but `preparation`, `wrap` and `hold_exact_faces`
   PreparationOptions preparation;
@@ -30,7 +30,7 @@ SetOptions options_of(const SetRequest& request);
 /// @param stated  names of those that a user stated
 std::string contradiction(const SetOptions& options, const std::set<std::string>& stated);
 
-/// What a user states of the sets of a robot's links.
+/// Options of the sets of a robot's links as a user states them.
 struct RobotSetOptions {
   SetOptions set;
   bool visual = false;  ///< shapes for drawing, not those for collisions

@@ -36,6 +36,11 @@ struct MeshFile {
   std::optional<Error> error = {};  ///< why it could not be read; then it has no mesh
 };
 
+/// Reads a mesh of a robot; what is wrong with it is kept, for it is one mesh's affair.
+/// @param exact_points  how densely points of a CAD file's exact faces are taken; 0: none
+/// @throws Error where no byte of it can be read, or the system fails
+MeshFile read_mesh_file(const std::string& path, std::size_t exact_points);
+
 /// Whether what such an error is about is one mesh: that one is not held, and others are judged.
 inline bool is_of_one_mesh(const Error& error) {
   return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
