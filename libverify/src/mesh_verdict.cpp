@@ -17,17 +17,6 @@ const geom::Mesh& solid_of(const MeshQuestion& q, const MeshVerdict& verdict) {
   return verdict.solid_part ? *verdict.solid_part : q.inner();
 }
 
-constexpr const char* kHollow =
-    "a part of the surface crosses itself, and which of what it winds round is meant is not known: "
-    "not all of that is inside";
-
-Claim claim_of(Answer answer, const char* reason) {
-  Claim out;
-  out.answer = answer;
-  out.reason = reason;
-  return out;
-}
-
 void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
   const double margin = q.relation == Relation::Cover ? q.set->margin : 0;
   const auto beyond_margin = [&](Bracket b) {
@@ -118,78 +107,19 @@ Inclusion inclusion_of(const MeshQuestion& q, const geom::Mesh& inner,
                                        : verify_inclusion(inner, q.outer(), options);
 }
 
-/// The claims about a subject that its mesh as it is oriented does not settle.
-class RestOfSubject {
- public:
-  RestOfSubject(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out)
-      : q_(q), subject_(*q.subject), options_(options), out_(out), all_(out.inclusion) {
-    options_.max_work = options.max_work.value_or(
-        usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
-  }
-
-  void decide() {
-    if (subject_.both_ways) decide_parts();
-    decide_surface();
-    // Nothing is known of the solid: only triangles that all lie inside say something.
-    if (subject_.refusal.empty() || all_.solid.answer != Answer::Verified) return;
-    if (q_.claims == Claims::Solid || all_.surface.answer == Answer::Undefined)
-      all_.solid = claim_of(Answer::Undefined, "which solid the triangles bound is not known");
-  }
-
- private:
-  /// What each part that is closed by itself winds round, either way.
-  void decide_parts() {
-    if (all_.inner_closed && all_.solid.answer != Answer::Verified) return;
-    const std::vector<geom::Mesh> parts = closed_parts(q_.original);
-    if (!all_.inner_closed)
-      all_.solid = parts.empty() ? claim_of(Answer::Undefined, "no part of the triangles is closed")
-                                 : claim_of(Answer::Verified, "");
-    for (const geom::Mesh& part : parts)
-      for (const bool backwards : {false, true}) {
-        geom::Mesh mesh = backwards ? turned(part) : part;
-        Inclusion found = inclusion_of(q_, mesh, options_);
-        add(found);
-        if (worse(all_.solid.answer, found.solid.answer) == all_.solid.answer) continue;
-        all_.solid = std::move(found.solid);
-        out_.solid_part = std::move(mesh);
-        if (subject_.refusal.empty() && all_.solid.answer == Answer::Refuted) {
-          all_.solid = claim_of(Answer::Undecided, kHollow);
-          out_.solid_part.reset();
-        }
-      }
-  }
-
-  /// The triangles that are to be held, filling apart.
-  void decide_surface() {
-    InclusionOptions surface = options_;
-    surface.surface_only = true;
-    if (subject_.filled_triangles > 0 && all_.surface.answer != Answer::Verified) {
-      const Inclusion own =
-          inclusion_of(q_, without_filling(q_.original, subject_.filled_triangles), surface);
-      add(own);
-      all_.surface = own.surface;
-    }
-    if (!subject_.has_more) return;
-    const Inclusion more = inclusion_of(q_, subject_.triangles, surface);
-    add(more);
-    if (worse(all_.surface.answer, more.surface.answer) == all_.surface.answer) return;
-    out_.surface_of_all = true;
-    all_.surface = more.surface;
-  }
-
-  void add(const Inclusion& more) {
-    all_.left_out = std::max(all_.left_out, more.left_out);
-    all_.limited = all_.limited || more.limited;
-    all_.contacts += more.contacts;
-    all_.samples += more.samples;
-  }
-
-  const MeshQuestion& q_;
-  const Subject& subject_;
-  InclusionOptions options_;
-  MeshVerdict& out_;
-  Inclusion& all_;
-};
+/// What is to be said of a subject beside its mesh as it is oriented.
+void decide_subject(const MeshQuestion& q, InclusionOptions options, MeshVerdict& out) {
+  options.max_work = options.max_work.value_or(
+      usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
+  SubjectClaims claims = decide_rest(*q.subject, q.original, q.claims, std::move(out.inclusion),
+                                     [&](const geom::Mesh& mesh, bool surface_only) {
+                                       options.surface_only = surface_only;
+                                       return inclusion_of(q, mesh, options);
+                                     });
+  out.inclusion = std::move(claims.inclusion);
+  out.solid_part = std::move(claims.solid_part);
+  out.surface_of_all = claims.surface_of_all;
+}
 
 }  // namespace
 
@@ -241,7 +171,7 @@ MeshVerdict decide(const MeshQuestion& q,
   if (q.set != nullptr) out.convex = verify_convexity(*q.set).convex;
   out.inclusion = inclusion_of(q, q.inner(), options);
   const bool has_subject = q.subject != nullptr && q.relation != Relation::Inner;
-  if (has_subject) RestOfSubject(q, options, out).decide();
+  if (has_subject) decide_subject(q, options, out);
   const bool both_ways = has_subject && q.subject->both_ways;
   out.vacuous = q.claims == Claims::Solid && !both_ways && is_inside_out(q.inner());
   show("measuring what sticks out");

@@ -69,6 +69,24 @@ std::vector<geom::Mesh> parts_over_edges(const geom::Mesh& mesh) {
   return out;
 }
 
+/// Whether each triangle has an opposite copy, so that nothing is wound round.
+bool is_sheet(const geom::Mesh& mesh) {
+  std::map<geom::Triangle, int> sides;
+  for (geom::Triangle t : mesh.triangles) {
+    const int inversions = int{t[0] > t[1]} + int{t[1] > t[2]} + int{t[0] > t[2]};
+    std::ranges::sort(t);
+    sides[t] += inversions % 2 == 0 ? 1 : -1;
+  }
+  return std::ranges::all_of(sides, [](const auto& side) { return side.second == 0; });
+}
+
+Claim claim_of(Answer answer, const char* reason) {
+  Claim out;
+  out.answer = answer;
+  out.reason = reason;
+  return out;
+}
+
 }  // namespace
 
 geom::Mesh held_triangles(const geom::Mesh& file, const geom::Prepared& prepared) {
@@ -96,7 +114,7 @@ std::vector<geom::Mesh> closed_parts(const geom::Mesh& mesh) {
   };
   std::vector<Group> groups;
   for (const geom::Mesh& part : parts_over_edges(geom::weld(mesh))) {
-    if (!geom::analyse(part).closed()) continue;
+    if (!geom::analyse(part).closed() || is_sheet(part)) continue;
     const geom::Box3 box = geom::bounding_box(part);
     const auto apart = [&](const geom::Box3& other) {
       return (box.max.array() < other.min.array()).any() ||
@@ -141,6 +159,7 @@ Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& opt
     Subject out;
     out.mesh = prepared.solid.mesh();
     out.filled_triangles = prepared.solid.filled_triangles();
+    out.is_prepared = true;
     out.both_ways = prepared.report.hollow.has_value();
     out.has_more = !prepared.report.left_out.empty();
     if (out.has_more) out.triangles = held_triangles(file, prepared);
@@ -159,13 +178,61 @@ Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& opt
   }
 }
 
+SubjectClaims decide_rest(
+    const Subject& subject, const geom::Mesh& mesh, Claims claims, Inclusion first,
+    const std::function<Inclusion(const geom::Mesh&, bool surface_only)>& look) {
+  SubjectClaims out{std::move(first), {}};
+  Inclusion& all = out.inclusion;
+  const auto look_once_more = [&](const geom::Mesh& at, bool surface_only) {
+    Inclusion found = look(at, surface_only);
+    all.left_out = std::max(all.left_out, found.left_out);
+    all.limited = all.limited || found.limited;
+    all.contacts += found.contacts;
+    all.samples += found.samples;
+    return found;
+  };
+  const bool settled = all.inner_closed && all.solid.answer != Answer::Verified;
+  if (subject.both_ways && claims != Claims::Surface && !settled) {
+    const std::vector<geom::Mesh> parts = closed_parts(mesh);
+    all.solid = parts.empty()
+                    ? claim_of(Answer::Undefined, "no part of the triangles bounds a solid")
+                    : claim_of(Answer::Verified, "");
+    for (const geom::Mesh& part : parts)
+      for (const bool backwards : {false, true}) {
+        geom::Mesh one = backwards ? turned(part) : part;
+        Inclusion found = look_once_more(one, false);
+        if (worse(all.solid.answer, found.solid.answer) == all.solid.answer) continue;
+        all.solid = std::move(found.solid);
+        out.solid_part = std::move(one);
+      }
+    // Of what preparing had to guess it is not known that this part is meant.
+    if (subject.is_prepared && all.solid.answer == Answer::Refuted) {
+      all.solid = claim_of(Answer::Undecided,
+                           "a part of the surface crosses itself, and which of what it winds round "
+                           "is meant is not known: not all of that is inside");
+      out.solid_part.reset();
+    }
+  }
+  if (subject.filled_triangles > 0 && all.surface.answer != Answer::Verified)
+    all.surface = look_once_more(without_filling(mesh, subject.filled_triangles), true).surface;
+  if (subject.has_more) {
+    Claim more = look_once_more(subject.triangles, true).surface;
+    out.surface_of_all = worse(all.surface.answer, more.answer) != all.surface.answer;
+    if (out.surface_of_all) all.surface = std::move(more);
+  }
+  // Where no solid is known, only triangles that all lie inside say something.
+  if (subject.both_ways && !subject.is_prepared && all.surface.answer == Answer::Undefined &&
+      all.solid.answer == Answer::Verified)
+    all.solid = claim_of(Answer::Undefined, "which solid the triangles bound is not known");
+  return out;
+}
+
 MeasuredMesh measured_mesh(const Subject& subject, const geom::Mesh& file) {
-  const bool is_prepared = subject.refusal.empty() && !subject.report.source.empty();
-  if (is_prepared && !subject.has_more) return {subject.mesh};
+  if (subject.is_prepared && !subject.has_more) return {subject.mesh};
   MeasuredMesh out;
   try {
     out.mesh =
-        is_prepared
+        subject.is_prepared
             ? subject.mesh
             : geom::prepare(file, {.drop_sheets = true, .holes = geom::Holes::Fill}).solid.mesh();
   } catch (const Error&) {

@@ -212,5 +212,21 @@ TEST_F(EnclosureTest, LinksHaveTheirOwnEpsilon) {
   EXPECT_THROW(enclose_links(file, request), Error);
 }
 
+// Sheets that are dropped on request are not asked for; what else preparing leaves out is.
+TEST_F(EnclosureTest, SegmentsAreHeldThoughSheetsMayBeDropped) {
+  geom::Mesh mesh = test::box({1, 1, 1}, 1);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const geom::Vec3 end{0.5, 0.5, 4};
+  mesh.vertices.insert(mesh.vertices.end(), {geom::Vec3{0.5, 0.5, 0.5}, end});
+  mesh.triangles.push_back({first, first + 1, first + 1});
+  EnclosureRequest request = fast();
+  request.preparation.drop_sheets = true;
+  request.wrap.emplace().where_needed = true;
+  const auto made = certify_enclosure(mesh, request);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->certificate().inside.answer, Answer::Verified);
+  EXPECT_GE(geom::bounding_box(made->artefact()).max.z(), end.z());
+}
+
 }  // namespace
 }  // namespace kaboum::certify

@@ -132,8 +132,8 @@ said = re.search(r"urdf: (\d+) \w+ of (\d+) links?(?:, from (\d+) mesh\w*)?(?:, 
 counts = [made, len(report["links"]), report["meshes"] if said.group(3) else None, report["meshes_kept"] or None]
 require([int(n) if n else None for n in said.groups()] == counts, f"terminal: {said.group(0)}, not {counts}")
 require([int(n) for n in re.findall(r"\d+", foot[0])][:2] == [len(report["links"]), report["meshes"]] and foot[3:5] == [str(made), str(report["vertices"])], f"page: {foot}")
-# A mesh that is kept has no result; one that is only not near enough has a flaw, too, but a result.
-require(report["meshes_kept"] == len({m["file"] for l in report["links"] for m in l.get("meshes", []) if "result" not in m}), "meshes kept")
+# A mesh that is kept has no result, once for each scale of it; one that is only not near enough has a flaw, too, but a result.
+require(report["meshes_kept"] == len({(l["link"], m["file"]) for l in report["links"] for m in l.get("meshes", []) if "result" not in m}), "meshes kept")
 commands = [html.unescape(c) for c in re.findall(r"<code>(.*?)</code>", page)]
 require(len(commands) == 1 and commands[0] == report["check"], f"commands: {commands}")
 for command in commands:

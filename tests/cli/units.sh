@@ -117,7 +117,7 @@ expect 0 '' "$B" mm.x3d -o x-set.glb
 shows 0 'verified' "$V" cover mm.x3d x-set.glb
 expect 3 't.gltf is in m and x-set.glb in mm' "$V" cover t.gltf x-set.glb
 expect 3 't.gltf is in m and x-set.glb in mm' "$H" t.gltf x-set.glb
-expect 3 'mm.x3d: its vertices are in mm as read.*--scale' "$S" make none.json --object a=mm.x3d --no-cache
+expect 3 'mm.x3d: its vertices are in mm as read.*bring it into m (scale)' "$S" make none.json --object a=mm.x3d --no-cache
 absent none.json
 
 # Scenes: an object in metres by its factor; brought up to date with the same.

@@ -127,7 +127,7 @@ TEST(MeshVerdict, ClosedPartsOfRefusedTrianglesAreHeld) {
 TEST(MeshVerdict, HollowsOfSurfacesThatCrossThemselvesAreLeftOpen) {
   verify::Subject guessed;
   guessed.mesh = joined(cube(0, 1), verify::turned(cube(0.2, 0.8)));
-  guessed.both_ways = true;
+  guessed.both_ways = guessed.is_prepared = true;
   const Mesh hollow = joined(cube(-1, 2), verify::turned(cube(0.3, 0.7)));
   EXPECT_EQ(answer_about(guessed, hollow), Answer::Undecided);
   EXPECT_EQ(answer_about(guessed, cube(-1, 2)), Answer::Verified);

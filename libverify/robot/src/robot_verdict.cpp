@@ -77,27 +77,32 @@ class Judgement {
 
  private:
   void decide() {
-    const HeldShape held =
-        subject_.both_ways ? held_both_ways() : holders_.hold(subject_.mesh, q_.claims, q_.limits);
+    const HeldShape held = subject_.both_ways
+                               ? holders_.hold_any(subject_.mesh, q_.claims, q_.limits)
+                               : holders_.hold(subject_.mesh, q_.claims, q_.limits);
     out_.answer = held.answer;
     out_.text = held.reason;
     if (held.prepare_helps && q_.solid == Solid::AsFile)
       out_.text += "; --prepare judges it as bcd-decompose takes it";
     if (!held.inclusion) return;
-    const Inclusion& in = *held.inclusion;
+    const SubjectClaims claims = decide_rest(
+        subject_, subject_.mesh, q_.claims, *held.inclusion,
+        [this](const geom::Mesh& mesh, bool surface_only) { return look(mesh, surface_only); });
+    const Inclusion& in = claims.inclusion;
     out_.convex = holders_.convex();
     out_.closed = in.inner_closed;
     out_.triangles_without_area = in.triangles_without_area;
     out_.left_out = in.left_out;
     out_.limited = in.limited;
+    measured_ = claims.surface_of_all ? &subject_.triangles : &subject_.mesh;
     if (held.surface) out_.triangles = in.surface;
-    if (held.solid) out_.solid = in.solid;
-    measured_ = &subject_.mesh;
-    if (held.surface && subject_.filled_triangles > 0) look_past_filling();
-    if (held.surface && subject_.has_more) look_at_file();
+    const bool has_solid =
+        subject_.both_ways ? q_.claims != Claims::Surface && in.solid.answer != Answer::Undefined
+                           : held.solid;
+    if (has_solid) out_.solid = in.solid;
     if (!out_.triangles && !out_.solid) {
       out_.answer = Answer::Undefined;
-      if (!subject_.refusal.empty()) out_.text = "which solid the triangles bound is not known";
+      if (!subject_.is_prepared) out_.text = "which solid the triangles bound is not known";
       return;
     }
     out_.answer = Answer::Verified;
@@ -109,62 +114,12 @@ class Judgement {
     put_into_words();
   }
 
-  /// Every triangle, and all that the parts that are closed wind round, either way.
-  HeldShape held_both_ways() {
-    HeldShape out = holders_.hold_any(subject_.mesh, q_.claims, q_.limits);
-    if (!out.inclusion || q_.claims == Claims::Surface) return out;
-    Inclusion& in = *out.inclusion;
-    if (in.inner_closed && in.solid.answer != Answer::Verified) return out;
-    const std::vector<geom::Mesh> parts = closed_parts(subject_.mesh);
-    const bool is_known = subject_.refusal.empty() || q_.claims != Claims::Solid;
-    out.solid = !parts.empty() && is_known;  // of triangles alone nothing says which solid is meant
-    if (!out.solid) return out;
-    in.solid.answer = Answer::Verified;
-    for (const geom::Mesh& part : parts)
-      for (const bool backwards : {false, true}) {
-        const Inclusion found = holders_.inclusion_of(backwards ? turned(part) : part, limits());
-        in.left_out = std::max(in.left_out, found.left_out);
-        in.limited = in.limited || found.limited;
-        if (worse(in.solid.answer, found.solid.answer) == in.solid.answer) continue;
-        in.solid = found.solid;
-        if (!subject_.refusal.empty() || in.solid.answer != Answer::Refuted) continue;
-        in.solid.answer = Answer::Undecided;
-        in.solid.reason =
-            "a part of the surface crosses itself, and which of what it winds round is meant is "
-            "not known: not all of that is inside";
-      }
-    return out;
-  }
-
-  /// One look, which ends in any case.
-  [[nodiscard]] InclusionOptions limits() const {
-    InclusionOptions out = q_.limits;
-    out.max_work = out.max_work.value_or(usual_work(subject_.mesh.triangles.size()));
-    return out;
-  }
-
-  /// Triangles that close holes are none of the file's: they need not lie inside themselves.
-  void look_past_filling() {
-    if (out_.triangles->answer == Answer::Verified) return;
-    InclusionOptions options = limits();
-    options.surface_only = true;
-    const Inclusion in =
-        holders_.inclusion_of(without_filling(subject_.mesh, subject_.filled_triangles), options);
-    out_.triangles = in.surface;
-    out_.left_out = std::max(out_.left_out, in.left_out);
-    out_.limited = out_.limited || in.limited;
-  }
-
-  /// The file's triangles that preparing has left out lie inside as well.
-  void look_at_file() {
-    InclusionOptions options = limits();
-    options.surface_only = true;
-    const Inclusion in = holders_.inclusion_of(subject_.triangles, options);
-    if (worse(out_.triangles->answer, in.surface.answer) == out_.triangles->answer) return;
-    out_.triangles = in.surface;
-    out_.left_out = std::max(out_.left_out, in.left_out);
-    out_.limited = out_.limited || in.limited;
-    measured_ = &subject_.triangles;
+  /// Whether a mesh is inside; the look ends in any case.
+  [[nodiscard]] Inclusion look(const geom::Mesh& mesh, bool surface_only) const {
+    InclusionOptions options = q_.limits;
+    options.max_work = options.max_work.value_or(usual_work(mesh.triangles.size()));
+    options.surface_only = surface_only;
+    return holders_.inclusion_of(mesh, options);
   }
 
   void look_at_exact_faces() {

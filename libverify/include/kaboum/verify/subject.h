@@ -1,8 +1,12 @@
 #pragma once
 
 #include <kaboum/geom/prepare.h>
+#include <kaboum/verify/claims.h>
+#include <kaboum/verify/inclusion.h>
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +27,8 @@ struct Subject {
   /// The last triangles of `mesh`, which close holes. They bound its solid, but none of them is in
   /// the file: they need not lie inside themselves.
   std::size_t filled_triangles = 0;
-  std::string refusal;  ///< why it could not be prepared; empty: it was
+  bool is_prepared = false;  ///< else which solid the triangles bound is not known at all
+  std::string refusal;       ///< why it could not be prepared; empty: it was, or nobody tried
 };
 
 /// Prepares the triangles of a file.
@@ -33,6 +38,22 @@ Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& opt
 
 /// The triangles as they are, whichever way they are oriented.
 Subject unprepared_subject(const geom::Mesh& file);
+
+/// Claims about a subject, and the meshes that they are about.
+struct SubjectClaims {
+  Inclusion inclusion;
+  std::optional<geom::Mesh> solid_part;  ///< the solid claim is that of this part of the subject
+  bool surface_of_all = false;           ///< the surface claim is that of Subject::triangles
+};
+
+/// Decides what a subject's mesh as it is oriented does not settle: what each part that is closed
+/// by itself winds round; its triangles without those that close holes, and those left out.
+/// @param mesh   Subject::mesh, wherever it is kept
+/// @param first  what was decided of the mesh
+/// @param look   decides of a mesh, or of its surface alone, whether it is inside
+SubjectClaims decide_rest(
+    const Subject& subject, const geom::Mesh& mesh, Claims claims, Inclusion first,
+    const std::function<Inclusion(const geom::Mesh&, bool surface_only)>& look);
 
 /// What distances from a subject are measured to: its solid and all triangles of the file.
 struct MeasuredMesh {
@@ -49,7 +70,7 @@ geom::Mesh held_triangles(const geom::Mesh& file, const geom::Prepared& prepared
 /// The index in the file of a triangle of held_triangles.
 std::uint32_t source_of_held(const Subject& subject, std::uint32_t triangle);
 
-/// The connected parts of a mesh that are closed by themselves; those whose boxes do not meet are
+/// The connected parts of a mesh that are closed by themselves and no sheets; those whose boxes do not meet are
 /// in one mesh together.
 std::vector<geom::Mesh> closed_parts(const geom::Mesh& mesh);
 
