@@ -70,8 +70,8 @@ geom::Mesh held_triangles(const geom::Mesh& file, const geom::Prepared& prepared
 /// The index in the file of a triangle of held_triangles.
 std::uint32_t source_of_held(const Subject& subject, std::uint32_t triangle);
 
-/// The connected parts of a mesh that are closed by themselves and no sheets; those whose boxes do not meet are
-/// in one mesh together.
+/// The connected parts of a mesh that are closed by themselves and no sheets; those whose boxes do
+/// not meet are in one mesh together.
 std::vector<geom::Mesh> closed_parts(const geom::Mesh& mesh);
 
 /// The mesh without its last triangles, which close holes.
