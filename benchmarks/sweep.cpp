@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "cli.h"
+#include "common/cli.h"
 
 /// Times bounding swept volumes of a robot whose bodies are in memory, and counts bodies by rule.
 /// Arguments: the robot's file, the epsilon of its bodies (3%), the most vertices of each (64).

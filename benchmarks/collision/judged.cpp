@@ -16,7 +16,7 @@
 #include <optional>
 #include <random>
 
-#include "scene_file.h"
+#include "common/scene_file.h"
 
 /// Bounded predicates judged by exact meshes: configurations, half of them near contact, and
 /// motions said to be free. Every pair of things that is looked at is judged by itself.

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <random>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "engine.h"
 #include "queries.h"
 #include "timing.h"

@@ -12,9 +12,9 @@
 #include <map>
 #include <random>
 
+#include "common/scene_file.h"
 #include "engine.h"
 #include "random_cell.h"
-#include "scene_file.h"
 #include "timing.h"
 
 /// One robot of a scene among random objects: configurations and segments by libworld, and the same

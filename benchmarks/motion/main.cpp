@@ -16,8 +16,8 @@
 #include <random>
 
 #include "collision/random_cell.h"
+#include "common/scene_file.h"
 #include "engine.h"
-#include "scene_file.h"
 
 /// Paths for a robot of a scene among random objects: find_path, and RRT-Connect of OMPL with
 /// configurations by the same predicates at its usual resolution, in one run; all by CPU time.

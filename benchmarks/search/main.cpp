@@ -17,8 +17,8 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "common/scene_file.h"
 #include "other_world.h"
-#include "scene_file.h"
 
 namespace {
 

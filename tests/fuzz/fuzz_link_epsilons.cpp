@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../../tools/link_epsilons.h"
+#include "../../tools/robots/link_epsilons.h"
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

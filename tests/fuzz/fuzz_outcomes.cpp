@@ -5,7 +5,7 @@
 #include <kaboum/plan/replay.h>
 #include <kaboum/plan/solve.h>
 
-#include "../../tools/outcomes.h"
+#include "../../tools/kaboum-plan/outcomes.h"
 #include "fuzz.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Renders meshes side by side into a PNG.
-#include "cli.h"
+#include "common/cli.h"
 #include "font.h"
 #include "png_file.h"
 #include "render.h"

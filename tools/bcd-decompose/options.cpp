@@ -1,0 +1,127 @@
+// The options of bcd-decompose by group, and what they ask for.
+
+#include "options.h"
+
+#include <kaboum/base/error.h>
+
+#include <CLI/CLI.hpp>
+
+#include "common/request_options.h"
+#include "common/set_format.h"
+
+namespace kaboum::tools {
+namespace {
+
+void add_input(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("INPUT", o.input,
+                 "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf, .xacro), every "
+                 "link of it")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", o.output,
+                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
+                 "folder with one STL per body (- for stdout); for robots a folder, which gets a "
+                 "URDF, the bodies that it refers to, and a container per link")
+      ->required()
+      ->type_name("PATH");
+}
+
+void add_budget(CLI::App& app, const char* name, std::size_t& value, const char* what) {
+  app.add_option(name, value,
+                 std::string("Most ") + what +
+                     " of all links of a robot together (1 to 10000000): the least epsilon that "
+                     "allows, the same for all links, so that bodies go where they are needed; "
+                     "takes about as long as ten runs")
+      ->check(CLI::Range(1, 10000000).description(""))
+      ->type_name("N");
+}
+
+void add_output(CLI::App& app, DecomposeOptions& o) {
+  app.add_option(
+         "--preview", o.preview,
+         "Write a picture of the bodies (.png), or a page that shows them over the input in "
+         "a browser (.html)")
+      ->check(preview_name())
+      ->type_name("FILE");
+  app.add_option("--explode", o.explode,
+                 "How far apart a picture's second panel draws the bodies; 0: no second panel")
+      ->check(number_from(0, 10))
+      ->capture_default_str()
+      ->needs("--preview")
+      ->type_name("X");
+  app.add_flag("--no-cache", o.no_cache,
+               "Neither use nor store results of earlier runs ($KABOUM_CACHE, else "
+               "$XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum)");
+}
+
+}  // namespace
+
+void describe(CLI::App& app, DecomposeOptions& o) {
+  add_input(app, o);
+  add_request_options(app, certify::set_options(), o.set, o.stated);
+  add_require_closed(app, o.set.preparation);
+  add_output(app, o);
+  add_robot_options(app, o.robot, true);
+  add_budget(app, "--robot-bodies", o.robot_bodies, "bodies");
+  add_budget(app, "--robot-vertices", o.robot_vertices, "vertices");
+  app.add_flag(
+      "--srdf", o.srdf,
+      "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
+      "need no check, because they are connected or their bodies are proved never to "
+      "touch, at whatever joint values within the limits (for one turn of joints without "
+      "limits); not with --links");
+  app.add_option(
+         "--depfile", o.depfile,
+         "Write a Makefile dependency rule; names that have no place in one are refused. If "
+         "FILE ends in .list: the inputs, each followed by a zero byte")
+      ->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
+      ->type_name("NAME");
+  add_set_format_option(app, o.output_format);
+  add_common_options(app, o.common);
+  app.footer(
+      "The union of the bodies contains the solid of INPUT and every one of its triangles; this "
+      "is decided exactly on the bytes that are written. An open INPUT is closed by filling its "
+      "holes first. With --direction inner, every body lies inside the solid instead.\n"
+      "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with "
+      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 "
+      "not built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best "
+      "result is written).");
+}
+
+void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
+  require_none(certify::contradiction(o.set, o.stated));
+  if (o.set.preparation.mode != certify::PreparationOptions::Mode::Auto)
+    require_absent(app, "--prepare", {"--require-closed"});
+  if (is_robot(o.input))
+    require_absent(app, "a robot (.urdf), which states its meshes' scales itself", {"--scale"});
+  else
+    require_options_of_meshes(app, o.input);
+  if (!is_robot(o.input) && o.srdf)
+    throw Error(ErrorCode::InvalidArgument,
+                "--srdf is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
+  for (const char* budget : {"--robot-bodies", "--robot-vertices"}) {
+    if (app.count(budget) == 0) continue;
+    if (!is_robot(o.input))
+      throw Error(ErrorCode::InvalidArgument, std::string(budget) +
+                                                  " is for robots (.urdf, .xacro); " + o.input +
+                                                  " is taken for a mesh");
+    require_absent(app, budget,
+                   {"--epsilon", "--epsilons", "--max-bodies", "--max-total-vertices"});
+  }
+  if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
+  if (!is_robot(o.input) && app.count("--from") != 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "--from is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
+  if (is_page(o.preview)) require_absent(app, "--preview with a page", {"--explode"});
+  if (is_page(o.preview) && o.input == "-")
+    throw Error(ErrorCode::InvalidArgument,
+                "--preview: a page shows the input as well, which is read again for that: name a "
+                "file instead of standard input, or a picture (.png)");
+}
+
+void apply_preset(const CLI::App& app, DecomposeOptions& o) {
+  if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.set.request.min_thickness);
+}
+
+}  // namespace kaboum::tools

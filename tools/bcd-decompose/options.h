@@ -1,0 +1,38 @@
+#pragma once
+
+#include <kaboum/certify/set_options.h>
+
+#include <set>
+#include <string>
+
+#include "common/cli.h"
+#include "robots/options.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+/// The command line of bcd-decompose.
+namespace kaboum::tools {
+
+struct DecomposeOptions {
+  certify::SetOptions set;
+  std::set<std::string> stated;  ///< names of the set's options that were stated
+  std::string input, output, input_format, output_format, preview, depfile;
+  double explode = 0.5;
+  std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
+  bool no_cache = false, srdf = false;
+  RobotOptions robot;
+  CommonOptions common;
+};
+
+void describe(CLI::App& app, DecomposeOptions& options);
+
+/// Refuses options that mean nothing for the input, or beside others.
+/// @throws Error{InvalidArgument}
+void require_meaning(const CLI::App& app, const DecomposeOptions& options);
+
+/// Of robots: what --for sets, where nothing else does.
+void apply_preset(const CLI::App& app, DecomposeOptions& options);
+
+}  // namespace kaboum::tools

@@ -1,0 +1,54 @@
+// A set of bodies drawn, each in a colour of its own.
+
+#include "picture.h"
+
+#include <cmath>
+
+#include "picture/png_file.h"
+#include "picture/render.h"
+
+namespace kaboum::tools {
+namespace {
+
+using picture::Colour;
+
+constexpr int kPanel = 800;
+
+/// Hues that neighbours in the list do not share.
+Colour colour_of(std::size_t body) {
+  const double hue = std::fmod(0.11 + 0.61803398875 * static_cast<double>(body), 1.0) * 6;
+  const auto channel = [&](double offset) {
+    const double x = std::abs(std::fmod(hue + offset, 6.0) - 3) - 1;
+    return static_cast<float>(0.42 + 0.48 * std::min(1.0, std::max(0.0, x)));
+  };
+  return {channel(0), channel(4), channel(2)};
+}
+
+}  // namespace
+
+std::vector<char> picture_of(const geom::ConvexSet& set, double explode) {
+  const int panels = explode > 0 ? 2 : 1;
+  picture::Image image(panels * kPanel, kPanel, Colour{1, 1, 1});
+  for (int panel = 0; panel < panels && !set.bodies.empty(); ++panel) {
+    geom::Box3 whole;
+    for (const geom::ConvexBody& body : set.bodies) whole.extend(geom::bounding_box(body.hull));
+    geom::Mesh all;
+    picture::Style style;
+    for (std::size_t i = 0; i < set.bodies.size(); ++i) {
+      const geom::Mesh& hull = set.bodies[i].hull;
+      geom::Vec3 shift = geom::Vec3::Zero();
+      if (panel == 1) shift = explode * (geom::bounding_box(hull).center() - whole.center());
+      const auto first = static_cast<std::uint32_t>(all.vertices.size());
+      for (const geom::Vec3& p : hull.vertices) all.vertices.emplace_back(p + shift);
+      for (const geom::Triangle& t : hull.triangles) {
+        all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        style.of_triangle.push_back(colour_of(i));
+      }
+    }
+    const picture::Camera camera(geom::bounding_box(all), {}, kPanel, kPanel);
+    picture::draw_mesh(image, panel * kPanel, 0, kPanel, kPanel, all, camera, style);
+  }
+  return picture::encode_png(image);
+}
+
+}  // namespace kaboum::tools

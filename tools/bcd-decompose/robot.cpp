@@ -1,0 +1,267 @@
+// bcd-decompose on robots: reads, certifies, writes a folder, and says what came of it.
+
+#include "robot.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/robot.h>
+#include <kaboum/certify/robot_budget.h>
+#include <kaboum/io/convex_io.h>
+#include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/scene/robot_pairs.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "picture.h"
+#include "preview.h"
+#include "robots/bodies.h"
+#include "robots/check.h"
+#include "robots/output.h"
+#include "robots/page.h"
+#include "words.h"
+
+namespace kaboum::tools {
+namespace {
+
+using robot_folder::RobotWriter;
+
+certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::RobotFile& robot,
+                                    const robot::ShapeChoice& choice) {
+  certify::RobotRequest r{
+      certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
+  if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
+  return r;
+}
+
+std::string pairs_in_words(const scene::RobotPairs& pairs) {
+  return "pairs of links that need no check: " + std::to_string(pairs.adjacent) + " adjacent, " +
+         std::to_string(pairs.never) + " proved never to touch, " + std::to_string(pairs.fixed) +
+         " fixed to each other; " + std::to_string(pairs.others) + " others";
+}
+
+Json pairs_report(const scene::RobotPairs& pairs) {
+  return {{"adjacent", pairs.adjacent},
+          {"never_in_contact", pairs.never},
+          {"fixed_to_each_other", pairs.fixed},
+          {"others", pairs.others}};
+}
+
+/// What was made, and where it goes.
+struct Run {
+  const DecomposeOptions& o;
+  robot::RobotFile robot;
+  certify::RobotRequest request = {};
+  certify::CertifiedRobot made = {};
+  std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
+  std::vector<certify::LinkVerdict> verdicts = {};
+  Notes notes = {};
+  std::optional<scene::RobotPairs> pairs = {};  ///< with --srdf
+
+  [[nodiscard]] const certify::BodiesCertificate& bodies() const {
+    return made.bodies.certificate();
+  }
+  [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
+  /// The set of a link; null: a mesh of it is kept.
+  [[nodiscard]] const certify::CertifiedLink* set_of(std::uint32_t link) const {
+    for (const certify::CertifiedLink& set : made.links)
+      if (set.certificate().link == link) return &set;
+    return nullptr;
+  }
+};
+
+/// The epsilon that a budget for the whole robot allows.
+void share_out(Run& run, const certify::SetCache* cache) {
+  const auto given = [](std::size_t n) { return n > 0 ? std::optional(n) : std::nullopt; };
+  Progress progress(run.o.common.quiet);
+  const auto show = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
+  run.request.set.epsilon = epsilon_within(run.robot, run.request,
+                                           {given(run.o.robot_bodies), given(run.o.robot_vertices)},
+                                           cache, {.progress = show, .note = {}, .made = {}});
+}
+
+void certify_links(Run& run) {
+  using Clock = std::chrono::steady_clock;
+  const certify::SetCache kept(certify::SetCache::default_folder());
+  const certify::SetCache* cache = run.o.no_cache ? nullptr : &kept;
+  if (run.o.robot_bodies + run.o.robot_vertices > 0) share_out(run, cache);
+  Progress progress(run.o.common.quiet);
+  certify::RobotHooks hooks =
+      certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
+  hooks.made = [&, last = Clock::now()](const certify::CertifiedLinkMesh& mesh) mutable {
+    run.seconds.push_back(std::chrono::duration<double>(Clock::now() - last).count());
+    last = Clock::now();
+    progress.show("");
+    const std::string file = mesh.mesh.file.string();
+    if (!mesh.flaw.empty()) log(run.o.common.quiet, mesh.flaw);
+    if (!mesh.held) return;
+    const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
+    log(run.o.common.quiet,
+        file + ": " + summary(certificate) + (mesh.made.found.cached ? " (from the cache)" : ""));
+    const std::string why = shortfall(certificate);
+    if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
+  };
+  run.made = certify::certify_robot(run.robot, run.request, cache, hooks);
+  run.verdicts = verdicts(run.made);
+}
+
+void write(Run& run, RobotWriter& writer) {
+  std::optional<certify::CacheFolder> cache;
+  if (!run.o.no_cache) cache.emplace(certify::CacheFolder::default_folder());
+  write_certified(writer, run.made, cache ? &*cache : nullptr, note_in(run.notes));
+}
+
+/// @param files  of the links that have a set
+Json links_report(const Run& run, const std::vector<std::string>& files) {
+  Json out = Json::array();
+  for (const certify::LinkVerdict& link : run.verdicts) {
+    Json report = {{"link", run.robot.robot.links[link.link].name}, {"shapes", link.shapes}};
+    report.update(report_of(link));
+    for (const robot::LinkShape& shape : run.bodies().shapes) {
+      if (shape.link != link.link || !shape.mesh) continue;
+      const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
+      Json one{{"file", mesh.mesh.file.string()}};
+      if (mesh.held) one["result"] = report_of(mesh.made);
+      if (!mesh.flaw.empty()) one["flaw"] = mesh.flaw;
+      report["meshes"].push_back(std::move(one));
+    }
+    if (const certify::CertifiedLink* set = run.set_of(link.link)) {
+      report["file"] = files[static_cast<std::size_t>(set - run.made.links.data())];
+      report["bodies"] = set->artefact().bodies.size();
+      report["reach_upper"] = set->certificate().distance;
+    }
+    out.push_back(std::move(report));
+  }
+  return out;
+}
+
+/// The command that decides it from the files alone; epsilon as well, where it is one for all links
+/// and of distances to what the files hold, not to wraps.
+RobotCheck check_of(const Run& run, const RobotWriter& output) {
+  std::optional<Length> epsilon = run.request.set.wanted_epsilon();
+  if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
+    epsilon.reset();
+  for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
+    if (!mesh.held || mesh.made.found.set.certificate().wrap) epsilon.reset();
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.set.preparation, epsilon, run.verdicts);
+}
+
+RobotCounts counts_of(const Run& run) {
+  RobotCounts counts{.links = run.verdicts.size(), .meshes = run.bodies().meshes.size()};
+  for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
+    if (!mesh.held) ++counts.kept;
+  for (const certify::CertifiedLink& link : run.made.links) {
+    counts.bodies += link.artefact().bodies.size();
+    for (const geom::ConvexBody& body : link.artefact().bodies)
+      counts.vertices += body.hull.vertices.size();
+  }
+  return counts;
+}
+
+Json robot_report(const Run& run, const RobotWriter& output) {
+  const RobotCounts counts = counts_of(run);
+  Json report = report_of(output);
+  report.update({{"bodies", counts.bodies},
+                 {"vertices", counts.vertices},
+                 {"meshes", counts.meshes},
+                 {"meshes_kept", counts.kept},
+                 {"links", links_report(run, output.link_files())},
+                 {"stop", run.code() == kDone ? "done" : "epsilon not reached"},
+                 {"verdict", name_of(outcome_of(run.verdicts))},
+                 {"sentence", in_words(run.verdicts)},
+                 {"check", check_of(run, output).command},
+                 {"input", {{"file", run.o.input}}},
+                 {"parameters", run.request.parameters()}});
+  if (run.pairs) report["pairs_of_links"] = pairs_report(*run.pairs);
+  return report;
+}
+
+/// A link's row of the page.
+PageLink page_link(const Run& run, const certify::LinkVerdict& link) {
+  PageLink out;
+  out.name = run.robot.robot.links[link.link].name;
+  out.shapes = link.shapes;
+  out.verdict = link;
+  if (const certify::CertifiedLink* set = run.set_of(link.link)) {
+    out.reach = set->certificate().distance;
+    out.bodies = set->artefact().bodies.size();
+    for (const geom::ConvexBody& body : set->artefact().bodies) {
+      out.vertices += body.hull.vertices.size();
+      append_placed(out.result, body.hull, {});
+    }
+  }
+  for (const robot::LinkShape& shape : run.bodies().shapes) {
+    if (shape.link != link.link || !shape.mesh) continue;
+    const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
+    out.meshes.push_back(mesh.mesh.file.filename().string());
+    if (mesh.held && !mesh.made.found.cached)
+      out.seconds = out.seconds.value_or(0) + run.seconds[*shape.mesh];
+  }
+  out.epsilon = epsilon_of(out.name, run.request.epsilons, run.request.set.wanted_epsilon());
+  out.original = drawn_shapes(run.robot, run.bodies().choice, link.link);
+  return out;
+}
+
+void write_page(const Run& run, const RobotWriter& output) {
+  RobotPage page{.robot = run.robot.robot.name,
+                 .source = run.o.input,
+                 .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
+                 .check = check_of(run, output),
+                 .unit = run.request.set.unit,
+                 .files = output.documents(),
+                 .notes = run.notes.lines(),
+                 .links = {},
+                 .counts = counts_of(run)};
+  for (const certify::LinkVerdict& link : run.verdicts) page.links.push_back(page_link(run, link));
+  io::write_file(run.o.robot.html, to_html(page));
+}
+
+}  // namespace
+
+int decompose_robot(const DecomposeOptions& o) {
+  if (o.set.request.direction != certify::SetRequest::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument,
+                "--direction inner: decompose the robot's meshes one by one");
+  require_robot_folder(o.output, o.output_format);
+  Run run{o, robot::read_robot(o.input)};
+  const std::vector<std::string> included =
+      o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
+  RobotWriter output(folder_options(o.robot), o.output, run.robot, "bodies", "");
+  run.request = robot_request(o, run.robot, output.options().shapes);
+  run.request.partial = true;
+  const certify::WantedMeshes meshes =
+      certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
+  output.plan(meshes);
+  if (o.srdf) output.folder().require_own_document(".srdf");
+  require_formats(meshes, o.input_format);
+  certify_links(run);
+  if (o.srdf) {
+    run.pairs = scene::pairs_of(run.robot.robot, run.made);
+    output.add_document(".srdf", run.pairs->srdf);
+  }
+  write(run, output);
+  const RobotCounts counts = counts_of(run);
+  log(o.common.quiet, output.folder().urdf().string() + ": " +
+                          counted(counts.bodies, "body", "bodies") + " of " +
+                          counted(counts.links, "link", "links") + ", from " + counts.of_meshes());
+  say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
+  say(output, o.common.quiet, run.notes);
+  if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
+  if (is_page(o.preview))
+    io::write_file(o.preview, page_of_robot(o, run.robot, run.made, run.verdicts));
+  else if (!o.preview.empty())
+    io::write_file(o.preview, picture_of(at_rest(run.robot.robot, run.made.links), o.explode));
+  if (!o.robot.html.empty()) write_page(run, output);
+  if (!o.common.report.empty()) write_report(o.common, "bcd-decompose", robot_report(run, output));
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.input};
+    if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    inputs.insert(inputs.end(), included.begin(), included.end());
+    for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
+    write_depfile(o.depfile, output.documents(), inputs);
+  }
+  return run.code();
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,318 @@
+// bmesh-decimate on robots: encloses the links' meshes, writes a folder, and says what came of it.
+
+#include "robot.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/certify/link_enclosures.h>
+#include <kaboum/certify/mesh_file.h>
+#include <kaboum/robot/robot_file.h>
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include "common/result_files.h"
+#include "results.h"
+#include "robots/bodies.h"
+#include "robots/check.h"
+#include "robots/output.h"
+#include "robots/page.h"
+
+namespace kaboum::tools {
+namespace {
+
+using robot_folder::NewShapes;
+using robot_folder::RobotFolder;
+using robot_folder::RobotWriter;
+using robot_folder::StoredMesh;
+
+/// Format of the new meshes: what engines read.
+io::Format format_of_meshes(const DecimationOptions& o) {
+  const std::string name = o.output_format.empty() ? o.robot.bodies : o.output_format;
+  if (name != "stl" && name != "obj")
+    throw Error(ErrorCode::InvalidArgument,
+                "--output-format " + name + ": a robot's meshes are stl or obj");
+  return name == "stl" ? io::Format::Stl : io::Format::Obj;
+}
+
+certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
+  require_sound(o);
+  if (o.mesh.request.vertices.size() > 1)
+    throw Error(ErrorCode::InvalidArgument, "--vertices: a robot's meshes are no series");
+  const io::Format format = format_of_meshes(o);
+  require_sound_formats(o, format);
+  certify::EnclosureRequest r = certify::enclosure_request_of(mesh_options_of(o, format));
+  if (o.output_format.empty() && format == io::Format::Stl) r.spare_format = io::Format::Obj;
+  return r;
+}
+
+/// What was made, and where it goes.
+struct Run {
+  const DecimationOptions& o;
+  robot::RobotFile robot;
+  certify::LinkEnclosuresRequest request = {};
+  certify::LinkEnclosures made = {};
+  std::vector<certify::LinkVerdict> verdicts = {};
+  Notes notes = {};
+
+  [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
+};
+
+/// What was asked for and not reached, and what helps; empty: nothing.
+std::string shortfall(const certify::EnclosureCertificate& c) {
+  if (c.stop == bmesh::Stop::OutOfWork)
+    return "the work allowed has ended; the result so far is written. Allow more with --max-work, "
+           "or give --effort fast";
+  if (!c.reached) return "fewer vertices cannot be reached; the result so far is written";
+  if (c.inside.answer == verify::Answer::Refuted)
+    return "not every triangle is inside: some bound no solid; --prepare wrap encloses those as "
+           "well";
+  return {};
+}
+
+std::string summary(const certify::EnclosureCertificate& c) {
+  return std::to_string(c.vertices_in) + " → " + std::to_string(c.vertices) +
+         " vertices, outer, certified, within " + formatted(c.distance_upper) + " (" +
+         formatted(c.diagonal > 0 ? 100 * c.distance_upper / c.diagonal : 0) + "%)";
+}
+
+void say_meshes(Run& run) {
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    const std::string file = mesh.mesh.file.string();
+    if (!mesh.flaw.empty()) {
+      log(run.o.common.quiet, mesh.flaw);
+      continue;
+    }
+    const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
+    log(run.o.common.quiet,
+        file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
+    if (const std::string why = shortfall(c); !why.empty())
+      log(run.o.common.quiet, std::string(file).append(": ").append(why));
+    for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
+    for (const std::string& text : c.notes) run.notes.add(file, text);
+  }
+}
+
+void write(Run& run, RobotWriter& output) {
+  RobotFolder& folder = output.folder();
+  for (std::size_t i = 0; i < run.made.meshes.size(); ++i) {
+    if (!run.made.meshes[i].flaw.empty())
+      folder.leave_out(i);
+    else if (run.made.meshes[i].made.enclosure.certificate().in_spare_format)
+      folder.set_extension(i, ".obj");
+  }
+  const NewShapes shapes =
+      robot_folder::new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
+        std::vector<std::string> out;
+        if (run.made.meshes[*run.made.shapes[s].mesh].flaw.empty())
+          out.push_back(folder.place_of(s));
+        return out;
+      });
+  if (!run.o.no_cache) {
+    std::map<std::size_t, std::span<const char>> meshes;
+    for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
+      if (const auto& mesh = run.made.shapes[s].mesh; mesh && run.made.meshes[*mesh].flaw.empty())
+        meshes.emplace(s, run.made.meshes[*mesh].made.enclosure.bytes());
+    output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
+  }
+  output.write(
+      shapes,
+      [&](const StoredMesh& stored, const std::filesystem::path& place) {
+        io::write_file(place, run.made.meshes[stored.mesh].made.enclosure.bytes());
+      },
+      {}, note_in(run.notes));
+}
+
+/// The command that decides it from the files alone; epsilon as well, where it is one for all links
+/// and of distances to what the files hold, not to wraps or exact faces.
+RobotCheck check_of(const Run& run, const RobotWriter& output) {
+  std::optional<Length> epsilon = run.request.mesh.mesh.epsilon;
+  if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
+    epsilon.reset();
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
+    if (!mesh.flaw.empty() || mesh.made.enclosure.certificate().wrap) epsilon.reset();
+  return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
+                         run.o.mesh.preparation, epsilon, run.verdicts);
+}
+
+/// The shapes of each link that has some.
+std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
+  std::vector<std::vector<robot::LinkShape>> out;
+  for (const robot::LinkShape& shape : run.made.shapes) {
+    if (out.empty() || out.back().front().link != shape.link) out.emplace_back();
+    out.back().push_back(shape);
+  }
+  return out;
+}
+
+/// Meshes are counted once, however many links have them.
+RobotCounts counts_of(const Run& run) {
+  RobotCounts counts{.links = shapes_by_link(run).size(), .meshes = run.made.meshes.size()};
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
+    if (!mesh.flaw.empty()) {
+      ++counts.kept;
+      continue;
+    }
+    ++counts.bodies;
+    counts.vertices += mesh.made.enclosure.certificate().vertices;
+  }
+  return counts;
+}
+
+Json decimated_report(const Run& run, const RobotWriter& output) {
+  Json report = report_of(output), links = Json::array();
+  const RobotCounts counts = counts_of(run);
+  std::size_t before = 0, at = 0;
+  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
+    Json link{{"link", run.robot.robot.links[shapes.front().link].name},
+              {"shapes", shapes.size()},
+              {"meshes", Json::array()}};
+    link.update(report_of(run.verdicts[at++]));
+    for (const robot::LinkShape& shape : shapes) {
+      if (!shape.mesh) continue;
+      const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+      if (!mesh.flaw.empty()) {
+        link["meshes"].push_back({{"file", mesh.mesh.file.string()}, {"flaw", mesh.flaw}});
+        continue;
+      }
+      Json result = Json::parse(certify::to_json(mesh.made.enclosure));
+      result["cached"] = mesh.made.cached;
+      link["meshes"].push_back({{"file", mesh.mesh.file.string()},
+                                {"sha256", mesh.made.sha256},
+                                {"result", std::move(result)}});
+    }
+    links.push_back(std::move(link));
+  }
+  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
+    if (mesh.flaw.empty()) before += mesh.made.enclosure.certificate().vertices_in;
+  report.update({{"meshes", counts.meshes},
+                 {"meshes_kept", counts.kept},
+                 {"vertices_in", before},
+                 {"vertices", counts.vertices},
+                 {"links", std::move(links)},
+                 {"stop", run.code() == kDone    ? "done"
+                          : run.code() == kLimit ? "limit"
+                                                 : "not reached"},
+                 {"verdict", name_of(outcome_of(run.verdicts))},
+                 {"sentence", in_words(run.verdicts)},
+                 {"check", check_of(run, output).command},
+                 {"input", {{"file", run.o.input}}},
+                 {"parameters", run.request.mesh.parameters()}});
+  return report;
+}
+
+PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
+                   const certify::LinkVerdict& verdict) {
+  const robot::Link& link = run.robot.robot.links[shapes.front().link];
+  PageLink out;
+  out.name = link.name;
+  out.shapes = shapes.size();
+  out.verdict = verdict;
+  for (const robot::LinkShape& shape : shapes) {
+    if (!shape.mesh) continue;
+    const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
+    if (!mesh.flaw.empty()) {
+      out.meshes.push_back(mesh.mesh.file.filename().string());
+      continue;
+    }
+    const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
+    const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
+    out.meshes.push_back(mesh.mesh.file.filename().string());
+    ++out.bodies;
+    out.vertices += c.vertices;
+    out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
+    if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
+    append_placed(out.result, mesh.made.enclosure.artefact(), place);
+  }
+  out.epsilon = epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
+  out.original = drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
+  return out;
+}
+
+void write_page(const Run& run, const RobotWriter& output) {
+  RobotPage page{.robot = run.robot.robot.name,
+                 .source = run.o.input,
+                 .tool = std::string("bmesh-decimate ") + version(),
+                 .check = check_of(run, output),
+                 .unit = "the robot's unit",
+                 .files = output.documents(),
+                 .notes = run.notes.lines(),
+                 .links = {},
+                 .counts = counts_of(run),
+                 .made = "meshes"};
+  std::size_t at = 0;
+  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
+    page.links.push_back(page_link(run, shapes, run.verdicts[at++]));
+  io::write_file(run.o.robot.html, to_html(page));
+}
+
+void require_separate(const DecimationOptions& o) {
+  std::vector<std::string> inputs{o.input};
+  if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+  require_apart({{"--output", o.output},
+                 {"--report", o.common.report},
+                 {"--html-report", o.robot.html},
+                 {"--depfile", o.depfile}},
+                inputs);
+}
+
+}  // namespace
+
+int decimate_robot(const CLI::App& app, DecimationOptions o) {
+  require_absent(app, "a robot (.urdf)", {"--progressive", "--log"});
+  require_absent(app, "a robot (.urdf), which states its meshes' scales itself",
+                 {"--unit", "--scale"});
+  if (o.mesh.request.direction != bmesh::Direction::Outer)
+    throw Error(ErrorCode::InvalidArgument, "--direction " + o.value("direction") +
+                                                ": a robot's meshes are enclosed; simplify them "
+                                                "one by one for others");
+  require_robot_folder(o.output, "");
+  apply_preset(app, o.output, o.robot, nullptr);
+  require_separate(o);
+  Run run{o, robot::read_robot(o.input)};
+  const std::vector<std::string> included =
+      o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
+  const io::Format format = format_of_meshes(o);
+  o.robot.declare_convex = false;  // they are not
+  RobotWriter output(folder_options(o.robot), o.output, run.robot, "meshes",
+                     format == io::Format::Stl ? ".stl" : ".obj");
+  run.request = {enclosure_request(o),
+                 output.options().shapes,
+                 {},
+                 read_epsilons(o.robot.epsilons, run.robot.robot)};
+  run.request.partial = true;
+  if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
+  const certify::WantedMeshes meshes =
+      certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
+  output.plan(meshes);
+  require_formats(meshes, o.input_format);
+  {
+    Progress progress(o.common.quiet);
+    const certify::CacheFolder cache(certify::CacheFolder::default_folder());
+    run.made = certify::enclose_links(run.robot, run.request, o.no_cache ? nullptr : &cache,
+                                      [&](const std::string& stage) { progress.show(stage); });
+  }
+  run.verdicts = verdicts(run.made);
+  say_meshes(run);
+  write(run, output);
+  const RobotCounts counts = counts_of(run);
+  log(o.common.quiet, output.folder().urdf().string() + ": " +
+                          counted(counts.bodies, "mesh", "meshes") + " of " +
+                          counted(counts.links, "link", "links") +
+                          (counts.kept > 0 ? ", from " + counts.of_meshes() : std::string()));
+  say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
+  say(output, o.common.quiet, run.notes);
+  if (!o.robot.html.empty()) write_page(run, output);
+  if (!o.common.report.empty())
+    write_report(o.common, "bmesh-decimate", decimated_report(run, output));
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.input};
+    if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    inputs.insert(inputs.end(), included.begin(), included.end());
+    for (std::string& file : strings(run.made.files)) inputs.push_back(std::move(file));
+    write_depfile(o.depfile, output.documents(), inputs);
+  }
+  return run.code();
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,126 @@
+// The verdict on a motion, in words and as a report.
+
+#include "sweep_report.h"
+
+#include <kaboum/verify/moving_robot.h>
+
+#include <iomanip>
+#include <sstream>
+
+#include "common/verdict.h"
+
+namespace kaboum::tools {
+
+using verify::Answer;
+
+namespace {
+
+std::string line(const char* title, const verify::Claim& claim, const std::string& what) {
+  return std::string(title) + ": " + name_of(claim.answer) + ": " +
+         (claim.answer == Answer::Verified ? what : claim.reason);
+}
+
+std::string say(const verify::SweepPlace& p, const SweepCase& run) {
+  std::ostringstream text;
+  text << std::setprecision(17) << run.shapes.shapes[p.shape].name << " at " << p.s
+       << " of segment " << p.segment + 1 << ", " << point(p.point);
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<std::string> lines_of(const SweepCase& run) {
+  std::vector<std::string> lines;
+  const verify::SweepClaims& claims = run.claims;
+  const double margin = run.swept.set.margin;
+  lines.push_back(
+      line("convexity", claims.convex,
+           "all " + std::to_string(run.swept.set.bodies.size()) + " bodies are convex"));
+  lines.push_back(
+      line("surface claim", claims.surface,
+           "during the whole path " + std::to_string(run.shapes.shapes.size()) +
+               " shapes of the links stay within " +
+               (margin > 0 ? "the bodies, with the margin " + number(margin) + " included"
+                           : std::string("the bodies"))));
+  if (claims.refuting)
+    lines.push_back("  " + say(*claims.refuting, run) + ": " + number(claims.refuting->distance) +
+                    " from the nearest body, margin " + number(margin));
+  else if (claims.undecided)
+    lines.push_back("  " + say(*claims.undecided, run));
+  if (!claims.refuting && run.knows_farthest())
+    lines.push_back("  farthest of " + std::to_string(claims.samples) +
+                    " places sampled: " + number(claims.farthest.distance) + ", " +
+                    (claims.farthest.distance > 0 ? say(claims.farthest, run) : "none is outside"));
+  if (run.asked.claims != "surface" && claims.solid.answer != Answer::Undefined)
+    lines.push_back(line("solid claim", claims.solid, "so do the insides of the closed shapes"));
+  if (claims.open_meshes > 0)
+    lines.push_back(std::to_string(claims.open_meshes) +
+                    " meshes are not closed: their surfaces alone are judged");
+  const SweepShapes& shapes = run.shapes;
+  lines.push_back(std::string(name_of(run.answer)) + ": " +
+                  robot::links_judged(shapes.judged, shapes.asked, shapes.bare) +
+                  except_sheets(shapes.dropped) +
+                  (shapes.cad && run.answer == Answer::Verified ? kOfTriangles : ""));
+  return lines;
+}
+
+namespace {
+
+Json to_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json to_json(const verify::SweepPlace& p, const SweepCase& run) {
+  return {{"shape", run.shapes.shapes[p.shape].name},
+          {"segment", p.segment + 1},
+          {"s", p.s},
+          {"configuration", verify::configuration_at(run.path, p)},
+          {"point", to_json(p.point)},
+          {"distance", p.distance}};
+}
+
+Json to_json(const verify::Claim& claim) {
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+  if (claim.witness)
+    json["witness"] = {{"point", to_json(claim.witness->point)}, {"depth", claim.witness->depth}};
+  return json;
+}
+
+}  // namespace
+
+Json report_of(const SweepCase& run) {
+  const VerifySweepOptions& o = run.asked;
+  const verify::SweepClaims& claims = run.claims;
+  const SweepShapes& shapes = run.shapes;
+  Json json{
+      {"relation", "sweep"},
+      {"verdict", name_of(run.answer)},
+      {"deciding_claims", o.claims},
+      {"robot", {{"file", o.files[0]}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
+      {"path", {{"file", o.files[1]}, {"waypoints", run.path.size()}}},
+      {"swept",
+       {{"file", o.files[2]},
+        {"sha256", run.swept.sha256},
+        {"bodies", run.swept.set.bodies.size()},
+        {"margin", run.swept.set.margin}}},
+      {"gap", run.gap},
+      {"claims",
+       {{"convex", to_json(claims.convex)},
+        {"surface", to_json(claims.surface)},
+        {"solid", to_json(claims.solid)}}}};
+  if (claims.refuting) json["claims"]["surface"]["place"] = to_json(*claims.refuting, run);
+  if (claims.undecided)
+    json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, run);
+  if (run.knows_farthest()) json["largest_found"] = to_json(claims.farthest, run);
+  json["prepared"] = o.prepare;
+  json["dropped_sheet_triangles"] = shapes.dropped;
+  json["open_meshes"] = claims.open_meshes;
+  json["shapes"] = shapes.shapes.size();
+  json["links"] = {{"asked", shapes.asked},
+                   {"judged", shapes.judged},
+                   {"without_shapes", shapes.bare.all()},
+                   {"with_other_shapes_only", shapes.bare.other}};
+  json["cells"] = claims.cells;
+  json["samples"] = claims.samples;
+  return json;
+}
+
+}  // namespace kaboum::tools

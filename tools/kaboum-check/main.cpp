@@ -1,0 +1,209 @@
+// The program kaboum-check: whether a robot of a scene is free, at configurations or during a
+// motion.
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/path_file.h>
+#include <kaboum/world/motion_check.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <sstream>
+
+#include "common/check_report.h"
+#include "common/motion_options.h"
+#include "common/scene_file.h"
+#include "inside.h"
+#include "options.h"
+#include "picture.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+
+/// "0,1.5,-2": a value per variable.
+robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot& robot) try {
+  const robot::NamedPath named = robot::parse_path_csv(o.configuration, "--configuration");
+  const std::size_t given = named.waypoints.front().size() + o.joints.size(),
+                    needed = robot.variables.size();
+  if (named.joints.empty() && (named.waypoints.size() > 1 || given != needed)) {
+    std::string names;
+    for (const robot::Variable& v : robot.variables) names += (names.empty() ? "" : ",") + v.name;
+    throw Error(ErrorCode::InvalidArgument,
+                "--configuration: " + std::to_string(needed) +
+                    " values are expected, one for each of " + names +
+                    (given == needed ? ", on one line" : ", not " + std::to_string(given)));
+  }
+  robot::Path path =
+      robot::arrange(named, robot, "--configuration", false, tools::fixed_joints(o.joints));
+  if (o.degrees) path = robot::from_degrees(std::move(path), robot);
+  if (!o.ignore_limits) robot::require_within_limits(path, robot, "--configuration");
+  return path;
+} catch (const Error& error) {  // the command line's fault, no file's
+  throw Error(ErrorCode::InvalidArgument, error.what());
+}
+
+/// The result: with --quiet, exit code and report have it.
+void say(const tools::CheckOptions& o, const std::string& line) {
+  if (!o.common.quiet) std::cout << line << '\n';
+}
+
+int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std::size_t robot,
+               const robot::Path& path, tools::Json& report) {
+  const world::Checker checker(scene.world);
+  const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
+  world::MotionOptions options;
+  options.resolution = tools::parse_length(o.resolution)->value;
+  options.most_intervals = o.most_intervals;
+  const world::MotionAnswer answer =
+      check_motion(checker, initial_state(scene.world), robot, path, options);
+  report["waypoints"] = path.size();
+  report["resolution"] = options.resolution;
+  report["motion"] = tools::to_json(scene.world, answer);
+  say(o, tools::describe(scene.world, answer));
+  if (!o.preview.empty()) {
+    world::WorldState state = initial_state(scene.world);
+    std::vector<world::Contact> contacts;
+    state.q[robot] = path.back();
+    if (answer.contact) {
+      contacts.push_back(*answer.contact);
+      const std::vector<double>&from = path[answer.contact_segment],
+            &to = path[std::min(answer.contact_segment + 1, path.size() - 1)];
+      for (std::size_t i = 0; i < from.size(); ++i)
+        state.q[robot][i] = from[i] + answer.contact_share * (to[i] - from[i]);
+    }
+    io::write_file(o.preview, tools::picture_of(checker, state, contacts));
+  }
+  const collide::Inclusion inside = tools::decide_inside(
+      checker, initial_state(scene.world), robot, path, options, wanted,
+      [&](const std::string& line) { say(o, line); }, report);
+  using Outcome = world::MotionAnswer::Outcome;
+  report["answer"] = answer.outcome == Outcome::Free                             ? "free"
+                     : answer.outcome == Outcome::Undecided                      ? "undecided"
+                     : answer.contact && answer.contact->certain && answer.meets ? "colliding"
+                                                                                 : "within epsilon";
+  using collide::Inclusion;
+  if (answer.outcome == Outcome::Contact || inside == Inclusion::NotIncluded) return tools::kNo;
+  return answer.outcome == Outcome::Undecided || inside == Inclusion::Undecided ? tools::kLimit
+                                                                                : tools::kDone;
+}
+
+int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
+                 std::optional<std::size_t> robot, const robot::Path& values, tools::Json& report) {
+  const world::Checker checker(scene.world);
+  const world::Checker::Options options{.resting = o.resting};
+  world::Scratch scratch;
+  bool free = true, certain = false, drawn = false;
+  const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
+  using collide::Inclusion;
+  Inclusion inside = Inclusion::Included;
+  tools::Json states = tools::Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    world::WorldState state = initial_state(scene.world);
+    if (robot) state.q[*robot] = values[i];
+    const std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, options);
+    tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
+    const std::string before =
+        values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
+    if (contacts.empty()) say(o, before + "free");
+    for (const world::Contact& contact : contacts) {
+      free = false;
+      certain = certain || contact.certain;
+      one["contacts"].push_back(tools::to_json(scene.world, contact));
+      say(o, before + tools::describe(scene.world, contact));
+    }
+    const Inclusion here = tools::decide_inside(
+        checker, state, wanted, before, [&](const std::string& line) { say(o, line); }, one);
+    if (inside != Inclusion::NotIncluded && here != Inclusion::Included) inside = here;
+    if (!o.preview.empty() && !drawn && (!contacts.empty() || i + 1 == values.size())) {
+      io::write_file(o.preview, tools::picture_of(checker, state, contacts));
+      drawn = true;
+    }
+    if (o.distance) {
+      if (const auto nearest = checker.find_nearest(state, scratch, options)) {
+        const auto& [items, clearance] = *nearest;
+        one["distance"] = {
+            {"lower", clearance.lower},
+            {"upper", clearance.upper},
+            {"pair", {scene.world.name_of(items[0]), scene.world.name_of(items[1])}}};
+        std::ostringstream line;
+        line << before << "nearest: " << scene.world.name_of(items[0]) << " and "
+             << scene.world.name_of(items[1]) << ", sets " << clearance.lower << " to "
+             << clearance.upper << " apart";
+        say(o, line.str());
+      }
+    }
+    states.push_back(std::move(one));
+  }
+  report["configurations"] = std::move(states);
+  report["answer"] = free ? "free" : certain ? "colliding" : "within epsilon";
+  if (!free || inside == Inclusion::NotIncluded) return tools::kNo;
+  return inside == Inclusion::Included ? tools::kDone : tools::kLimit;
+}
+
+int check(const tools::CheckOptions& o) {
+  if (!o.path.empty() && (o.resting || o.distance))
+    throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
+  const tools::SceneFile scene = tools::read_scene(o.scene);
+  std::vector<std::string> inputs = scene.inputs;
+  inputs.insert(inputs.end(), {o.path, o.configurations});
+  tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}}, inputs);
+  std::vector<std::string> notes = scene.notes;
+  tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
+  std::optional<std::size_t> robot;
+  const bool moves = !o.path.empty() || !o.configuration.empty() || !o.configurations.empty();
+  if (moves || !o.robot.empty()) robot = tools::robot_named(scene.world, o.robot);
+  robot::Path values;
+  if (robot) {
+    const world::RobotModel& model = scene.world.robots[*robot];
+    report["robot"] = model.name;
+    const std::string file = o.path.empty() ? o.configurations : o.path;
+    if (!file.empty())
+      values =
+          robot::read_path(file, model.kinematics,
+                           {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
+    else if (!o.configuration.empty())
+      values = parse_configuration(o, model.kinematics);
+    else
+      values = {model.home};
+  } else {
+    values = {{}};
+  }
+  for (const std::string& note : notes) tools::log(o.common.quiet, note);
+  const int code = o.path.empty() ? check_states(o, scene, robot, values, report)
+                                  : check_path(o, scene, *robot, values, report);
+  if (!notes.empty()) report["notes"] = notes;
+  tools::write_report(o.common, "kaboum-check", report);
+  return code;
+}
+
+/// Options that say how a motion or a configuration is meant, without one, would be ignored: the
+/// answer would be that of another state than was meant.
+void require_meaning(const CLI::App& app, const tools::CheckOptions& o) {
+  const auto require = [&](const char* option, bool given, const char* others) {
+    if (app.get_option(option)->count() != 0 && !given)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(option) + " needs " + others +
+                      "; without, what is looked at are the robots at home");
+  };
+  const bool moves = !o.path.empty();
+  const bool given = moves || !o.configuration.empty() || !o.configurations.empty();
+  for (const char* option : {"--joint", "--degrees", "--ignore-limits"})
+    require(option, given, "--path, --configuration or --configurations");
+  for (const char* option : {"--resolution", "--max-intervals"}) require(option, moves, "--path");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Decides whether robots are free of collisions, at configurations or all along "
+      "motions.",
+      "kaboum-check"};
+  tools::CheckOptions options;
+  tools::describe(app, options);
+  return tools::run(app, argc, argv, [&] {
+    require_meaning(app, options);
+    return check(options);
+  });
+}

@@ -1,0 +1,67 @@
+// The command line of kaboum-check.
+
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "common/motion_options.h"
+
+namespace kaboum::tools {
+
+void describe(CLI::App& app, CheckOptions& o) {
+  app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
+  app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
+  auto* path = app.add_option("--path", o.path,
+                              "Decide a whole motion, at every instant: waypoints, CSV or JSON")
+                   ->type_name("FILE");
+  auto* one = app.add_option("--configuration", o.configuration,
+                             "Decide the robot at these joint values, separated by commas [home]")
+                  ->type_name("Q1,Q2,…")
+                  ->excludes(path);
+  app.add_option("--configurations", o.configurations,
+                 "Decide each line of a file of joint values, CSV or JSON")
+      ->type_name("FILE")
+      ->excludes(path)
+      ->excludes(one);
+  add_joint_option(app, o.joints);
+  add_degrees_option(app, o.degrees);
+  app.add_flag("--ignore-limits", o.ignore_limits, "Allow values outside the joints' limits");
+  app.add_flag("--resting", o.resting, "Look at pairs of objects that rest, too (not with --path)");
+  app.add_flag("--distance", o.distance, "Say how far apart the nearest pair is (not with --path)");
+  app.add_option(
+         "--inside", o.inside,
+         "Decide as well whether an object, ROBOT/LINK or ROBOT lies in a region, with --path "
+         "at every instant; may be repeated")
+      ->type_name("NAME=REGION");
+  app.add_option(
+         "--preview", o.preview,
+         "Write a picture (PNG): what is in contact is orange, the bodies that meet red; of "
+         "a motion the instant of its contact, or its end; of several configurations the "
+         "first that is not free")
+      ->check(png_name())
+      ->type_name("FILE");
+  app.add_option("--resolution", o.resolution,
+                 "How much nearer than epsilon bodies may come in a motion before it counts as "
+                 "contact")
+      ->check([](const std::string& s) {
+        const auto length = parse_length(s);
+        return length && !length->percent ? std::string() : "must be a positive number";
+      })
+      ->capture_default_str()
+      ->type_name("LENGTH");
+  app.add_option("--max-intervals", o.most_intervals,
+                 "Most stretches of time that are looked at; then the motion is undecided")
+      ->check(number_from(1, 1e9))
+      ->capture_default_str()
+      ->type_name("N");
+  add_common_options(app, o.common);
+  app.footer(
+      "Free is certain. Contacts are colliding where inner sets meet, which is certain, else "
+      "within epsilon: the solids are at most that far apart "
+      "(docs/algorithms/bounded-predicates.md). Waypoints and configurations are counted from 1.\n"
+      "Exit codes: 0 free, and inside; 1 not free, or not certainly inside; 2 usage; 3 bad input; "
+      "4 output failed; 6 internal error; "
+      "7 undecided (--max-intervals; whether something is inside).");
+}
+
+}  // namespace kaboum::tools

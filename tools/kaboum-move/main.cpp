@@ -1,0 +1,78 @@
+// kaboum-move: paths of a robot of a scene, certified free at every instant, and their execution.
+#include <kaboum/base/error.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "common/cli.h"
+#include "common/result_files.h"
+#include "files.h"
+#include "request.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+using motion::PathAnswer;
+using Outcome = PathAnswer::Outcome;
+using tools::MoveOptions;
+
+motion::PathOptions path_options(const MoveOptions& o) {
+  motion::PathOptions out;
+  out.seed = o.common.seed;
+  out.most_work = o.max_work;
+  out.most_nodes = o.max_nodes;
+  if (o.timeout > 0) out.most_seconds = o.timeout;
+  out.shortcuts = o.shortcuts;
+  out.check.resolution = tools::parse_length(o.resolution)->value;
+  return out;
+}
+
+int move(const MoveOptions& o) {
+  const tools::MoveRequest r = tools::read_request(o);
+  std::vector<std::string> inputs = r.scene.inputs;
+  inputs.insert(inputs.end(), {o.start, o.goals});
+  tools::require_apart(
+      {{"--output", o.output}, {"--trajectory", o.trajectory}, {"--report", o.common.report}},
+      inputs);
+  for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
+  const world::Checker checker(r.scene.world);
+  const PathAnswer answer =
+      find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, path_options(o));
+  tools::Json report = tools::answer_json(r, answer, o);
+  if (!r.notes.empty()) report["notes"] = r.notes;
+  if (answer.outcome != Outcome::Found) {
+    std::cerr << "kaboum-move: " << tools::reason(r, answer) << '\n';
+    tools::write_report(o.common, "kaboum-move", report);
+    return answer.contact ? tools::kNo : tools::kLimit;
+  }
+  const tools::WrittenPath written = tools::write_path(r, answer.path, o, checker);
+  report["waypoints"] = written.path;
+  std::optional<tools::Execution> execution;
+  if (!o.trajectory.empty()) {
+    execution = tools::execute(r, written.path, o, checker);
+    report["trajectory"] = execution->report;
+  }
+  report["output_angles"] = o.degrees ? "degrees" : "radians";
+  report["output"] = o.output;
+  tools::write_together(
+      {{o.trajectory, [&] { io::write_file(o.trajectory, execution->csv); }},
+       {o.common.report, [&] { tools::write_report(o.common, "kaboum-move", report); }},
+       {o.output, [&] { io::write_file(o.output, written.csv); }}});
+  tools::log(o.common.quiet,
+             std::to_string(answer.path.size()) + " waypoints" +
+                 (answer.straight ? ", straight" : "") + ", free at every instant" +
+                 (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : ""));
+  return tools::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Finds a path for a robot of a scene, certified free of contacts at every instant, and "
+      "writes it as waypoints, or as samples over time.",
+      "kaboum-move"};
+  MoveOptions options;
+  tools::describe(app, options);
+  return tools::run(app, argc, argv, [&] { return move(options); });
+}

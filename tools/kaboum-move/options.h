@@ -1,0 +1,31 @@
+#pragma once
+
+#include <kaboum/motion/trajectory.h>
+
+#include "common/cli.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace kaboum::tools {
+
+/// The command line of kaboum-move.
+struct MoveOptions {
+  std::string scene, robot, from, start, goals, output = "-", trajectory, resolution = "1e-5";
+  std::vector<std::string> to, velocities, accelerations;
+  bool degrees = false, time_optimal = false;
+  double max_work = 10, timeout = 0, rate = 1000;
+  std::size_t max_nodes = 100'000;
+  int shortcuts = 60;
+  CommonOptions common;
+};
+
+void describe(CLI::App& app, MoveOptions& o);
+
+/// Of --max-velocity and --max-acceleration; never above the velocities of the robot's file.
+/// @throws Error{InvalidArgument} for values that are not above 0, joints that are not known, and
+///   one joint's velocity above the file's.
+motion::SpeedLimits speed_limits(const MoveOptions& o, const robot::Robot& robot);
+
+}  // namespace kaboum::tools

@@ -1,0 +1,125 @@
+// What kaboum-move is asked for, and what it says of the answer.
+
+#include "request.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/path_file.h>
+
+#include "common/check_report.h"
+
+namespace kaboum::tools {
+
+using motion::PathAnswer;
+using Outcome = PathAnswer::Outcome;
+
+namespace {
+
+[[noreturn]] void usage(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
+
+/// "0,1.5,-2": a value per variable.
+std::vector<double> configuration(const std::string& text, const char* option, const MoveOptions& o,
+                                  const robot::Robot& robot) {
+  try {
+    robot::Path path = arrange(robot::parse_path_csv(text, option), robot, option, false, {});
+    if (path.size() != 1) usage(std::string(option) + ": one configuration is expected");
+    if (o.degrees) path = robot::from_degrees(std::move(path), robot);
+    robot::require_within_limits(path, robot, option);
+    return path.front();
+  } catch (const Error& error) {
+    usage(error.what());  // the command line's fault, no file's
+  }
+}
+
+/// The goals of a file. Those beyond the joints' limits are left out with a note: others may do.
+void add_goals(MoveRequest& r, robot::Path goals, const std::string& file) {
+  const std::size_t given = r.goals.size();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    if (const auto bad = find_out_of_limits(r.kinematics(), goals[i])) {
+      r.notes.push_back(file + ": goal " + std::to_string(i + 1) + " is left out: joint '" +
+                        r.kinematics().variables[*bad].name + "' is outside its limits");
+    } else {
+      r.goals.push_back(std::move(goals[i]));
+      r.numbers.push_back(given + i + 1);
+    }
+  }
+  if (r.goals.empty())
+    throw Error(ErrorCode::InvalidInput, file + ": all goals are outside the joints' limits");
+}
+
+Json blockers_json(const world::World& world, const PathAnswer& answer) {
+  Json out = Json::array();
+  for (const motion::Blocker& b : answer.blockers)
+    out.push_back(
+        {{"pair", {world.name_of(b.items[0]), world.name_of(b.items[1])}}, {"times", b.times}});
+  return out;
+}
+
+}  // namespace
+
+MoveRequest read_request(const MoveOptions& o) {
+  MoveRequest r;
+  r.scene = read_scene(o.scene);
+  r.notes = r.scene.notes;
+  r.robot = robot_named(r.scene.world, o.robot);
+  const robot::Robot& robot = r.kinematics();
+  const auto read = [&](const std::string& file, bool limits) {
+    return robot::read_path(file, robot, {limits, o.degrees, {}}, r.notes);
+  };
+  r.start = !o.start.empty()  ? read(o.start, true).back()
+            : !o.from.empty() ? configuration(o.from, "--from", o, robot)
+                              : r.model().home;
+  for (const std::string& text : o.to) {
+    r.goals.push_back(configuration(text, "--to", o, robot));
+    r.numbers.push_back(r.goals.size());
+  }
+  if (!o.goals.empty()) add_goals(r, read(o.goals, false), o.goals);
+  if (r.goals.empty()) usage("where to? Give --to Q1,Q2,… or --goals FILE");
+  return r;
+}
+
+Json answer_json(const MoveRequest& r, const PathAnswer& answer, const MoveOptions& o) {
+  const motion::Spent& s = answer.spent;
+  Json out = {{"scene", {{"file", o.scene}, {"sha256", r.scene.sha256}}},
+              {"robot", r.model().name},
+              {"outcome", name_of(answer.outcome)},
+              {"seed", o.common.seed},
+              {"start", r.start},
+              {"goals", r.goals.size()},
+              {"spent",
+               {{"work", s.work},
+                {"configurations", s.configurations},
+                {"motions", s.motions},
+                {"intervals", s.intervals},
+                {"samples", s.samples},
+                {"nodes", s.nodes}}},
+              {"blockers", blockers_json(r.scene.world, answer)}};
+  if (answer.outcome == Outcome::Found) {
+    out["goal"] = r.numbers[answer.goal];
+    out["straight"] = answer.straight;
+    out["waypoints"] = answer.path;
+  }
+  if (answer.contact) out["contact"] = to_json(r.scene.world, *answer.contact);
+  return out;
+}
+
+std::string reason(const MoveRequest& r, const PathAnswer& answer) {
+  const world::World& world = r.scene.world;
+  if (answer.outcome == Outcome::StartInContact)
+    return "the start is not free: " + describe(world, *answer.contact);
+  if (answer.outcome == Outcome::GoalInContact)
+    return std::string(r.goals.size() > 1 ? "no goal is free: " : "the goal is not free: ") +
+           describe(world, *answer.contact);
+  std::string out = "no path found, which does not say that there is none: the search ended by ";
+  out += answer.outcome == Outcome::WorkEnded    ? "--max-work"
+         : answer.outcome == Outcome::NodesEnded ? "--max-nodes"
+                                                 : "--timeout";
+  if (!answer.blockers.empty()) {
+    const motion::Blocker& b = answer.blockers.front();
+    out += "; most often in the way: " + world.name_of(b.items[0]) + " and " +
+           world.name_of(b.items[1]);
+  }
+  return out;
+}
+
+}  // namespace kaboum::tools

@@ -1,0 +1,209 @@
+// kaboum-plan solve, check, show and convert.
+
+#include "commands.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/plan/check.h>
+#include <kaboum/plan/plan.h>
+#include <kaboum/plan/solve.h>
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include "common/result_files.h"
+#include "input.h"
+#include "page.h"
+
+namespace kaboum::tools {
+namespace {
+
+const std::map<std::string, plan::Algorithm> kAlgorithms = {
+    {"dfs", plan::Algorithm::DepthFirst},
+    {"bfs", plan::Algorithm::BreadthFirst},
+    {"ids", plan::Algorithm::IterativeDeepening},
+    {"greedy", plan::Algorithm::Greedy},
+    {"astar", plan::Algorithm::AStar}};
+
+Json statistics_json(const plan::Statistics& s) {
+  Json j = {
+      {"states_expanded", s.expanded},
+      {"states_generated", s.generated},
+      {"states_kept", s.states},
+      {"search_bytes", s.state_bytes},
+      {"bytes_per_state",
+       s.states == 0 ? 0.0 : static_cast<double>(s.state_bytes) / static_cast<double>(s.states)},
+      {"ground_actions", s.ground_actions},
+      {"external_calls", s.external_calls},
+      {"external_s", s.external_seconds},
+      {"searches", s.searches},
+      {"dead_ends", s.dead_ends},
+      {"subplans_reused", s.reused},
+      {"depth", s.depth}};
+  if (s.initial_estimate >= 0) j["initial_estimate"] = s.initial_estimate;
+  return j;
+}
+
+Json size_json(const plan::PlanSize& s) {
+  return {{"nodes", s.nodes},   {"branches", s.branches},    {"actions_in_tree", s.tree_actions},
+          {"leaves", s.leaves}, {"longest_path", s.longest}, {"cost", s.cost}};
+}
+
+Json geometry_json(const manipulation::GeometryCounters& c) {
+  return {{"ik_calls", c.ik_calls}, {"ik_s", c.ik_seconds},
+          {"paths", c.paths},       {"predicate_calls", c.predicate_calls},
+          {"positive", c.positive}, {"path_s", c.path_seconds}};
+}
+
+/// What the report calls an outcome, what is said of it where there is no plan, and its exit code.
+struct Verdict {
+  const char* status;
+  std::string sentence;
+  int code;
+};
+
+Verdict verdict(const plan::Solution& s) {
+  switch (s.outcome) {
+    case plan::Outcome::Solved:
+      return {"solved", "", kDone};
+    case plan::Outcome::Unsolvable:
+      return {"unsolvable",
+              s.refused.empty() ? "unsolvable: every possibility was tried"
+                                : "unsolvable with what external functions answer: " + s.refused,
+              kNo};
+    case plan::Outcome::NotInferred:
+      return {"not inferred",
+              "no plan with what the knowledge state can infer; it is not proved that there is "
+              "none: " +
+                  s.lost,
+              kNotInferred};
+    case plan::Outcome::Limit:
+      break;
+  }
+  return {"limit", "no plan found: " + s.limit, kLimit};
+}
+
+/// @throws Error{InvalidArgument} for an extension that names none of them.
+std::string drawing_format(const PlanOptions& o) {
+  if (!o.output_format.empty()) return o.output_format;
+  const std::string extension = std::filesystem::path(o.output).extension().string();
+  if (extension == ".svg") return "svg";
+  if (extension == ".dot" || extension == ".gv") return "dot";
+  if (extension.empty() || extension == ".txt") return "text";
+  throw Error(ErrorCode::InvalidArgument,
+              o.output +
+                  ": plans are drawn as .svg, .dot, .gv or .txt; give such a name, or "
+                  "--output-format");
+}
+
+}  // namespace
+
+int solve(const PlanOptions& o) {
+  const auto start = std::chrono::steady_clock::now();
+  ExternalWatch watch;
+  const plan::Model model = load_model(o, &watch);
+  plan::SolveOptions options;
+  options.algorithm = kAlgorithms.at(o.search);
+  options.timeout = o.timeout;
+  options.seed = o.common.seed;
+  options.max_memory = parse_memory(o.max_memory);
+  if (!o.assume.empty()) options.assumed = read_outcomes(o.assume);
+  Progress progress(o.common.quiet);
+  options.progress = [&](const plan::Statistics& s) {
+    progress.show(std::to_string(s.expanded) + " states expanded, depth " +
+                  std::to_string(s.depth) + ", " + std::to_string(s.state_bytes >> 20U) + " MiB");
+  };
+  const double loaded = user_seconds();
+  const plan::Solution solution = plan::solve(model, options);
+  const double solved = user_seconds();
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Verdict said = verdict(solution);
+  Json report = {{"command", "solve"},
+                 {"domain", o.domain},
+                 {"problem", o.problem},
+                 {"search", o.search},
+                 {"assumed", options.assumed},
+                 {"status", said.status},
+                 {"limit", solution.limit},
+                 {"lost", solution.lost},
+                 {"refused", solution.refused},
+                 {"scene", o.scene},
+                 {"statistics", statistics_json(solution.statistics)}};
+  watch.save();
+  if (!o.scene.empty()) {
+    report["geometry"] = geometry_json(*o.counters);
+    report["geometry"]["answers_reused"] = watch.cache ? watch.cache->reused() : 0;
+  }
+  if (o.explain) {
+    report["explanation"] = watch.explanation.json();
+    std::cerr << watch.explanation.text();
+  }
+  plan::PlanSize size;
+  std::string text;
+  if (solution.outcome == plan::Outcome::Solved) {
+    size = plan::measure(model, solution.plan);
+    report["plan"] = size_json(size);
+    const plan::Plan& graph = solution.plan;
+    text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
+  }
+  report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
+  write_together(
+      {{o.common.report, [&] { write_report(o.common, "kaboum-plan", report); }},
+       {text.empty() ? std::string() : o.output, [&] { io::write_file(o.output, text); }}});
+  if (solution.outcome == plan::Outcome::Solved) {
+    const std::size_t n = options.assumed.size();
+    log(o.common.quiet, (n == 0 ? "solved: "
+                                : "solved under " + std::to_string(n) +
+                                      (n == 1 ? " assumption: " : " assumptions: ")) +
+                            std::to_string(size.nodes) + " nodes, " + std::to_string(size.leaves) +
+                            " leaves, longest path " + std::to_string(size.longest) + " actions");
+    return kDone;
+  }
+  std::cerr << "kaboum-plan: " << said.sentence << '\n';
+  return said.code;
+}
+
+int check(const PlanOptions& o) {
+  const plan::Model model = load_model(o);
+  const plan::Plan p = read_plan_file(model, o.plan);
+  const plan::CheckResult r = plan::check(model, p);
+  write_report(o.common, "kaboum-plan",
+               {{"command", "check"},
+                {"valid", r.valid},
+                {"violation", r.violation},
+                {"states_replayed", r.states},
+                {"ends_replayed", r.leaves},
+                {"plan", size_json(plan::measure(model, p))}});
+  if (!r.valid) {
+    std::cout << "invalid: " << r.violation << '\n';
+    return kNo;
+  }
+  if (!o.common.quiet)
+    std::cout << "valid: every end meets the goal; " << r.states << " states replayed, " << r.leaves
+              << (r.leaves == 1 ? " distinct end\n" : " distinct ends\n");
+  return kDone;
+}
+
+int show(const PlanOptions& o) {
+  if (!o.html.empty()) return write_page(o);
+  const std::string format = drawing_format(o);
+  const plan::Model model = load_model(o);
+  plan::Plan p = read_plan_file(model, o.plan);
+  if (o.tree) p = plan::expand_tree(p);
+  io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
+                           : format == "svg" ? plan::plan_svg(model, p)
+                                             : plan::plan_text(model, p));
+  return kDone;
+}
+
+int convert(const PlanOptions& o) {
+  const PlanTexts texts = read_texts(o);
+  const plan::Language to = language_of(o.output, o.output_format, "--output-format");
+  io::write_file(o.output, plan::convert(texts.domain, texts.second(), to));
+  return kDone;
+}
+
+}  // namespace kaboum::tools

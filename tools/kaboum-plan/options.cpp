@@ -1,0 +1,137 @@
+// The options of kaboum-plan, by command.
+
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace kaboum::tools {
+
+void add_inputs(CLI::App& app, PlanOptions& o) {
+  app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl), or - for stdin")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--input-format", o.input_format,
+                 "Language of DOMAIN (and PROBLEM) [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl"}))
+      ->type_name("NAME");
+  app.add_option("--problem-format", o.problem_format, "Language of PROBLEM [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl"}))
+      ->type_name("NAME");
+}
+
+void add_problem(CLI::App& app, PlanOptions& o) {
+  app.add_option("PROBLEM", o.problem, "Problem file, if the domain file does not hold it")
+      ->type_name("FILE");
+}
+
+CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
+  app.add_option("--process", o.processes,
+                 "A command whose program answers external functions by JSON lines "
+                 "(docs/planning/externals.md); may be repeated")
+      ->type_name("COMMAND");
+  app.add_option("--process-timeout", o.process_timeout,
+                 "Longest time for one answer of a program or plug-in, and for its start")
+      ->check(number_from(1e-3, 1e6))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--plugin", o.plugins, "A shared library with external functions; may be repeated")
+      ->type_name("FILE");
+  return app
+      .add_option("--scene", o.scene,
+                  "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
+                  "release, move, inside and collides [externals are tables]")
+      ->type_name("FILE");
+}
+
+CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* s = app.add_subcommand("solve", "Find a plan");
+  add_inputs(*s, o);
+  add_problem(*s, o);
+  add_scene(*s, o);
+  s->add_option(
+       "--search", o.search,
+       "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
+       "sensing, the last three minimise parts, not the whole")
+      ->check(CLI::IsMember({"dfs", "bfs", "ids", "greedy", "astar"}))
+      ->capture_default_str()
+      ->type_name("NAME");
+  s->add_option("-o,--output", o.output, "The plan (JSON); - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  s->add_flag("--tree", o.tree, "Write the plan as a tree, without shared sub-plans");
+  s->add_option("--assume", o.assume,
+                "Outcomes of sensing that the plan needs branches for alone, a JSON file "
+                "{\"isSpillable(o1)\": false, ...}: where one is wrong, run plans again")
+      ->type_name("FILE");
+  s->add_flag("--explain", o.explain,
+              "Say which calls of external functions returned no value, how often, and why");
+  s->add_flag("--no-cache", o.no_cache,
+              "Ask a scene's functions anew, and keep nothing for the next run ($KABOUM_CACHE)");
+  s->add_option("--timeout", o.timeout, "Give up after this many seconds [never]")
+      ->check([](const std::string& text) {
+        double seconds = 0;
+        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
+        return good ? std::string() : "expected a number of seconds above 0, not " + text;
+      })
+      ->type_name("S");
+  s->add_option("--max-memory", o.max_memory,
+                "Give up when grounding and search hold this much, e.g. 500M or 2G [no limit]")
+      ->type_name("SIZE");
+  add_common_options(*s, o.common);
+  return s;
+}
+
+CLI::App* add_check_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* c =
+      app.add_subcommand("check", "Replay every branch of a plan, independently of the planner");
+  add_inputs(*c, o);
+  add_problem(*c, o);
+  add_scene(*c, o);
+  c->add_option("--plan", o.plan, "The plan to check, or -")->required()->type_name("FILE");
+  add_common_options(*c, o.common);
+  return c;
+}
+
+CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* w = app.add_subcommand("show", "Print or draw a plan");
+  add_inputs(*w, o);
+  add_problem(*w, o);
+  add_scene(*w, o);
+  w->add_option("--plan", o.plan, "The plan to show, or -")->required()->type_name("FILE");
+  w->add_option("-o,--output", o.output, "Where to; - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  w->add_option("--output-format", o.output_format,
+                "text, dot or svg [by extension: .dot, .gv, .svg, .txt; text without one]")
+      ->check(CLI::IsMember({"text", "dot", "svg"}))
+      ->type_name("NAME");
+  w->add_flag("--tree", o.tree, "Expand shared sub-plans");
+  w->add_option("--html", o.html,
+                "Instead: one page that plays the plan's execution in the scene of --scene, every "
+                "branch, for a browser; no network is needed")
+      ->excludes("--output-format")
+      ->excludes("--output")
+      ->type_name("FILE");
+  w->add_option("--package-path", o.packages,
+                "With --html: a package of package:// or a folder that holds it; may be repeated")
+      ->type_name("DIR");
+  add_common_options(*w, o.common);
+  return w;
+}
+
+CLI::App* add_convert_command(CLI::App& app, PlanOptions& o) {
+  CLI::App* v =
+      app.add_subcommand("convert", "Translate a domain (and problem) between kpl and PDDL");
+  add_inputs(*v, o);
+  add_problem(*v, o);
+  v->add_option("-o,--output", o.output, "Where to; - is stdout")
+      ->capture_default_str()
+      ->type_name("FILE");
+  v->add_option("--output-format", o.output_format, "kpl or pddl [by extension]")
+      ->check(CLI::IsMember({"kpl", "pddl"}))
+      ->type_name("NAME");
+  add_common_options(*v, o.common);
+  return v;
+}
+
+}  // namespace kaboum::tools

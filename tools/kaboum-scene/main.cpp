@@ -1,0 +1,124 @@
+// The program kaboum-scene: makes scenes, brings them up to date, and finds pairs that never
+// touch.
+
+#include <kaboum/base/error.h>
+#include <kaboum/scene/scene_update.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "names.h"
+#include "options.h"
+#include "pairs.h"
+
+namespace {
+
+using namespace kaboum;  // the tool's own names are few
+
+const std::map<std::string, bcd::Effort> kEfforts{
+    {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
+
+std::vector<scene::NamedFile> named_files(const std::vector<std::string>& texts,
+                                          const char* option) {
+  std::vector<scene::NamedFile> out;
+  out.reserve(texts.size());
+  for (const std::string& text : texts) out.push_back(tools::parse_named_file(text, option));
+  return out;
+}
+
+/// Of a mesh, by its extension. @throws Error saying what to do with others
+io::Format format_of(const std::string& file) {
+  return tools::format_for(file, "", "--input-format");
+}
+
+/// @return the exit code
+int say_made(const tools::SceneOptions& o, const scene::MadeScene& made, const std::string& what,
+             const char* command) {
+  for (const std::string& line : made.notes) tools::log(o.common.quiet, line);
+  for (const std::string& size : made.sizes) tools::log(o.common.quiet, size);
+  tools::log(o.common.quiet, what);
+  for (const std::string& link : made.bad_links) tools::log(false, link);
+  tools::write_report(o.common, "kaboum-scene",
+                      {{"command", command},
+                       {"scene", o.scene},
+                       {"sets", made.containers.size()},
+                       {"inputs", made.inputs},
+                       {"bad_links", made.bad_links},
+                       {"notes", made.notes}});
+  return made.bad_links.empty() ? tools::kDone : tools::kNo;
+}
+
+int make_scene(const tools::SceneOptions& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  scene::SceneMaker maker;
+  maker.scene = o.scene;
+  maker.robots = named_files(o.robots, "--robot");
+  maker.objects = named_files(o.objects, "--object");
+  maker.regions = named_files(o.regions, "--region");
+  maker.places = tools::parse_places(o.places, "--at");
+  maker.scales = tools::parse_scales(o.scales, "--scale");
+  std::vector<std::string> inputs;
+  for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
+    for (const scene::NamedFile& file : *files) inputs.push_back(file.file);
+  maker.replace = o.force;
+  scene::require_free_place(o.scene, o.force);
+  tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
+  maker.inner = o.inner;
+  if (o.inner_links) maker.options.inner_links.emplace();  // all
+  maker.options.visual = o.visual;
+  maker.options.sets.epsilon = tools::parse_length(o.epsilon);
+  maker.options.sets.effort = kEfforts.at(o.effort);
+  maker.options.sets.preparation.drop_sheets = o.drop_sheets;
+  maker.options.sets.unit = o.unit;
+  maker.options.packages = o.packages;
+  maker.options.format_of = format_of;
+  const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
+                                                : std::filesystem::path(o.cache));
+  if (!o.no_cache) maker.options.cache = &cache;
+  tools::Progress progress(o.common.quiet);
+  maker.options.progress = [&](const std::string& stage) { progress.show(stage); };
+  const scene::MadeScene made = scene::make_scene(maker);
+  return say_made(o, made,
+                  o.scene + ": " + std::to_string(made.containers.size()) + " sets" +
+                      (maker.places.size() < inputs.size()
+                           ? ", what --at does not name at the origin: put things where they belong"
+                           : ""),
+                  "make");
+}
+
+int update_scene(const tools::SceneOptions& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
+                                                : std::filesystem::path(o.cache));
+  tools::Progress progress(o.common.quiet);
+  const scene::MadeScene made =
+      scene::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
+                           [&](const std::string& stage) { progress.show(stage); }, format_of});
+  return say_made(
+      o, made,
+      o.scene + ": " +
+          (made.containers.empty() ? std::string("nothing is out of date")
+                                   : std::to_string(made.containers.size()) + " sets made anew"),
+      "update");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Makes scenes for kaboum-check and planners, and examines their robots.",
+               "kaboum-scene"};
+  tools::SceneOptions options;
+  CLI::App* make = tools::describe_make(app, options);
+  CLI::App* update = tools::describe_update(app, options);
+  tools::describe_pairs(app, options);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done; 1 a link of a robot is not held as asked for (the rest is written); 2 "
+      "usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
+      "7 limit.");
+  return tools::run(app, argc, argv, [&] {
+    if (make->parsed()) return make_scene(options);
+    return update->parsed() ? update_scene(options) : tools::find_pairs(options);
+  });
+}

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <kaboum/certify/link_verdict.h>
+#include <kaboum/certify/preparation_options.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "options.h"
+
+/// What is said with the verdict on a robot that was made: exit code, report, and the command that
+/// checks it from its files alone.
+namespace kaboum::tools {
+
+/// docs/exit-codes.md
+int exit_code(certify::Outcome outcome);
+
+/// Of a link, in reports.
+Json report_of(const certify::LinkVerdict& link);
+
+/// One line for each link that is not held, and one for all.
+void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerdict>& verdicts,
+                  bool quiet);
+
+/// A word as the shell reads it.
+std::string shell_word(const std::string& word);
+
+/// The command that decides it from the files alone, and what to expect of it.
+struct RobotCheck {
+  std::string command;
+  /// The exit code: 0 where every link is held; 1 where one is not.
+  bool passes = true;
+};
+
+/// @param original, result  URDFs
+/// @param epsilon  that is to be decided as well
+RobotCheck check_of(const std::string& original, const std::string& result,
+                    const RobotOptions& options, const certify::PreparationOptions& preparation,
+                    const std::optional<Length>& epsilon,
+                    const std::vector<certify::LinkVerdict>& verdicts);
+
+}  // namespace kaboum::tools

@@ -1,0 +1,81 @@
+// What sweep-approx shows on pages.
+
+#include "preview.h"
+
+#include <kaboum/robot/exact_shapes.h>
+
+#include <filesystem>
+#include <map>
+
+#include "player/gaps.h"
+#include "swept_link.h"
+
+namespace kaboum::tools {
+namespace {
+
+using page::Layer;
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+std::string verdict_of(certify::MotionClaim claim) {
+  switch (claim) {
+    case certify::MotionClaim::None:
+      return "NOT certified: --bound baginski is not proved";
+    case certify::MotionClaim::Proved:
+      return "at every instant of the path the robot lies in the bodies: by the proof of the "
+             "steps; "
+             "bound-verify sweep decides it from the files alone";
+    case certify::MotionClaim::Decided:
+      break;
+  }
+  return "at every instant of the path the robot lies in the bodies: decided exactly";
+}
+
+}  // namespace
+
+std::string page_of_sweep(const SweepWords& words, const robot::RobotFile& robot,
+                          const certify::CertifiedBodies& bodies, const robot::Path& path,
+                          const certify::CertifiedSweep& swept) {
+  const robot::ShapeChoice& choice = bodies.certificate().choice;
+  const geom::ConvexSet& set = swept.artefact();
+  const certify::SweepCertificate& c = swept.certificate();
+  page::Preview preview{"Swept by " + file_name(words.robot), set.provenance.unit};
+  preview.meaning = "distance of the bodies from what their link's shapes sweep";
+  Layer input{"robot", Layer::View::Shown, false};
+  Layer result{"swept bodies", Layer::View::Transparent};
+  result.bodies = true;
+  std::map<std::uint32_t, SweptLink> links;
+  std::vector<page::DistanceOf> distances;
+  for (const std::size_t source : c.sources) {
+    const std::uint32_t index = bodies.artefact()[source].link;
+    auto found = links.find(index);
+    if (found == links.end()) {
+      geom::Mesh exact =
+          robot::exact_shapes(choice.shapes_of(robot.robot.links[index]), robot, choice.packages);
+      found = links.try_emplace(index, robot.robot, path, index, exact).first;
+      input.shapes.push_back({std::move(exact), {}, index});
+    }
+    distances.emplace_back(
+        [&link = found->second](const geom::Vec3& p) { return link.distance(p); });
+  }
+  geom::Box3 box;
+  for (const geom::ConvexBody& body : set.bodies) box.extend(geom::bounding_box(body.hull));
+  result.shapes = page::measured(set.bodies, box.diagonal(), distances);
+  preview.facts = {{"robot", file_name(words.robot)},
+                   {"path", file_name(words.path) + ", " + std::to_string(path.size()) +
+                                (path.size() == 1 ? " waypoint" : " waypoints")},
+                   {"options", set.provenance.parameters},
+                   {"result", words.summary},
+                   {"verdict", verdict_of(c.motion)}};
+  if (set.margin > 0)
+    preview.facts.emplace_back("margin",
+                               "the bodies are drawn without their margin, which is to be "
+                               "added to every one of them");
+  preview.layers = {std::move(input), std::move(result)};
+  preview.motion.emplace(page::Motion{robot.robot, path});
+  return page::preview_page(preview);
+}
+
+}  // namespace kaboum::tools
