@@ -1,7 +1,9 @@
 // Search: proofs of unsolvability, limits, dead ends, n-way branches, optimality on random tasks.
 #include <random>
 
+#include "goal_target.h"
 #include "plan_test.h"
+#include "search/engine.h"
 
 namespace kaboum::plan::test {
 namespace {
@@ -47,6 +49,63 @@ TEST(Search, PreconditionsMayHaveThousandsOfConjuncts) {
     EXPECT_EQ(s.plan.nodes.size(), 3U);
     EXPECT_EQ(solve(task("on(a)"), {a, 0, 0, {}}).outcome, Outcome::Unsolvable);
   }
+}
+
+/// Says the same of each state.
+struct Constant : Evaluator {
+  Constant(std::uint64_t value, bool dead_end, bool safe)
+      : estimate{value, dead_end, 1}, safe(safe) {}
+  Estimate evaluate(const Word*) override { return estimate; }
+  [[nodiscard]] bool is_safe() const override { return safe; }
+  Estimate estimate;
+  bool safe;
+};
+
+/// A guess that is wrong and no proof, a guess that tells nothing, and a wrong "proof".
+std::unique_ptr<Evaluator> pessimist(Task&, Limits&, Heuristics&) {
+  return std::make_unique<Constant>(0, true, false);
+}
+std::unique_ptr<Evaluator> ignorant(Task&, Limits&, Heuristics&) {
+  return std::make_unique<Constant>(7, false, true);
+}
+std::unique_ptr<Evaluator> liar(Task&, Limits&, Heuristics&) {
+  return std::make_unique<Constant>(0, true, true);
+}
+
+/// How greedy search with these evaluators ends; its plan is tried.
+Outcome greedy_with(const Model& model, std::vector<EvaluatorMaker*> evaluators) {
+  const SolveOptions options;
+  Statistics statistics;
+  Limits limits(options, statistics);
+  Task task(model, limits);
+  Heuristics heuristics;
+  GoalTarget target(task);
+  const std::vector<Word>& start = task.initial();
+  const SearchInput in{task, start, target, limits, statistics, heuristics};
+  const SearchResult result =
+      greedy_engine(in, evaluators, 1'000'000)->advance(std::uint64_t{1} << 60U, 0).value();
+  if (result.outcome != Outcome::Solved) return result.outcome;
+  Knowledge state(task.layout());
+  state.assign(start.data());
+  for (const OperatorId step : result.steps) {
+    EXPECT_TRUE(task.evaluator().holds(task.action(step).precondition, state.words()));
+    EXPECT_TRUE(task.apply(step, state));
+  }
+  EXPECT_TRUE(target.reached(state.words()));
+  return result.outcome;
+}
+
+TEST(Search, GreedyTakesAnyListOfEvaluators) {
+  const Model model = scenario("stacked", "4");
+  using List = std::vector<EvaluatorMaker*>;
+  for (const List& list :
+       {List{relaxed_plan_steps}, List{landmark_steps}, List{landmark_cost},
+        List{landmark_steps, relaxed_plan_steps, landmark_cost}, List{relaxed_plan_steps, ignorant},
+        List{ignorant}, List{pessimist}, List{pessimist, relaxed_plan_steps, pessimist}})
+    EXPECT_EQ(greedy_with(model, list), Outcome::Solved) << list.size();
+  // Only what is called a proof ends a search.
+  EXPECT_EQ(greedy_with(model, {liar}), Outcome::Unsolvable);
+  EXPECT_EQ(greedy_with(model, {relaxed_plan_steps, liar}), Outcome::Unsolvable);
 }
 
 TEST(Search, SensingThatDoesNotHelpIsNoPlan) {

@@ -1,38 +1,45 @@
-// A* with the landmark heuristic; states are reopened, so the plan is of least cost (without
-// sensing). The estimate: docs/planning/search.md, "Landmark events".
+// A* with an admissible evaluator, the landmark heuristic; states are reopened, so the plan is of
+// least cost (without sensing). The estimate: docs/planning/search.md, "Landmark events".
+#include <kaboum/base/error.h>
+
 #include <algorithm>
 #include <queue>
 #include <tuple>
 
-#include "search/landmarks.h"
+#include "search/evaluator.h"
 #include "search/search.h"
 #include "search/state_store.h"
 
 namespace kaboum::plan {
 namespace {
 
+/// Of a state that the evaluator, which is safe, calls a dead end.
 constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};
 
 class AStarSearch {
  public:
-  explicit AStarSearch(const SearchInput& in)
+  /// @param evaluator  safe and admissible.
+  AStarSearch(const SearchInput& in, Evaluator& evaluator)
       : in_(in),
-        heuristic_(in.heuristics.landmark(in.task, in.limits)),
+        evaluator_(evaluator),
         words_(in.task.layout().words()),
         store_(words_),
-        scratch_(in.task.layout()) {}
+        scratch_(in.task.layout()) {
+    ensure(evaluator.is_safe() && evaluator.is_admissible(), "A* needs lower bounds");
+  }
 
   SearchResult run() {
     // A target may hold in states that are no goal states of the task (a known sub-plan): the
     // estimate only speaks of the goal, so it guides there but proves nothing. Without sensing both
     // are the same.
     store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
-    const auto start = heuristic_.evaluate(in_.start.data());
+    const std::uint64_t start = estimate(in_.start.data());
+    const bool dead = start == kDeadEnd;
     if (in_.statistics.searches == 1)
-      in_.statistics.initial_estimate = start ? static_cast<std::int64_t>(*start) : -1;
-    if (!start) return finish(Outcome::Unsolvable);
-    info_[0].h = *start;
-    open_.push({*start, *start, order_++, 0, 0});
+      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(start);
+    if (dead) return finish(Outcome::Unsolvable);
+    info_[0].h = start;
+    open_.push({start, start, order_++, 0, 0});
     while (!open_.empty()) {
       if (in_.limits.check(bytes())) return finish(Outcome::Limit);
       const Open top = open_.top();
@@ -62,6 +69,11 @@ class AStarSearch {
     std::uint64_t h = 0;
   };
 
+  std::uint64_t estimate(const Word* state) {
+    const Estimate e = evaluator_.evaluate(state);
+    return e.dead_end ? kDeadEnd : e.value;
+  }
+
   void expand(const Open& top) {
     in_.task.expand(store_[top.state], steps_);
     ++in_.statistics.expanded;
@@ -81,8 +93,7 @@ class AStarSearch {
     const auto [number, fresh] = store_.insert(scratch_.words(), scratch_.hash(), top.state, step);
     const std::uint64_t g = top.g + cost;
     if (fresh) {
-      const auto h = heuristic_.evaluate(scratch_.words());
-      info_.push_back({g, h ? *h : kDeadEnd});
+      info_.push_back({g, estimate(scratch_.words())});
     } else {
       if (g >= info_[number].g) return;
       info_[number].g = g;
@@ -107,7 +118,7 @@ class AStarSearch {
   }
 
   const SearchInput& in_;
-  LandmarkHeuristic& heuristic_;
+  Evaluator& evaluator_;
   Index words_;
   StateStore store_;
   Knowledge scratch_;
@@ -121,6 +132,9 @@ class AStarSearch {
 
 }  // namespace
 
-SearchResult a_star(const SearchInput& in) { return AStarSearch(in).run(); }
+SearchResult a_star(const SearchInput& in) {
+  const auto evaluator = landmark_cost(in.task, in.limits, in.heuristics);
+  return AStarSearch(in, *evaluator).run();
+}
 
 }  // namespace kaboum::plan

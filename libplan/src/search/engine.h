@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
+#include "search/evaluator.h"
 #include "search/search.h"
 
 namespace kaboum::plan {
@@ -25,9 +27,12 @@ class Engine {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
-/// Greedy best-first search with relaxed plans and landmark events (greedy_search.cpp).
-/// @param most_expanded  states, before it gives up.
-std::unique_ptr<Engine> greedy_engine(const SearchInput& in, std::uint64_t most_expanded);
+/// Greedy best-first search (greedy_search.cpp).
+/// @param evaluators     which take turns; the first also tells when to look ahead, and where
+/// @param most_expanded  states, before it gives up
+std::unique_ptr<Engine> greedy_engine(const SearchInput& in,
+                                      std::span<EvaluatorMaker* const> evaluators,
+                                      std::uint64_t most_expanded);
 
 /// Best-first width search (width_search.cpp).
 /// @pre without sensing and external functions.

@@ -1,9 +1,8 @@
-// Greedy best-first search with two estimates, each with a queue of all states and one of those
-// that preferred operators lead to; preferred queues are boosted on progress, and estimates
-// deferred to expansion [helmert2006fd]. The relaxed plan guides where deletions do
-// little harm, the landmark events where they do. Both count steps, whatever these cost. Without
-// sensing and external functions, states too are made when their turn comes, and what a relaxed
-// plan makes of a state comes next [vidal2004yahsp].
+// Greedy best-first search with several evaluators, each with a queue of all states and one of
+// those that preferred operators lead to; preferred queues are boosted on progress, and estimates
+// deferred to expansion [helmert2006fd]. Without sensing and external functions, states too are
+// made when their turn comes, and what a relaxed plan makes of a state comes next
+// [vidal2004yahsp].
 #include <kaboum/base/error.h>
 
 #include <algorithm>
@@ -15,9 +14,8 @@
 #include "search/applicable_steps.h"
 #include "search/difference_store.h"
 #include "search/engine.h"
-#include "search/landmarks.h"
+#include "search/evaluator.h"
 #include "search/queues.h"
-#include "search/relaxed_plan.h"
 
 namespace kaboum::plan {
 namespace {
@@ -25,40 +23,41 @@ namespace {
 /// Items of queues: states, or with this steps that are not taken yet.
 constexpr Index kStep = Index{1} << 31U;
 
-constexpr std::size_t kRelaxed = 0, kRelaxedPreferred = 1, kEvents = 2, kEventsPreferred = 3;
-
-constexpr std::uint64_t kPerState = 5'000, kPerEvent = 1'500;  // work, besides that of engine.h
+constexpr std::uint64_t kPerState = 5'000;  // work, besides that of engine.h
 
 /// States that are expanded before a search looks ahead, which makes plans longer and uses up what
 /// cannot be replaced: fewer where each takes long.
-std::uint64_t patience(const RelaxedPlan& relaxed) {
+std::uint64_t patience(const Evaluator& guide) {
   constexpr std::uint64_t kEdges = 60'000'000;
-  return std::clamp<std::uint64_t>(kEdges / (relaxed.size() + 1), 500, 3'000);
+  return std::clamp<std::uint64_t>(kEdges / (guide.size() + 1), 500, 3'000);
 }
 
 /// States that may be expanded in all, as far as progress so far tells, for a search to go on
 /// without.
-std::uint64_t most_steady(const RelaxedPlan& relaxed) {
+std::uint64_t most_steady(const Evaluator& guide) {
   constexpr std::uint64_t kEdges = 1'000'000'000;
-  return kEdges / (relaxed.size() + 1);
+  return kEdges / (guide.size() + 1);
 }
 
 class GreedySearch final : public Engine {
  public:
   /// @param most_expanded  states, before it gives up.
-  GreedySearch(const SearchInput& in, std::uint64_t most_expanded)
+  GreedySearch(const SearchInput& in, std::span<EvaluatorMaker* const> evaluators,
+               std::uint64_t most_expanded)
       : in_(in),
         most_expanded_(in.statistics.expanded + most_expanded),
-        relaxed_(in.heuristics.relaxed(in.task, in.limits)),
-        landmarks_(in.heuristics.landmark(in.task, in.limits)),
+        evaluators_(made(in, evaluators)),
         calls_(!in.task.model().external_functions.empty()),
         at_once_(calls_ || in.task.layout().sensing()),
-        patience_(patience(relaxed_)),
-        most_steady_(most_steady(relaxed_)),
+        patience_(patience(*evaluators_[0])),
+        most_steady_(most_steady(*evaluators_[0])),
         store_(in.start.data(), in.task.layout().words()),
-        scratch_(in.task.layout()) {
+        scratch_(in.task.layout()),
+        open_(2 * evaluators_.size()),
+        best_(evaluators_.size(), kFar),
+        used_(evaluators_.size(), 1) {
     scratch_.keep_log(true);
-    open_.push(kRelaxed, 0, 0);
+    open_.push(queue_of(0, false), 0, 0);
   }
 
   std::optional<SearchResult> advance(std::uint64_t work, std::size_t besides) override {
@@ -80,19 +79,11 @@ class GreedySearch final : public Engine {
   }
 
   [[nodiscard]] std::size_t bytes() const override {
-    return store_.bytes() + open_.bytes() + infos_.size() * sizeof(Info) +
+    return store_.bytes() + open_.bytes() + values_.size() * sizeof(std::uint32_t) +
            waiting_.size() * sizeof(Waiting);
   }
 
  private:
-  struct Estimates {
-    std::uint32_t relaxed = 0;
-    std::uint32_t events = 0;
-  };
-  struct Info {
-    Estimates estimates;  ///< once expanded
-    bool expanded = false;
-  };
   static constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 
   /// A step from a state that is made, and whose external functions are asked, when its turn comes:
@@ -109,23 +100,40 @@ class GreedySearch final : public Engine {
     bool reached = false;
   };
 
+  static std::vector<std::unique_ptr<Evaluator>> made(const SearchInput& in,
+                                                      std::span<EvaluatorMaker* const> makers) {
+    std::vector<std::unique_ptr<Evaluator>> evaluators;
+    for (EvaluatorMaker* make : makers)
+      evaluators.push_back(make(in.task, in.limits, in.heuristics));
+    ensure(!evaluators.empty(), "greedy search needs an evaluator");
+    return evaluators;
+  }
+
+  /// Of an evaluator: the queue of all states, or that of those that preferred steps lead to.
+  static std::size_t queue_of(std::size_t evaluator, bool preferred) {
+    return 2 * evaluator + (preferred ? 1 : 0);
+  }
+  /// What an evaluator said of a state; kFar of the first one: it was not expanded.
+  [[nodiscard]] std::uint32_t& value(Index state, std::size_t evaluator) {
+    return values_[state * evaluators_.size() + evaluator];
+  }
+
   /// Expands the state and, as long as that leads nearer, where its relaxed plan leads.
   /// @return how the search ends, if it does.
   std::optional<Outcome> follow(Index state) {
     ahead_ = looks_ahead();
     for (std::uint32_t nearest = kFar; state != kNone;) {
-      if (state >= infos_.size()) infos_.resize(store_.size());
-      if (infos_[state].expanded) break;
-      infos_[state].expanded = true;
+      if (state * evaluators_.size() >= values_.size())
+        values_.resize(store_.size() * evaluators_.size(), kFar);
+      if (value(state, 0) != kFar) break;
+      value(state, 0) = 0;
       if (in_.limits.check(held()) || in_.statistics.expanded >= most_expanded_)
         return Outcome::Limit;
-      const std::optional<Estimates> e = evaluate(state);
-      if (!e) break;
-      note_progress(*e);
-      infos_[state].estimates = *e;
+      if (!evaluate(state)) break;
+      note_progress(state);
       if (expand(state)) return Outcome::Solved;
-      if (!ahead_ || e->relaxed >= nearest) break;
-      nearest = e->relaxed;
+      if (!ahead_ || value(state, 0) >= nearest) break;
+      nearest = value(state, 0);
       const Expansion ahead = look_ahead(state);
       if (ahead.reached) return Outcome::Solved;
       state = ahead.state;
@@ -133,23 +141,24 @@ class GreedySearch final : public Engine {
     return std::nullopt;
   }
 
-  /// Whether to look ahead from the next state, where that takes no calls: once the relaxed
-  /// estimate did not fall steadily.
+  /// Whether to look ahead from the next state, where that takes no calls: once the first estimate
+  /// did not fall steadily.
   [[nodiscard]] bool looks_ahead() {
     if (at_once_ || expanded_ < patience_) return false;
     impatient_ = impatient_ || !steady();
     return impatient_;
   }
 
-  /// Whether the relaxed estimate falls so fast that the goal is not far.
+  /// Whether the first estimate falls so fast that the goal is not far.
   [[nodiscard]] bool steady() const {
-    const std::uint64_t fallen = first_ - best_.relaxed;
+    const std::uint64_t fallen = first_ - best_[0];
     return expanded_ * first_ <= most_steady_ * fallen;
   }
 
-  /// Makes the steps of the relaxed plan of the state at hand, each once, while one is possible.
+  /// Makes the steps that the first evaluator outlines from the state at hand, each once, while one
+  /// is possible.
   Expansion look_ahead(Index state) {
-    std::vector<OperatorId> left = relaxed_.steps_in_order();
+    std::vector<OperatorId> left = evaluators_[0]->outline();
     Expansion at{state};
     const auto use = [&](OperatorId step) {
       if (at.reached || in_.task.is_outcome(step) ||
@@ -158,7 +167,7 @@ class GreedySearch final : public Engine {
       const Expansion next = make(at.state, step);
       if (next.state == kNone) return false;
       at = next;
-      if (at.fresh) push(at.state, infos_[state].estimates, false);
+      if (at.fresh) push(at.state, state, false);
       return true;
     };
     while (std::erase_if(left, use) > 0) {
@@ -177,7 +186,7 @@ class GreedySearch final : public Engine {
     for (const OperatorId outcome : outcomes_) {
       const Expansion taken = make(w.parent, outcome);
       if (taken.reached) return taken;
-      if (taken.fresh) push(taken.state, infos_[w.parent].estimates, w.preferred);
+      if (taken.fresh) push(taken.state, w.parent, w.preferred);
     }
     return {};
   }
@@ -200,42 +209,42 @@ class GreedySearch final : public Engine {
     return {number, true, true};
   }
 
-  /// nullopt: a dead end. Both estimates are safe: what they call one is one.
-  std::optional<Estimates> evaluate(Index state) {
-    const std::uint64_t relaxed = relaxed_.evaluate(store_.read(state));
-    work_ += kPerState + kPerEdge * relaxed_.walked();
-    const bool dead = relaxed == RelaxedPlan::kDeadEnd;
-    if (state == 0) first_ = dead ? 0 : std::min<std::uint64_t>(relaxed, kFar - 1);
-    if (state == 0 && in_.statistics.searches == 1)
-      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(relaxed);
-    if (dead) return std::nullopt;
-    Estimates e{static_cast<std::uint32_t>(std::min<std::uint64_t>(relaxed, kFar - 1)), 0};
-    if (!use_events_) return e;
-    const auto events = landmarks_.count(store_.read(state));
-    if (!events) return std::nullopt;
-    e.events = static_cast<std::uint32_t>(*events);
-    // Not worth it where events are so many that their orders take longer than all the rest.
-    const std::size_t count = landmarks_.events(), triples = count * count * (count / 64 + 1);
-    work_ += kPerEvent * count + triples;
-    use_events_ = triples < 200 * relaxed_.size() + 1'000'000;
-    return e;
+  /// @return false: a dead end.
+  bool evaluate(Index state) {
+    for (std::size_t i = 0; i < evaluators_.size(); ++i) {
+      if (used_[i] == 0) continue;
+      const Estimate e = evaluators_[i]->evaluate(store_.read(state));
+      work_ += e.work;
+      const std::uint64_t left = e.dead_end ? kFar : e.value;
+      if (i == 0 && state == 0) first_ = e.dead_end ? 0 : std::min<std::uint64_t>(left, kFar - 1);
+      if (i == 0 && state == 0 && in_.statistics.searches == 1)
+        in_.statistics.initial_estimate = e.dead_end ? -1 : static_cast<std::int64_t>(left);
+      if (e.dead_end && evaluators_[i]->is_safe()) return false;
+      value(state, i) = static_cast<std::uint32_t>(std::min<std::uint64_t>(left, kFar - 1));
+      // The first one says when to look ahead, too: it stays.
+      if (i > 0 && !evaluators_[i]->is_worthwhile()) used_[i] = 0;
+    }
+    return true;
   }
 
-  void note_progress(const Estimates& e) {
-    const bool relaxed = e.relaxed < best_.relaxed;
-    const bool events = use_events_ && e.events < best_.events;
-    if (relaxed || events) pause_ = work_ + turn_;
-    if (relaxed) best_.relaxed = e.relaxed;
-    if (events) best_.events = e.events;
-    // Progress of one estimate is for both, but where calls take longer than all else.
-    const bool both = !calls_ && (relaxed || events);
-    if (relaxed || both) open_.boost(kRelaxedPreferred);
-    if (events || both) open_.boost(kEventsPreferred);
+  void note_progress(Index state) {
+    bool any = false;
+    nearer_.assign(evaluators_.size(), 0);
+    for (std::size_t i = 0; i < evaluators_.size(); ++i) {
+      if (used_[i] == 0 || value(state, i) >= best_[i]) continue;
+      best_[i] = value(state, i);
+      nearer_[i] = 1;
+      any = true;
+    }
+    if (!any) return;
+    pause_ = work_ + turn_;
+    // Progress of one estimate is for all, but where calls take longer than all else.
+    for (std::size_t i = 0; i < evaluators_.size(); ++i)
+      if (!calls_ || nearer_[i] != 0) open_.boost(queue_of(i, true));
   }
 
   /// @return whether a successor reaches the target.
   bool expand(Index state) {
-    const std::vector<OperatorId> helpful = relaxed_.steps();
     if (in_.task.layout().sensing()) {
       in_.task.expand_unasked(store_.read(state), steps_);
     } else {
@@ -243,30 +252,33 @@ class GreedySearch final : public Engine {
     }
     ++expanded_;
     ++in_.statistics.expanded;
-    const ActionSet awaited = use_events_ && ahead_ ? landmarks_.achievers() : ActionSet();
-    const Estimates estimates = infos_[state].estimates;
-    for (const OperatorId step : steps_) {
-      const bool preferred = std::binary_search(helpful.begin(), helpful.end(), step) ||
-                             (!awaited.empty() && landmarks_.is_in(step, awaited));
+    // What others than the first prefer is for when it leads nowhere.
+    preferred_.assign(steps_.size(), 0);
+    for (std::size_t i = 0; i < (ahead_ ? evaluators_.size() : 1); ++i)
+      if (used_[i] != 0) evaluators_[i]->prefer(steps_, preferred_);
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const OperatorId step = steps_[k];
+      const bool preferred = preferred_[k] != 0;
       if (!at_once_ || in_.task.asks(step)) {
         ensure(waiting_.size() < kStep, "steps are numbered");
-        push(static_cast<Index>(waiting_.size()) | kStep, estimates, preferred);
+        push(static_cast<Index>(waiting_.size()) | kStep, state, preferred);
         waiting_.push_back({state, step, preferred});
         continue;
       }
       const Expansion taken = make(state, step);
       if (taken.reached) return true;
-      if (taken.fresh) push(taken.state, estimates, preferred);
+      if (taken.fresh) push(taken.state, state, preferred);
     }
     return false;
   }
 
-  void push(Index item, const Estimates& e, bool preferred) {
-    open_.push(kRelaxed, e.relaxed, item);
-    if (preferred) open_.push(kRelaxedPreferred, e.relaxed, item);
-    if (use_events_) {
-      open_.push(kEvents, e.events, item);
-      if (preferred) open_.push(kEventsPreferred, e.events, item);
+  /// @param like  the state whose estimates it takes until its turn comes.
+  void push(Index item, Index like, bool preferred) {
+    for (std::size_t i = 0; i < evaluators_.size(); ++i) {
+      if (used_[i] == 0) continue;
+      const std::uint32_t estimate = value(like, i);
+      open_.push(queue_of(i, false), estimate, item);
+      if (preferred) open_.push(queue_of(i, true), estimate, item);
     }
   }
 
@@ -284,33 +296,35 @@ class GreedySearch final : public Engine {
   std::uint64_t most_expanded_;
   std::uint64_t work_ = 0, pause_ = 0, turn_ = 0;
   std::size_t besides_ = 0;  ///< bytes that others hold
-  RelaxedPlan& relaxed_;
-  LandmarkHeuristic& landmarks_;
+  std::vector<std::unique_ptr<Evaluator>> evaluators_;
   bool calls_;    ///< external functions
   bool at_once_;  ///< steps are made when their state is expanded: it may be in a plan already
   std::uint64_t expanded_ = 0;  ///< states
   std::uint64_t patience_;
   std::uint64_t most_steady_;
-  std::uint64_t first_ = 0;  ///< the first state's relaxed estimate
+  std::uint64_t first_ = 0;  ///< the first state's first estimate
   bool impatient_ = false;
   bool ahead_ = false;  ///< it looks ahead from the state at hand
   DifferenceStore store_;
   Knowledge scratch_;
   Index scratch_of_ = kNone;  ///< the state that it was made of
-  Queues<4> open_;
+  Queues open_;
   // In chunks: memory is never held twice while they grow.
-  std::deque<Info> infos_;  ///< by state
+  std::deque<std::uint32_t> values_;  ///< by state and evaluator
   std::deque<Waiting> waiting_;
-  Estimates best_{kFar, kFar};
-  bool use_events_ = true;
+  std::vector<std::uint32_t> best_;  ///< by evaluator
+  std::vector<char> used_;           ///< by evaluator: it was worth its time so far
+  std::vector<char> nearer_, preferred_;
   std::vector<OperatorId> steps_, outcomes_;
   SearchResult found_;
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> greedy_engine(const SearchInput& in, std::uint64_t most_expanded) {
-  return std::make_unique<GreedySearch>(in, most_expanded);
+std::unique_ptr<Engine> greedy_engine(const SearchInput& in,
+                                      std::span<EvaluatorMaker* const> evaluators,
+                                      std::uint64_t most_expanded) {
+  return std::make_unique<GreedySearch>(in, evaluators, most_expanded);
 }
 
 }  // namespace kaboum::plan

@@ -21,7 +21,8 @@ SearchResult by_estimates(const SearchInput& in) {
   std::uint64_t most_expanded = kUnlimited;
   for (int round = 0; round < kRounds; ++round) {
     const std::uint64_t refused = in.task.refused(), expanded = in.statistics.expanded;
-    SearchResult found = greedy_engine(in, most_expanded)->advance(kUnlimited, 0).value();
+    SearchResult found =
+        greedy_engine(in, kGreedyEvaluators, most_expanded)->advance(kUnlimited, 0).value();
     if (round == 0 || (found.outcome == Outcome::Solved && found.steps.size() < best.steps.size()))
       best = std::move(found);
     if (best.outcome != Outcome::Solved || in.task.refused() == refused) break;
@@ -33,7 +34,7 @@ SearchResult by_estimates(const SearchInput& in) {
 }  // namespace
 
 SearchResult take_turns(const SearchInput& in, std::uint64_t first) {
-  const auto estimates = greedy_engine(in, kUnlimited);
+  const auto estimates = greedy_engine(in, kGreedyEvaluators, kUnlimited);
   std::unique_ptr<Engine> novelty;
   for (std::uint64_t work = first;; work *= 2) {
     if (auto found = estimates->advance(work, novelty ? novelty->bytes() : 0)) return *found;

@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
+
+#include "search/evaluator.h"
+#include "search/relaxed_plan.h"
+#include "search/search.h"
 
 namespace kaboum::plan {
 namespace {
@@ -266,6 +271,68 @@ bool LandmarkHeuristic::find_events(const Word* state) {
   for (Index i = 0; i < events_.size() && !dead_; ++i)
     if (!relate(i, state)) break;
   return !dead_;
+}
+
+namespace {
+
+constexpr std::uint64_t kPerEvent = 1'500;  // work
+
+/// How many steps are left at least, by events that cannot be one step.
+class LandmarkSteps final : public Evaluator {
+ public:
+  /// @param worth  work that pays off for each evaluation.
+  LandmarkSteps(LandmarkHeuristic& landmarks, std::uint64_t worth)
+      : landmarks_(landmarks), worth_(worth) {}
+
+  Estimate evaluate(const Word* state) override {
+    const auto steps = landmarks_.count(state);
+    if (!steps) return {0, true, 0};
+    return {*steps, false, kPerEvent * landmarks_.events() + triples()};
+  }
+  [[nodiscard]] bool is_safe() const override { return true; }
+  /// Not where events are so many that their orders take longer than all the rest.
+  [[nodiscard]] bool is_worthwhile() const override { return triples() < worth_; }
+
+  void prefer(std::span<const OperatorId> steps, std::vector<char>& marked) const override {
+    const ActionSet awaited = landmarks_.achievers();
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      if (landmarks_.is_in(steps[i], awaited)) marked[i] = 1;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t triples() const {
+    const std::uint64_t events = landmarks_.events();
+    return events * events * (events / 64 + 1);
+  }
+
+  LandmarkHeuristic& landmarks_;
+  std::uint64_t worth_;
+};
+
+class LandmarkCost final : public Evaluator {
+ public:
+  explicit LandmarkCost(LandmarkHeuristic& landmarks) : landmarks_(landmarks) {}
+
+  Estimate evaluate(const Word* state) override {
+    const auto cost = landmarks_.evaluate(state);
+    return {cost.value_or(0), !cost, 0};
+  }
+  [[nodiscard]] bool is_safe() const override { return true; }
+  [[nodiscard]] bool is_admissible() const override { return true; }
+
+ private:
+  LandmarkHeuristic& landmarks_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> landmark_steps(Task& task, Limits& limits, Heuristics& heuristics) {
+  const std::uint64_t worth = 200 * heuristics.relaxed(task, limits).size() + 1'000'000;
+  return std::make_unique<LandmarkSteps>(heuristics.landmark(task, limits), worth);
+}
+
+std::unique_ptr<Evaluator> landmark_cost(Task& task, Limits& limits, Heuristics& heuristics) {
+  return std::make_unique<LandmarkCost>(heuristics.landmark(task, limits));
 }
 
 }  // namespace kaboum::plan

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <vector>
 
 #include "task/numbering.h"
 
@@ -13,9 +13,10 @@ namespace kaboum::plan {
 
 /// Queues of numbers by estimate that take turns: the one that was served least comes next,
 /// counting boosts. Of one estimate, first come is first served.
-template <std::size_t Count>
 class Queues {
  public:
+  explicit Queues(std::size_t count) : queues_(count), served_(count) {}
+
   void push(std::size_t queue, std::uint64_t estimate, Index item) {
     queues_[queue][estimate].push_back(item);
     most_ = std::max(most_, ++size_);
@@ -23,9 +24,10 @@ class Queues {
   [[nodiscard]] bool empty() const { return size_ == 0; }
   /// @pre not empty.
   Index pop() {
-    std::size_t next = Count;
-    for (std::size_t q = 0; q < Count; ++q)
-      if (!queues_[q].empty() && (next == Count || served_[q] < served_[next])) next = q;
+    const std::size_t count = queues_.size();
+    std::size_t next = count;
+    for (std::size_t q = 0; q < count; ++q)
+      if (!queues_[q].empty() && (next == count || served_[q] < served_[next])) next = q;
     ++served_[next];
     --size_;
     const auto best = queues_[next].begin();
@@ -41,8 +43,8 @@ class Queues {
  private:
   static constexpr std::int64_t kBoost = 1000;  // turns, on progress
 
-  std::array<std::map<std::uint64_t, std::deque<Index>>, Count> queues_;
-  std::array<std::int64_t, Count> served_{};
+  std::vector<std::map<std::uint64_t, std::deque<Index>>> queues_;
+  std::vector<std::int64_t> served_;
   std::size_t size_ = 0;
   std::size_t most_ = 0;
 };

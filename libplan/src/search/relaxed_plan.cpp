@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+
+#include "search/engine.h"
+#include "search/evaluator.h"
 
 namespace kaboum::plan {
 namespace {
@@ -319,6 +323,38 @@ std::uint64_t RelaxedPlan::evaluate(const Word* state) {
   used_.clear();
   explore(state);
   return reached_ ? extract() : kDeadEnd;
+}
+
+namespace {
+
+constexpr std::uint64_t kPerState = 5'000;  // work, besides that of edges
+
+class RelaxedPlanSteps final : public Evaluator {
+ public:
+  explicit RelaxedPlanSteps(RelaxedPlan& plan) : plan_(plan) {}
+
+  Estimate evaluate(const Word* state) override {
+    const std::uint64_t steps = plan_.evaluate(state);
+    return {steps, steps == RelaxedPlan::kDeadEnd, kPerState + kPerEdge * plan_.walked()};
+  }
+  [[nodiscard]] std::size_t size() const override { return plan_.size(); }
+  [[nodiscard]] bool is_safe() const override { return true; }
+
+  void prefer(std::span<const OperatorId> steps, std::vector<char>& marked) const override {
+    const std::vector<OperatorId>& own = plan_.steps();
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      if (std::binary_search(own.begin(), own.end(), steps[i])) marked[i] = 1;
+  }
+  [[nodiscard]] std::vector<OperatorId> outline() const override { return plan_.steps_in_order(); }
+
+ private:
+  RelaxedPlan& plan_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> relaxed_plan_steps(Task& task, Limits& limits, Heuristics& heuristics) {
+  return std::make_unique<RelaxedPlanSteps>(heuristics.relaxed(task, limits));
 }
 
 }  // namespace kaboum::plan
