@@ -8,6 +8,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <thread>
 
 namespace kaboum::certify {
 namespace {
@@ -42,15 +43,23 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
   std::vector<std::exception_ptr> flaws(found.meshes.size());
   std::mutex mutex;
   std::size_t done = 0;
+  const auto caller = std::this_thread::get_id();
   parallel_for(std::size_t{0}, found.meshes.size(),
                [&](std::size_t i) {
                  const double start = now();
+                 // Within a mesh only the calling thread tells: what it is told to end, ends.
+                 MeshHooks hooks;
+                 if (progress && std::this_thread::get_id() == caller)
+                   hooks.progress = [&](const std::string& stage) {
+                     const std::lock_guard lock(mutex);
+                     progress(found.meshes[i].file.filename().string() + ": " + stage);
+                   };
                  EnclosedLinkMesh& mesh = out.meshes[i];
                  mesh.mesh = found.meshes[i];
                  const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
                  mesh.epsilon = asked.mesh.epsilon;
                  try {
-                   mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache);
+                   mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache, hooks);
                  } catch (const Error& error) {
                    if (!request.partial || (error.code() != ErrorCode::InvalidInput &&
                                             error.code() != ErrorCode::LimitReached))

@@ -183,6 +183,21 @@ MeshPreparation preparation_of(const MeshOptions& options,
   return out;
 }
 
+EnclosureRequest link_request_of(MeshOptions options, const std::optional<io::Format>& format) {
+  if (format && format != io::Format::Stl && format != io::Format::Obj)
+    throw Error(ErrorCode::InvalidArgument, "a robot's meshes are stl or obj");
+  if (options.request.vertices.size() > 1)
+    throw Error(ErrorCode::InvalidArgument,
+                "a robot's meshes are no series: one number of vertices");
+  options.request.format = format.value_or(io::Format::Stl);
+  if (options.request.numbers == MeshRequest::Numbers::Double &&
+      !io::holds_double(options.request.format))
+    throw Error(ErrorCode::InvalidArgument, "stl holds float32 only: doubles need obj");
+  EnclosureRequest out = enclosure_request_of(options);
+  if (!format) out.spare_format = io::Format::Obj;
+  return out;
+}
+
 EnclosureRequest enclosure_request_of(const MeshOptions& options) {
   const PreparationOptions& p = options.preparation;
   EnclosureRequest out;

@@ -415,6 +415,19 @@ void require_usable(std::span<const MovingShape> shapes, const Waypoints& path,
   }
 }
 
+/// Says how far the loops of a shape are, in the thread that made it alone.
+struct StageTeller {
+  const SweepOptions& options;
+  const std::string& shape;
+  std::thread::id caller = std::this_thread::get_id();
+
+  void operator()(const char* what, std::size_t at, std::size_t of) const {
+    if (!options.progress || std::this_thread::get_id() != caller) return;
+    options.progress(shape + ": " + what + " " + std::to_string(at + 1) + " of " +
+                     std::to_string(of));
+  }
+};
+
 void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
                    const std::vector<SweptBody>& bodies, double margin, const SweepOptions& options,
                    SweepClaims& claims) {
@@ -422,19 +435,11 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
   claims.farthest.distance = -1;
   const std::size_t segments = std::max<std::size_t>(path.size(), 2) - 1;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (options.progress)
-      options.progress(shapes[i].name + " (" + std::to_string(i + 1) + " of " +
-                       std::to_string(shapes.size()) + ")");
+    const StageTeller tell{options, shapes[i].name};
     const std::vector<SweptCell> cells = SweptCell::cells_of(shapes[i]);
     const Outline outline = outline_of(shapes[i]);
     std::vector<std::vector<Stretch>> open(segments);
     std::vector<Task> wholes(segments);
-    const auto tell = [&, caller = std::this_thread::get_id()](const char* what, std::size_t at,
-                                                               std::size_t of) {
-      if (!options.progress || std::this_thread::get_id() != caller) return;
-      options.progress(shapes[i].name + ": " + what + " " + std::to_string(at + 1) + " of " +
-                       std::to_string(of));
-    };
     verify::parallel_for(std::size_t{0}, segments, [&](std::size_t segment) {
       tell("segment", segment, segments);
       wholes[segment].shape = i;

@@ -47,6 +47,8 @@ class MovingInclusion {
     const double half = std::max(middle - begin, end - middle) * kUp;
     const bool last = !(begin < middle && middle < end);
     const double slack = speed_ * half * kUp;
+    if (options_.progress && answer_.intervals % 64 == 0)
+      options_.progress(std::to_string(answer_.intervals) + " intervals");
     if (++answer_.intervals > options_.most_intervals) return fail(Inclusion::Undecided, begin);
     const Transform pose = model_.base * motion.at(middle) * mover_.on_link;
     const Inclusion whole = ask(pose, slack);

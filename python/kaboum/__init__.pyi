@@ -218,6 +218,26 @@ class CertifiedRobot:
         no_cache: bool = False,
     ) -> dict[str, list[str]]: ...
 
+class EnclosedRobot:
+    @property
+    def meshes(self) -> list[dict[str, Any]]: ...
+    @property
+    def verdicts(self) -> list[tuple[str, str, str]]: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def write(
+        self,
+        folder: _Path,
+        *,
+        formats: str | Sequence[str] | None = None,
+        loader: Literal["moveit", "mujoco", "gazebo", "bullet", "drake"] | None = None,
+        mesh_prefix: str | None = None,
+        no_cache: bool = False,
+    ) -> dict[str, list[str]]: ...
+    def __bool__(self) -> bool: ...
+
 class Solution:
     @property
     def outcome(self) -> Literal["solved", "unsolvable", "not inferred", "limit"]: ...
@@ -278,6 +298,22 @@ class MotionCheck:
     @property
     def contact(self) -> dict[str, Any] | None: ...
     def __bool__(self) -> bool: ...
+
+class Inclusion:
+    @property
+    def answer(self) -> Literal["inside", "not certainly inside", "undecided"]: ...
+    @property
+    def until(self) -> tuple[int, float] | None: ...
+    def __bool__(self) -> bool: ...
+
+class LinkPairs:
+    @property
+    def pairs(self) -> list[dict[str, Any]]: ...
+    @property
+    def never_in_contact(self) -> dict[str, Any]: ...
+    @property
+    def srdf(self) -> str: ...
+    def __len__(self) -> int: ...
 
 class Path:
     @property
@@ -363,6 +399,8 @@ class World:
     @property
     def objects(self) -> list[str]: ...
     @property
+    def regions(self) -> list[str]: ...
+    @property
     def notes(self) -> list[str]: ...
     def variables(self, robot: str | None = None) -> list[str]: ...
     def home(self, robot: str | None = None) -> NDArray[np.float64]: ...
@@ -394,6 +432,37 @@ class World:
         resolution: float = 1e-5,
         progress: _Progress | None = None,
     ) -> Path: ...
+    def nearest(
+        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False
+    ) -> dict[str, Any] | None: ...
+    def is_inside(
+        self,
+        what: str,
+        region: str,
+        q: ArrayLike | None = None,
+        *,
+        robot: str | None = None,
+        progress: _Progress | None = None,
+    ) -> Any: ...
+    def stays_inside(
+        self,
+        what: str,
+        region: str,
+        path: ArrayLike,
+        *,
+        robot: str | None = None,
+        resolution: float = 1e-5,
+        max_intervals: int = 1000000,
+        progress: _Progress | None = None,
+    ) -> Inclusion: ...
+    def link_pairs(
+        self,
+        *,
+        robot: str | None = None,
+        max_boxes: int = 20000,
+        timeout: float | None = None,
+        progress: _Progress | None = None,
+    ) -> LinkPairs: ...
 
 _Set = Union[ConvexSet, CertifiedSet, SweptSet, _Path, list[Any]]
 _Robot = Union[Robot, _Path]
@@ -638,6 +707,39 @@ def certify_robot(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> CertifiedRobot: ...
+def decimate_robot(
+    robot: _Robot,
+    *,
+    links: Sequence[str] | None = None,
+    geometry: _Geometry = "collision",
+    package_path: _Path | Sequence[_Path] = (),
+    epsilons: Mapping[str, _Length] | None = None,
+    output_format: Literal["stl", "obj"] | None = None,
+    partial: bool = False,
+    # options of decimate_robot, vertices: int | None = None
+    vertices: int | None = None,
+    ratio: float | None = None,
+    epsilon: _Length | None = None,
+    cost: Literal["planes", "planes-adapted", "planes-diagonal", "triangles", "distance", "mean"] = "distance",
+    effort: Literal["fast", "normal", "best"] = "normal",
+    max_work: float | None = None,
+    as_printed: bool = False,
+    precision: Literal["auto", "float", "double"] = "auto",
+    sharp_angle: float | None = None,
+    keep_convex: bool = False,
+    drop_sheets: bool = False,
+    holes: Literal["fill", "keep", "refuse"] = "fill",
+    keep_orientation: bool = False,
+    prepare: Literal["auto", "strict", "wrap", "off"] = "auto",
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    verify: bool = False,
+    measure: bool = False,
+    # end of options
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> EnclosedRobot: ...
 def inverse_kinematics(
     robot: _Robot,
     pose: ArrayLike | None = None,

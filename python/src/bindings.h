@@ -16,6 +16,7 @@ void bind_decimation(py::module_& module);
 void bind_convex_sets(py::module_& module);
 void bind_distances(py::module_& module);
 void bind_robots(py::module_& module);
+void bind_robot_decimation(py::module_& module);
 void bind_sweeps(py::module_& module);
 void bind_verification(py::module_& module);
 void bind_sweep_verification(py::module_& module);

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_convex_sets(module);
   bind_distances(module);
   bind_robots(module);
+  bind_robot_decimation(module);
   bind_sweeps(module);
   bind_verification(module);
   bind_sweep_verification(module);

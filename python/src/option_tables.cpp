@@ -15,6 +15,7 @@ void bind_option_tables(py::module_& module) {
         py::dict out;
         out["decimate"] = table_of(keywords_of(certify::mesh_options()));
         out["decompose"] = table_of(keywords_of(certify::set_options()));
+        out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
         return out;
       },

@@ -79,25 +79,6 @@ void bind_robot(py::module_& module) {
       });
 }
 
-/// A dict of links' names and lengths.
-certify::LinkEpsilons epsilons_of(const py::object& given) {
-  certify::LinkEpsilons out;
-  if (given.is_none()) return out;
-  if (!py::isinstance<py::dict>(given))
-    throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
-  for (const auto& [link, epsilon] : given.cast<py::dict>()) {
-    if (!py::isinstance<py::str>(link))
-      throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
-    const auto name = link.cast<std::string>();
-    const auto length = length_of(py::reinterpret_borrow<py::object>(epsilon),
-                                  ("epsilons['" + name + "']").c_str());
-    if (!length)
-      throw Error(ErrorCode::InvalidArgument, "epsilons['" + name + "'] must be a length");
-    out.emplace(name, *length);
-  }
-  return out;
-}
-
 CertifiedValue certify_robot(const py::object& robot, const py::object& links,
                              const std::string& geometry, const py::object& package_path,
                              const py::object& epsilons, std::optional<std::size_t> robot_bodies,
@@ -139,36 +120,13 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& links,
   });
 }
 
-/// Names of formats: one, several or none.
-void take_formats(const py::object& formats, robot_folder::FolderOptions& options) {
-  for (const std::string& format : links_of(formats)) {
-    if (format == "mjcf")
-      options.mjcf = true;
-    else if (format == "sdf")
-      options.sdf = true;
-    else if (format != "urdf")
-      refuse_name("formats", format, {"urdf", "mjcf", "sdf"});
-  }
-}
-
 py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
                      const py::object& formats, const std::optional<std::string>& loader,
                      const std::optional<std::string>& mesh_prefix, bool srdf, bool no_cache) {
   const auto place = path_of(folder);
   if (!place) throw Error(ErrorCode::InvalidArgument, "folder must be a str or an os.PathLike");
-  robot_folder::FolderOptions options;
-  take_formats(formats, options);
-  if (mesh_prefix) options.mesh_prefix = *mesh_prefix;
-  if (loader) {
-    robot_folder::FolderOptions by_default = options;
-    robot_folder::apply(robot_folder::loader_of(*loader), *place, by_default);
-    if (!formats.is_none()) {
-      by_default.mjcf = options.mjcf;
-      by_default.sdf = options.sdf;
-    }
-    if (mesh_prefix) by_default.mesh_prefix = *mesh_prefix;
-    options = by_default;
-  }
+  const robot_folder::FolderOptions options =
+      folder_options_of(*place, formats, loader, mesh_prefix);
   std::vector<std::string> notes;
   const robot_folder::WrittenRobot written = run(0, [&] {
     std::vector<std::pair<std::string, std::string>> documents;
@@ -181,12 +139,7 @@ py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
                                        notes.push_back(file + ": " + text);
                                      });
   });
-  py::dict out;
-  out["documents"] = written.documents;
-  out["links"] = written.links;
-  out["stale"] = written.stale;
-  out["notes"] = notes;
-  return out;
+  return dict_of(written, notes);
 }
 
 constexpr const char* kWriteDoc =
@@ -333,6 +286,57 @@ std::vector<std::string> packages_of(const py::object& packages) {
     if (!path) throw Error(ErrorCode::InvalidArgument, "package_path must be folders' names");
     out.push_back(*path);
   }
+  return out;
+}
+
+certify::LinkEpsilons epsilons_of(const py::object& given) {
+  certify::LinkEpsilons out;
+  if (given.is_none()) return out;
+  if (!py::isinstance<py::dict>(given))
+    throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
+  for (const auto& [link, epsilon] : given.cast<py::dict>()) {
+    if (!py::isinstance<py::str>(link))
+      throw Error(ErrorCode::InvalidArgument, "epsilons must be a dict of links and lengths");
+    const auto name = link.cast<std::string>();
+    const auto length = length_of(py::reinterpret_borrow<py::object>(epsilon),
+                                  ("epsilons['" + name + "']").c_str());
+    if (!length)
+      throw Error(ErrorCode::InvalidArgument, "epsilons['" + name + "'] must be a length");
+    out.emplace(name, *length);
+  }
+  return out;
+}
+
+robot_folder::FolderOptions folder_options_of(const std::string& folder, const py::object& formats,
+                                              const std::optional<std::string>& loader,
+                                              const std::optional<std::string>& mesh_prefix) {
+  robot_folder::FolderOptions options;
+  for (const std::string& format : links_of(formats)) {
+    if (format == "mjcf")
+      options.mjcf = true;
+    else if (format == "sdf")
+      options.sdf = true;
+    else if (format != "urdf")
+      refuse_name("formats", format, {"urdf", "mjcf", "sdf"});
+  }
+  if (mesh_prefix) options.mesh_prefix = *mesh_prefix;
+  if (!loader) return options;
+  robot_folder::FolderOptions out = options;
+  robot_folder::apply(robot_folder::loader_of(*loader), folder, out);
+  if (!formats.is_none()) {
+    out.mjcf = options.mjcf;
+    out.sdf = options.sdf;
+  }
+  if (mesh_prefix) out.mesh_prefix = *mesh_prefix;
+  return out;
+}
+
+py::dict dict_of(const robot_folder::WrittenRobot& written, const std::vector<std::string>& notes) {
+  py::dict out;
+  out["documents"] = written.documents;
+  out["links"] = written.links;
+  out["stale"] = written.stale;
+  out["notes"] = notes;
   return out;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <kaboum/certify/mesh_options.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/set_options.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/robot_folder/certified_folder.h>
 
 #include <memory>
 
@@ -32,6 +34,16 @@ std::vector<Option<certify::SetOptions>> link_options();
 std::vector<std::string> links_of(const py::object& links);
 /// Folders: one, several or none.
 std::vector<std::string> packages_of(const py::object& packages);
+/// A dict of links' names and lengths.
+certify::LinkEpsilons epsilons_of(const py::object& given);
+/// What a robot's folder is to hold.
+/// @param formats  one, several or none; a loader sets what these do not
+robot_folder::FolderOptions folder_options_of(const std::string& folder, const py::object& formats,
+                                              const std::optional<std::string>& loader,
+                                              const std::optional<std::string>& mesh_prefix);
+py::dict dict_of(const robot_folder::WrittenRobot& written, const std::vector<std::string>& notes);
+/// Options of a mesh that a robot's meshes can have: they are enclosed.
+std::vector<Option<certify::MeshOptions>> link_mesh_options();
 /// 'collision' or 'visual'. @return whether it is the latter
 bool is_visual(const std::string& geometry);
 

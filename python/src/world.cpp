@@ -1,10 +1,13 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
 #include <kaboum/motion/find_path.h>
+#include <kaboum/world/allowed_pairs.h>
+#include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
 #include <pybind11/numpy.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -208,6 +211,181 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   });
 }
 
+/// Whether a thing is in a region, and until when on a path.
+struct InclusionValue {
+  collide::Inclusion answer = collide::Inclusion::Included;
+  std::optional<std::pair<std::size_t, double>> until;  ///< of motions that are not all inside
+
+  [[nodiscard]] bool inside() const { return answer == collide::Inclusion::Included; }
+};
+
+py::object is_inside(const WorldValue& in, const std::string& what, const std::string& region,
+                     const py::object& q, const std::optional<std::string>& robot,
+                     const py::object& progress) {
+  const world::InclusionQuestion question = world::inclusion_question(in.world(), what, region);
+  robot::Path rows;
+  std::size_t index = 0;
+  bool one = true;
+  if (!q.is_none()) {
+    index = robot_index(in.world(), robot);
+    rows = rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  }
+  Watch watch(progress);
+  const std::vector<InclusionValue> answers = run(0, [&] {
+    std::vector<InclusionValue> out;
+    if (q.is_none())
+      out.push_back({find_inclusion(*in.checker, initial_state(in.world()), question), {}});
+    for_rows(rows, watch, [&](const std::vector<double>& row) {
+      out.push_back({find_inclusion(*in.checker, state_at(in, index, row), question), {}});
+    });
+    return out;
+  });
+  if (one) return py::cast(answers.front());
+  return py::cast(answers);
+}
+
+InclusionValue stays_inside(const WorldValue& in, const std::string& what,
+                            const std::string& region, const py::object& path,
+                            const std::optional<std::string>& robot, double resolution,
+                            std::size_t max_intervals, const py::object& progress) {
+  const world::InclusionQuestion question = world::inclusion_question(in.world(), what, region);
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
+  Watch watch(progress);
+  return run(0, [&] {
+    world::MotionOptions options;
+    options.resolution = resolution;
+    options.most_intervals = max_intervals;
+    options.progress = watch.hook();
+    const world::MotionInclusion found =
+        find_inclusion(*in.checker, initial_state(in.world()), index, rows, question, options);
+    InclusionValue out{found.answer, {}};
+    if (!out.inside()) out.until.emplace(found.segment, found.share);
+    return out;
+  });
+}
+
+py::object nearest(const WorldValue& in, const py::object& q,
+                   const std::optional<std::string>& robot, bool resting) {
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
+  const auto found = run(0, [&] {
+    world::Scratch scratch;
+    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, {resting});
+  });
+  if (!found) return py::none();
+  py::dict out;
+  out["pair"] =
+      py::make_tuple(in.world().name_of(found->items[0]), in.world().name_of(found->items[1]));
+  out["lower"] = found->clearance.lower;
+  out["upper"] = found->clearance.upper;
+  return out;
+}
+
+/// What is known of a robot's pairs of links.
+struct LinkPairsValue {
+  WorldValue in;
+  std::size_t robot = 0;
+  std::vector<world::LinkPair> pairs;
+
+  [[nodiscard]] const world::RobotModel& model() const { return in.world().robots[robot]; }
+  [[nodiscard]] py::tuple names(const world::LinkPair& pair) const {
+    return py::make_tuple(model().kinematics.links[pair.a].name,
+                          model().kinematics.links[pair.b].name);
+  }
+};
+
+LinkPairsValue link_pairs(const WorldValue& in, const std::optional<std::string>& robot,
+                          std::size_t max_boxes, const std::optional<double>& timeout,
+                          const py::object& progress) {
+  LinkPairsValue out{in, robot_index(in.world(), robot), {}};
+  if (max_boxes < 1) throw Error(ErrorCode::InvalidArgument, "max_boxes must be at least 1");
+  if (timeout && !(*timeout > 0))
+    throw Error(ErrorCode::InvalidArgument, "timeout must be a number of seconds above 0");
+  Watch watch(progress);
+  out.pairs = run(0, [&] {
+    world::PairOptions options;
+    options.most_boxes = max_boxes;
+    const auto begin = std::chrono::steady_clock::now();
+    options.stop = [&] {
+      watch("pairs of links");
+      return timeout &&
+             std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(*timeout);
+    };
+    return examine_pairs(out.model(), options);
+  });
+  return out;
+}
+
+void bind_inclusion_and_pairs(py::module_& module) {
+  py::class_<InclusionValue>(module, "Inclusion",
+                             "Whether a thing is in a region: true if and only if it is certain.")
+      .def("__bool__", &InclusionValue::inside)
+      .def_property_readonly(
+          "answer", [](const InclusionValue& v) { return world::name_of(v.answer); },
+          "'inside', 'not certainly inside' or 'undecided'.")
+      .def_property_readonly(
+          "until",
+          [](const InclusionValue& v) -> py::object {
+            if (!v.until) return py::none();
+            return py::make_tuple(v.until->first, v.until->second);
+          },
+          "Of a motion, where it stops being certain: a waypoint, counted from 0, and the share of "
+          "the way to the next; or None.")
+      .def("__repr__", [](const InclusionValue& v) {
+        return std::string("<kaboum.Inclusion: ") + world::name_of(v.answer) + ">";
+      });
+  py::class_<LinkPairsValue>(module, "LinkPairs", "What is known of all pairs of a robot's links.")
+      .def("__len__", [](const LinkPairsValue& v) { return v.pairs.size(); })
+      .def_property_readonly(
+          "pairs",
+          [](const LinkPairsValue& v) {
+            py::list out;
+            for (const world::LinkPair& pair : v.pairs) {
+              py::dict one;
+              one["links"] = v.names(pair);
+              one["reason"] = pair.reason ? py::object(py::str(world::name_of(*pair.reason)))
+                                          : py::object(py::none());
+              one["contact_found"] = pair.meets;
+              one["contact_always"] = pair.meets_always;
+              out.append(one);
+            }
+            return out;
+          },
+          "Dicts: 'links', 'reason' why the pair needs no check, or None; 'contact_found' "
+          "somewhere, 'contact_always'.")
+      .def_property_readonly(
+          "never_in_contact",
+          [](const LinkPairsValue& v) {
+            std::vector<world::AllowedPair> proofs;
+            py::list pairs;
+            for (const world::LinkPair& pair : v.pairs) {
+              if (pair.reason != world::AllowedPair::Reason::Never) continue;
+              proofs.push_back({pair.a, pair.b, *pair.reason});
+              pairs.append(py::list(v.names(pair)));
+            }
+            py::dict out;
+            out["proved_for"] = world::proof_hash(v.model(), proofs);
+            out["pairs"] = pairs;
+            return out;
+          },
+          "What a scene says of the pairs that are proved never to touch.")
+      .def_property_readonly(
+          "srdf",
+          [](const LinkPairsValue& v) {
+            return world::to_srdf(v.model(), world::pairs_without_check(v.model(), v.pairs));
+          },
+          "The pairs that need no check, as <disable_collisions> of an SRDF.")
+      .def("__repr__", [](const LinkPairsValue& v) {
+        return "<kaboum.LinkPairs of " + std::to_string(v.pairs.size()) + " pairs>";
+      });
+}
+
 const char* outcome_of(const world::MotionAnswer& answer) {
   using Outcome = world::MotionAnswer::Outcome;
   return answer.outcome == Outcome::Free      ? "free"
@@ -368,7 +546,64 @@ shortcuts : int
 resolution : float
     As of `check_motion`. [length]
 progress
-    As of `check`.)");
+    As of `check`.)")
+      .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           py::arg("resting") = false,
+           "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
+           "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
+      .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
+           py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
+           R"(Whether a thing is in a region of the scene, as `kaboum-check --inside`.
+
+Parameters
+----------
+what : str
+    An object, 'ROBOT/LINK', or a robot: all its links and what it carries.
+region : str
+q : array, optional
+    k values, or n x k: then a list is returned. By default all robots are at home.
+robot : str, optional
+    Whose configurations these are, where the scene has several.
+progress
+    As of `check`.
+
+Returns
+-------
+Inclusion)")
+      .def("stays_inside", &stays_inside, py::arg("what"), py::arg("region"), py::arg("path"),
+           py::kw_only(), py::arg("robot") = py::none(), py::arg("resolution") = 1e-5,
+           py::arg("max_intervals") = 1'000'000, py::arg("progress") = py::none(),
+           R"(The same along a path, at every instant.
+
+Parameters
+----------
+what, region
+    As of `is_inside`.
+path, robot, resolution, max_intervals, progress
+    As of `check_motion`.
+
+Returns
+-------
+Inclusion)")
+      .def(
+          "link_pairs", &link_pairs, py::kw_only(), py::arg("robot") = py::none(),
+          py::arg("max_boxes") = 20'000, py::arg("timeout") = py::none(),
+          py::arg("progress") = py::none(),
+          R"(Pairs of a robot's links: which never touch, or need no check, as `kaboum-scene pairs`.
+
+Parameters
+----------
+robot : str, optional
+max_boxes : int
+    Of joint values that are looked at for one pair.
+timeout : float, optional
+    After so long, what is left stays unproved. [s]
+progress
+    As of `check`.
+
+Returns
+-------
+LinkPairs)");
 }
 
 void bind_world(py::module_& module) {
@@ -393,6 +628,14 @@ It never changes. Angles are in radians, lengths in the scene's unit.)");
           [](const WorldValue& w) {
             std::vector<std::string> out;
             for (const world::Object& object : w.world().objects) out.push_back(object.name);
+            return out;
+          },
+          "Names.")
+      .def_property_readonly(
+          "regions",
+          [](const WorldValue& w) {
+            std::vector<std::string> out;
+            for (const world::Region& region : w.world().regions) out.push_back(region.name);
             return out;
           },
           "Names.")
@@ -427,6 +670,7 @@ It never changes. Angles are in radians, lengths in the scene's unit.)");
 
 void bind_worlds(py::module_& module) {
   bind_answers(module);
+  bind_inclusion_and_pairs(module);
   bind_path(module);
   bind_world(module);
 }

@@ -245,3 +245,49 @@ def test_a_function_that_raises_ends_the_work(arm):
 
     with pytest.raises(Enough):
         kaboum.certify_robot(arm, epsilon="0.5%", no_cache=True, progress=stop)
+
+
+@pytest.mark.parametrize("options, keywords, writing", [
+    ((), {}, {}),
+    (("--for", "mujoco"), {}, {"loader": "mujoco"}),
+    (("--robot-format", "sdf", "--output-format", "obj", "--prepare", "wrap", "--links", "tool"),
+     {"output_format": "obj", "prepare": "wrap", "links": ["tool"]}, {"formats": "sdf"}),
+])
+def test_decimated_robot_is_the_programs(arm, tmp_path, options, keywords, writing):
+    """Python and bmesh-decimate write the same bytes under the same names."""
+    program("bmesh-decimate", arm, "-o", tmp_path / "by-program", "--epsilon", "5%", *options)
+    made = kaboum.decimate_robot(arm, epsilon="5%", **keywords)
+    assert made and [v[1] for v in made.verdicts] == ["held"] * len(made.verdicts)
+    assert [m["flaw"] for m in made.meshes] == [""] and 0 < made.distance < 0.1
+    assert made.meshes[0]["mesh"].vertices.shape[1] == 3 and made.meshes[0]["report"]["claims"]
+    written = made.write(tmp_path / "by-python", **writing)
+    assert files_in(tmp_path / "by-program") == files_in(tmp_path / "by-python")
+    assert pathlib.Path(written["documents"][0]) == tmp_path / "by-python" / "arm.urdf" and written["links"] == []
+    assert kaboum.verify_robot(arm, tmp_path / "by-python" / "arm.urdf", prepare="wrap" if "prepare" in keywords else "auto")
+
+
+def test_decimation_of_robots_refuses_and_ends(arm, tmp_path):
+    for wrong, says in (({"vertices": [100, 50]}, "no series"), ({"epsilon": "5%", "output_format": "ply"}, "stl or obj"),
+                        ({"epsilon": "5%", "output_format": "stl", "precision": "double"}, "float32"), ({}, "epsilon"),
+                        ({"epsilon": "5%", "epsilons": {"nose": 1}}, "nose"), ({"epsilon": "5%", "links": ["nose"]}, "nose")):
+        with pytest.raises(kaboum.Error, match=says) as error:
+            kaboum.decimate_robot(arm, **wrong)
+        assert error.value.code == "invalid_argument"
+    with pytest.raises(TypeError, match="direction"):
+        kaboum.decimate_robot(arm, epsilon="5%", direction="inner")
+    bad = arm.parent / "bad.urdf"
+    bad.write_text(arm.read_text().replace('<box size="0.1 0.1 0.5"/>', '<mesh filename="broken.off"/>'))
+    (arm.parent / "broken.off").write_text("OFF\n1 0 0\n0 0 0\n")
+    with pytest.raises(kaboum.Error, match="broken.off"):
+        kaboum.decimate_robot(bad, epsilon="5%")
+    some = kaboum.decimate_robot(bad, epsilon="5%", partial=True)
+    assert not some and {v[0]: v[1] for v in some.verdicts}["upper"] == "kept" and any("broken.off" in n for n in some.notes)
+
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        kaboum.decimate_robot(arm, epsilon="5%", no_cache=True, progress=stop)

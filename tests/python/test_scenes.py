@@ -285,3 +285,80 @@ def test_a_scene_needs_its_folder(parts, tmp_path):
         with pytest.raises(kaboum.Error, match="no folder.*absent"):
             scene.write(tmp_path / "absent" / "cell.json")
         assert not (tmp_path / "absent").exists()
+
+
+def spelled(q):
+    return ",".join(repr(float(v)) for v in q)
+
+
+def checked(*arguments):
+    """Exit code and output of kaboum-check."""
+    done = subprocess.run([BIN / "kaboum-check", *map(str, arguments)], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_what_is_inside_is_what_the_program_says(parts, tmp_path):
+    scene = filled(parts)
+    vertices, faces = cube(1)
+    scene.add_region("room", (vertices * [2, 2, 0.9] - [1, 1, 0.05], faces), epsilon="1%")
+    scene.write(tmp_path / "cell.json")
+    world = kaboum.World(tmp_path / "cell.json")
+    assert world.regions == ["room"]
+    answers = set()
+    for what in ("arm", "arm/tool", "arm/base", "box"):
+        for q in ([0, 0], [1.2, 0.1], [0.4, 0.3]):
+            found = world.is_inside(what, "room", q)
+            code, text = checked(tmp_path / "cell.json", "--configuration=" + spelled(q), "--inside", what + "=room", "--ignore-limits")
+            assert f"{what} in room: {found.answer}\n" in text, text
+            assert bool(found) == (found.answer == "inside") and found.until is None
+            answers.add(found.answer)
+    assert answers == {"inside", "not certainly inside"}
+    assert [bool(v) for v in world.is_inside("arm", "room", [[0, 0.3], [1.5, 0]])] == [False, True]
+    assert bool(world.is_inside("box", "room")) == bool(world.is_inside("box", "room", [0, 0]))
+    stays = world.stays_inside("arm/tool", "room", [[1.5, 0.3], [0, 0.3]])
+    (tmp_path / "path.csv").write_text("shoulder,slide\n1.5,0.3\n0,0.3\n")
+    code, text = checked(tmp_path / "cell.json", "--path", tmp_path / "path.csv", "--inside", "arm/tool=room")
+    assert not stays and code == 1 and f"arm/tool in room: {stays.answer} from waypoint {stays.until[0] + 1}" in text, text
+    assert 0 < stays.until[1] < 1 and world.stays_inside("arm/tool", "room", [[1.5, 0.3], [1.4, 0.3]])
+    for call, says in ((lambda: world.is_inside("bx", "room"), "no object, link or robot 'bx'"),
+                       (lambda: world.is_inside("box", "roon"), "did you mean 'room'"),
+                       (lambda: world.is_inside("box", "room", [0]), "q must be"),
+                       (lambda: world.is_inside("box", "room", ["0", "0"]), "q")):
+        with pytest.raises(kaboum.Error, match=says) as error:
+            call()
+        assert error.value.code == "invalid_argument"
+
+
+def test_nearest_is_the_programs(parts, tmp_path):
+    filled(parts).write(tmp_path / "cell.json")
+    world = kaboum.World(tmp_path / "cell.json")
+    found = world.nearest([0, 0.1])
+    code, text = checked(tmp_path / "cell.json", "--configuration=0,0.1", "--distance", "--report", tmp_path / "report.json")
+    report = json.loads((tmp_path / "report.json").read_text())["configurations"][0]["distance"]
+    assert found == {"pair": tuple(report["pair"]), "lower": report["lower"], "upper": report["upper"]}
+    assert 0 < found["lower"] <= found["upper"]
+    with pytest.raises(kaboum.Error, match="one configuration"):
+        world.nearest([[0, 0]])
+
+
+def test_pairs_of_links_are_the_programs(parts, tmp_path):
+    filled(parts).write(tmp_path / "cell.json")
+    program(tmp_path, "pairs", "cell.json", "--srdf", "a.srdf", "--report", "report.json")
+    report = json.loads((tmp_path / "report.json").read_text())
+    pairs = kaboum.World(tmp_path / "cell.json").link_pairs()
+    assert len(pairs) == len(report["pairs"]) > 0 and pairs.srdf == (tmp_path / "a.srdf").read_text()
+    assert pairs.never_in_contact == report["never_in_contact"]
+    for mine, theirs in zip(pairs.pairs, report["pairs"]):
+        assert mine["links"] == tuple(theirs["links"]) and (mine["reason"] or "unproved") == theirs["reason"]
+        assert (mine["contact_found"], mine["contact_always"]) == (theirs["contact_found"], theirs["contact_always"])
+
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        kaboum.World(tmp_path / "cell.json").link_pairs(progress=stop)
+    with pytest.raises(kaboum.Error, match="max_boxes"):
+        kaboum.World(tmp_path / "cell.json").link_pairs(max_boxes=0)

@@ -6,10 +6,9 @@
 #include <kaboum/certify/link_enclosures.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/robot_folder/enclosed_folder.h>
 
 #include <algorithm>
-#include <map>
-#include <span>
 
 #include "common/result_files.h"
 #include "results.h"
@@ -21,10 +20,7 @@
 namespace kaboum::tools {
 namespace {
 
-using robot_folder::NewShapes;
-using robot_folder::RobotFolder;
 using robot_folder::RobotWriter;
-using robot_folder::StoredMesh;
 
 /// Format of the new meshes: what engines read.
 io::Format format_of_meshes(const DecimationOptions& o) {
@@ -41,9 +37,9 @@ certify::EnclosureRequest enclosure_request(const DecimationOptions& o) {
     throw Error(ErrorCode::InvalidArgument, "--vertices: a robot's meshes are no series");
   const io::Format format = format_of_meshes(o);
   require_sound_formats(o, format);
-  certify::EnclosureRequest r = certify::enclosure_request_of(mesh_options_of(o, format));
-  if (o.output_format.empty() && format == io::Format::Stl) r.spare_format = io::Format::Obj;
-  return r;
+  const bool may_change = o.output_format.empty() && format == io::Format::Stl;
+  return certify::link_request_of(mesh_options_of(o, format),
+                                  may_change ? std::nullopt : std::optional(format));
 }
 
 /// What was made, and where it goes.
@@ -91,36 +87,6 @@ void say_meshes(Run& run) {
     for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
     for (const std::string& text : c.notes) run.notes.add(file, text);
   }
-}
-
-void write(Run& run, RobotWriter& output) {
-  RobotFolder& folder = output.folder();
-  for (std::size_t i = 0; i < run.made.meshes.size(); ++i) {
-    if (!run.made.meshes[i].flaw.empty())
-      folder.leave_out(i);
-    else if (run.made.meshes[i].made.enclosure.certificate().in_spare_format)
-      folder.set_extension(i, ".obj");
-  }
-  const NewShapes shapes =
-      robot_folder::new_shapes(run.robot, run.request.shapes, run.made.shapes, [&](std::size_t s) {
-        std::vector<std::string> out;
-        if (run.made.meshes[*run.made.shapes[s].mesh].flaw.empty())
-          out.push_back(folder.place_of(s));
-        return out;
-      });
-  if (!run.o.no_cache) {
-    std::map<std::size_t, std::span<const char>> meshes;
-    for (std::size_t s = 0; s < run.made.shapes.size(); ++s)
-      if (const auto& mesh = run.made.shapes[s].mesh; mesh && run.made.meshes[*mesh].flaw.empty())
-        meshes.emplace(s, run.made.meshes[*mesh].made.enclosure.bytes());
-    output.reuse(certify::CacheFolder(certify::CacheFolder::default_folder()), meshes);
-  }
-  output.write(
-      shapes,
-      [&](const StoredMesh& stored, const std::filesystem::path& place) {
-        io::write_file(place, run.made.meshes[stored.mesh].made.enclosure.bytes());
-      },
-      {}, note_in(run.notes));
 }
 
 /// The command that decides it from the files alone; epsilon as well, where it is one for all links
@@ -294,7 +260,9 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   }
   run.verdicts = verdicts(run.made);
   say_meshes(run);
-  write(run, output);
+  std::optional<certify::CacheFolder> written;
+  if (!o.no_cache) written.emplace(certify::CacheFolder::default_folder());
+  robot_folder::write_enclosed(output, run.made, written ? &*written : nullptr, note_in(run.notes));
   const RobotCounts counts = counts_of(run);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(counts.bodies, "mesh", "meshes") + " of " +

@@ -14,12 +14,7 @@
 /// kaboum-check --inside: whether objects, links and robots lie in regions.
 namespace kaboum::tools {
 
-/// What is to lie in which region.
-struct Inside {
-  std::string name, region_name;
-  std::vector<world::Item> items;
-  std::size_t region = 0;
-};
+using Inside = world::InclusionQuestion;
 
 /// What texts NAME=REGION ask for. Throws InvalidArgument where the scene has no such name,
 /// InvalidInput where of a robot it cannot be told.

@@ -55,8 +55,12 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
   world::MotionOptions options;
   options.resolution = tools::parse_length(o.resolution)->value;
   options.most_intervals = o.most_intervals;
-  const world::MotionAnswer answer =
-      check_motion(checker, initial_state(scene.world), robot, path, options);
+  const world::MotionAnswer answer = [&] {
+    tools::Progress progress(o.common.quiet);
+    world::MotionOptions told = options;
+    told.progress = [&](const std::string& stage) { progress.show(stage); };
+    return check_motion(checker, initial_state(scene.world), robot, path, told);
+  }();
   report["waypoints"] = path.size();
   report["resolution"] = options.resolution;
   report["motion"] = tools::to_json(scene.world, answer);

@@ -37,7 +37,8 @@ struct LinkEnclosures {
 };
 
 /// Enclosing meshes of all meshes of a robot's links, several at once; other shapes need none.
-/// @param progress  gets what is done, one call at a time, from any thread; may be empty.
+/// @param progress  gets what is done, one call at a time, from any thread; what it throws ends the
+///   work; may be empty.
 /// @throws Error naming the link or the file, as enclose_file; Error{InvalidInput} when no link has
 ///   a mesh.
 LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosuresRequest& request,

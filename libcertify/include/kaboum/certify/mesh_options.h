@@ -39,4 +39,10 @@ MeshPreparation preparation_of(const MeshOptions& options,
 /// The request for a mesh that encloses that of a file.
 EnclosureRequest enclosure_request_of(const MeshOptions& options);
 
+/// The same of a robot's meshes, which engines read: STL or OBJ.
+/// @param format  none: STL, and OBJ where float32 does not do.
+/// @throws Error{InvalidArgument} for other formats, doubles in STL, and several numbers of
+/// vertices.
+EnclosureRequest link_request_of(MeshOptions options, const std::optional<io::Format>& format);
+
 }  // namespace kaboum::certify

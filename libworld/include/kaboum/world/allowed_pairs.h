@@ -16,7 +16,7 @@ std::vector<AllowedPair> connected_links(const RobotModel& robot);
 struct PairOptions {
   std::size_t most_boxes = 20'000;  ///< of joint values that are looked at for one pair
   std::size_t samples = 2'000;      ///< places at which contacts of a pair are looked for at first
-  std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May be empty
+  std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
 };
 
 /// What is known of a pair of links with shapes.

@@ -3,6 +3,9 @@
 #include <kaboum/collide/inclusion.h>
 #include <kaboum/world/motion_check.h>
 
+#include <string>
+#include <vector>
+
 namespace kaboum::world {
 
 /// Whether an item lies in a region of the world in a state: its outer set, wherever errors of
@@ -32,5 +35,33 @@ struct MotionInclusion {
 MotionInclusion find_inclusion(const Checker& checker, const WorldState& state, std::size_t robot,
                                const robot::Path& path, const Item& item, std::size_t region,
                                const MotionOptions& options, std::size_t most_pieces = 10'000);
+
+/// What is to lie in which region.
+struct InclusionQuestion {
+  std::string what, region_name;
+  std::vector<Item> items;  ///< that `what` names
+  std::size_t region = 0;
+};
+
+/// @param what  an object, a link ("ROBOT/LINK"), or a robot: all its links and what it carries.
+/// @throws Error{InvalidArgument} where the world has no such name; Error{InvalidInput} for robots
+///   that have links with shapes but no set.
+InclusionQuestion inclusion_question(const World& world, const std::string& what,
+                                     const std::string& region);
+
+/// Whether all items of a question lie in its region: not, else undecided, else inside.
+collide::Inclusion find_inclusion(const Checker& checker, const WorldState& state,
+                                  const InclusionQuestion& question);
+/// The same all along a motion of a robot; of the first item that stops being certainly inside.
+/// @throws as find_inclusion of one item.
+MotionInclusion find_inclusion(const Checker& checker, const WorldState& state, std::size_t robot,
+                               const robot::Path& path, const InclusionQuestion& question,
+                               const MotionOptions& options);
+
+/// "inside", "not certainly inside", "undecided".
+const char* name_of(collide::Inclusion answer);
+
+/// Of several answers: not inside, else undecided, else inside.
+void combine(collide::Inclusion& all, collide::Inclusion one);
 
 }  // namespace kaboum::world
