@@ -35,7 +35,8 @@ void decide(const geom::ConvexSet& set, SweepCertificate& certificate,
   const verify::Claim convex = verify::verify_convexity(set).convex;
   ensure(convex.answer == verify::Answer::Verified, "a body of the swept volume is not convex");
   if (!request.decide_motion || certificate.motion == MotionClaim::None) return;
-  const verify::Claim held = decide_motion(robot, bodies, path, set, request.max_cells);
+  const verify::Claim held =
+      decide_motion(robot, bodies, path, set, request.max_cells, request.search.progress);
   if (held.answer == verify::Answer::Refuted)
     throw Error(ErrorCode::Internal, "the swept volume does not pass the exact check (" +
                                          held.reason + "); nothing is written");

@@ -42,11 +42,13 @@ std::vector<verify::MovingShape> moving_shapes(const robot::RobotFile& robot,
 
 verify::Claim decide_motion(const robot::RobotFile& robot, const CertifiedBodies& bodies,
                             const robot::Path& path, const geom::ConvexSet& set,
-                            std::size_t max_cells) {
+                            std::size_t max_cells,
+                            const std::function<void(const std::string&)>& progress) {
   const std::vector<verify::MovingShape> shapes = moving_shapes(robot, bodies, path);
   verify::SweepOptions options;
   options.gap = verify::default_gap(set);
   options.max_cells = max_cells;
+  if (progress) options.progress = [&](const std::string& what) { progress("deciding: " + what); };
   const verify::SweepClaims found = verify::verify_sweep(shapes, path, set, options);
   verify::Claim claim;
   claim.answer = verify::answer_of(found, verify::Claims::All);

@@ -3,6 +3,9 @@
 #include <kaboum/certify/sweep.h>
 #include <kaboum/verify/inclusion.h>
 
+#include <functional>
+#include <string>
+
 // What is decided of swept sets. Internal to kaboum_certify.
 namespace kaboum::certify {
 
@@ -11,6 +14,7 @@ namespace kaboum::certify {
 /// libverify's own.
 verify::Claim decide_motion(const robot::RobotFile& robot, const CertifiedBodies& bodies,
                             const robot::Path& path, const geom::ConvexSet& set,
-                            std::size_t max_cells);
+                            std::size_t max_cells,
+                            const std::function<void(const std::string&)>& progress);
 
 }  // namespace kaboum::certify

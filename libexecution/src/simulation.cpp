@@ -149,6 +149,9 @@ void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,
     std::vector<double> after = trajectory.sample(std::min(k + 1, trajectory.samples() - 1));
     count_limits(robot, before, now, &after);
     state.q[robot] = now;
+    if (options_.progress && report_.samples % 64 == 0)
+      options_.progress(std::to_string(report_.steps) + " steps, " +
+                        std::to_string(report_.samples) + " samples");
     ++report_.samples;
     if (const auto meeting = cell_.find_meeting(state, robot)) {
       if (report_.collisions++ == 0 || k == 0 || report_.problems.size() < 3)

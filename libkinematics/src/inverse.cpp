@@ -82,6 +82,7 @@ void InverseSearch::find_numerically() {
   options.starts = request.starts;
   options.limits = request.limits;
   options.first = request.reference;
+  options.progress = request.progress;
   for (const NumericSolution& s : solve_numeric_all(arm, request.target, options)) {
     ++answer.found;
     add_row(s.q, {{}, s.error, kRegular, true, request.target});

@@ -128,6 +128,8 @@ void from_starts(const Arm& arm, const Transform& target, const NumericOptions& 
   const Descent descent(arm, target, options);
   Random random(options.seed);
   for (int start = 1; start <= options.starts; ++start) {
+    if (options.progress)
+      options.progress("start " + std::to_string(start) + " of " + std::to_string(options.starts));
     std::vector<double> q =
         start == 1 && !options.first.empty() ? options.first : descent.random_start(random);
     if (options.limits)

@@ -19,6 +19,7 @@ using Outcome = PathAnswer::Outcome;
 constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9;
 
 constexpr std::size_t kMostBlockers = 5;
+constexpr std::size_t kToldEvery = 64;  // configurations
 
 /// A variable that moves the robot little is not to be free of cost.
 constexpr double kLeastWeight = 0.1;
@@ -124,6 +125,9 @@ double SearchSpace::distance(const Values& a, const Values& b) const {
 }
 
 std::optional<world::Contact> SearchSpace::find_contact(const Values& q) {
+  if (spent_.configurations % kToldEvery == 0 && options_.check.progress)
+    options_.check.progress(std::to_string(spent_.configurations) + " configurations, " +
+                            std::to_string(spent_.nodes) + " nodes");
   ++spent_.configurations;
   spent_.work += kConfiguration;
   state_.q[robot_] = q;

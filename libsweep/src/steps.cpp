@@ -94,6 +94,7 @@ class Chooser {
       throw Error(ErrorCode::LimitReached,
                   "a body needs more than 1000000 steps; allow a larger epsilon");
     pieces_.push_back(piece);
+    if (options_.progress) options_.progress(pieces_.size());
   }
 
   /// Equal steps, as many as the bound of the whole segment asks for.

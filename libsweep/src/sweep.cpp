@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "simplify_hull.h"
 
@@ -151,6 +152,10 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   steps.rule = options.rule;
   steps.merge = options.merge;
   steps.max_excess = options.max_excess;
+  // Loops call it from all their threads.
+  const auto tell = [&, caller = std::this_thread::get_id()](const std::string& stage) {
+    if (options.progress && std::this_thread::get_id() == caller) options.progress(stage);
+  };
   std::vector<Plan> plans(bodies.size());
   parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
     // The ends of a balanced piece lie up to epsilon beyond the poses; explicit margins as well.
@@ -174,6 +179,9 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
     own.deviation =
         own.shared.empty() ? for_motion - bodies[i].margin - plans[i].rounding : least_room;
     own.deviation *= 1 - 1e-9;  // for the roundings up on the way to the margin
+    own.progress = [&](std::size_t pieces) {
+      if (options.progress) tell("steps of " + bodies[i].name + ": " + std::to_string(pieces));
+    };
     plans[i].pieces = choose_steps(robot, bodies[i].link, bodies[i].points, path, own);
   });
   std::vector<std::size_t> first(bodies.size() + 1, 0);
@@ -184,6 +192,8 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   tbb::enumerable_thread_specific<geom::HullBuilder> builders;
   parallel_for(std::size_t{0}, outputs.size(), [&](std::size_t k) {
     const std::size_t i = result.sources[k];
+    if (options.progress)
+      tell("body " + std::to_string(k + 1) + " of " + std::to_string(outputs.size()));
     outputs[k] =
         make_hull(bodies[i], plans[i].pieces[k - first[i]], plans[i], options, builders.local());
   });

@@ -46,7 +46,8 @@ void add_edges(const Corners& c, EdgeBalance& balance) {
 
 class Replay {
  public:
-  Replay(const geom::Mesh& original, const Log& log) : log_(log) {
+  Replay(const geom::Mesh& original, const Log& log, const ReplayProgress& progress)
+      : log_(log), progress_(progress) {
     if (original.triangles.size() >= (1ULL << 31))
       throw Error(ErrorCode::InvalidInput, "too many triangles to replay");
     merge_vertices(original);
@@ -82,8 +83,11 @@ class Replay {
   }
 
   bool play_to(std::size_t steps) {
-    for (; report_.steps < steps; ++report_.steps)
+    for (; report_.steps < steps; ++report_.steps) {
+      if (progress_ && report_.steps % 64 == 0)
+        progress_(at_step(report_.steps) + " of " + std::to_string(log_.steps.size()));
       if (!step(report_.steps)) return false;
+    }
     return true;
   }
 
@@ -435,6 +439,7 @@ class Replay {
   }
 
   const Log& log_;
+  const ReplayProgress& progress_;
   ReplayResult report_;
   std::map<std::array<double, 3>, std::uint32_t> known_;  // of all_points_, until holes are filled
   std::vector<Point> all_points_;
@@ -450,12 +455,14 @@ class Replay {
 
 }  // namespace
 
-ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result) {
-  return Replay(original, log).run(result);
+ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result,
+                    const ReplayProgress& progress) {
+  return Replay(original, log, progress).run(result);
 }
 
-ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive) {
-  return Replay(original, progressive.log).run(progressive);
+ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive,
+                                const ReplayProgress& progress) {
+  return Replay(original, progressive.log, progress).run(progressive);
 }
 
 }  // namespace kaboum::verify

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "inside_out.h"
@@ -428,7 +429,14 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
     const Outline outline = outline_of(shapes[i]);
     std::vector<std::vector<Stretch>> open(segments);
     std::vector<Task> wholes(segments);
+    const auto tell = [&, caller = std::this_thread::get_id()](const char* what, std::size_t at,
+                                                               std::size_t of) {
+      if (!options.progress || std::this_thread::get_id() != caller) return;
+      options.progress(shapes[i].name + ": " + what + " " + std::to_string(at + 1) + " of " +
+                       std::to_string(of));
+    };
     verify::parallel_for(std::size_t{0}, segments, [&](std::size_t segment) {
+      tell("segment", segment, segments);
       wholes[segment].shape = i;
       wholes[segment].segment = segment;
       open[segment] =
@@ -455,6 +463,7 @@ void surface_claim(std::span<const MovingShape> shapes, const Waypoints& path,
     std::atomic<std::size_t> first_refuting = tasks.size();
     verify::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
       if (t > first_refuting) return;
+      tell("part", t, tasks.size());
       Task& task = tasks[t];
       Search search(task, shapes[i], path, bodies, margin, options);
       search.run({cells.begin() + static_cast<std::ptrdiff_t>(task.first),

@@ -16,6 +16,8 @@ namespace {
 using detail::MovingPairs;
 using Outcome = MotionAnswer::Outcome;
 
+constexpr std::size_t kToldEvery = 64;  // intervals
+
 std::vector<std::size_t> all_of(const MovingPairs& pairs) {
   std::vector<std::size_t> all(pairs.pairs().size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -48,6 +50,13 @@ class Motion {
     return moving_.ask(k, slack);
   }
 
+  void tell() const {
+    if (!options_.progress || answer_.intervals % kToldEvery != 1) return;
+    options_.progress("segment " + std::to_string(segment_ + 1) + " of " +
+                      std::to_string(std::max<std::size_t>(path_.size(), 2) - 1) + ", " +
+                      std::to_string(answer_.intervals) + " intervals");
+  }
+
   /// Whether these pairs are apart from `begin` to `end`; else the answer is written.
   bool is_free(double begin, double end, const std::vector<std::size_t>& pairs) {
     if (pairs.empty()) return true;
@@ -57,6 +66,7 @@ class Motion {
       answer_.share = begin;
       return false;
     }
+    tell();
     const double middle = 0.5 * begin + 0.5 * end;
     const double half = std::max(middle - begin, end - middle) * kUp;
     moving_.place(middle, pairs);

@@ -22,6 +22,7 @@ _Answer = Literal["verified", "refuted", "undecided", "undefined"]
 _Claims = Literal["all", "solid", "surface"]
 _Geometry = Literal["collision", "visual"]
 _Effort = Literal["fast", "normal", "best"]
+_Language = Literal["kpl", "pddl"]
 
 class Error(Exception):
     code: str
@@ -231,7 +232,34 @@ class Solution:
     @property
     def text(self) -> str: ...
     @property
+    def size(self) -> dict[str, int] | None: ...
+    @property
+    def failed_calls(self) -> list[dict[str, Any]]: ...
+    @property
     def statistics(self) -> dict[str, Any]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def write(self, path: _Path) -> None: ...
+    def __bool__(self) -> bool: ...
+
+class PlanCheck:
+    @property
+    def violation(self) -> str: ...
+    @property
+    def states(self) -> int: ...
+    @property
+    def ends(self) -> int: ...
+    @property
+    def size(self) -> dict[str, int]: ...
+    def __bool__(self) -> bool: ...
+
+class PlanRun:
+    @property
+    def counts(self) -> dict[str, Any]: ...
+    @property
+    def replans(self) -> list[dict[str, Any]]: ...
+    @property
+    def problems(self) -> list[str]: ...
     @property
     def notes(self) -> list[str]: ...
     def __bool__(self) -> bool: ...
@@ -338,10 +366,20 @@ class World:
     def notes(self) -> list[str]: ...
     def variables(self, robot: str | None = None) -> list[str]: ...
     def home(self, robot: str | None = None) -> NDArray[np.float64]: ...
-    def check(self, q: ArrayLike, *, robot: str | None = None, resting: bool = False) -> Any: ...
-    def are_free(self, q: ArrayLike, *, robot: str | None = None) -> NDArray[np.bool_]: ...
+    def check(
+        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False, progress: _Progress | None = None
+    ) -> Any: ...
+    def are_free(
+        self, q: ArrayLike, *, robot: str | None = None, progress: _Progress | None = None
+    ) -> NDArray[np.bool_]: ...
     def check_motion(
-        self, path: ArrayLike, *, robot: str | None = None, resolution: float = 1e-5, max_intervals: int = 1000000
+        self,
+        path: ArrayLike,
+        *,
+        robot: str | None = None,
+        resolution: float = 1e-5,
+        max_intervals: int = 1000000,
+        progress: _Progress | None = None,
     ) -> MotionCheck: ...
     def find_path(
         self,
@@ -354,6 +392,7 @@ class World:
         max_nodes: int = 100000,
         shortcuts: int = 60,
         resolution: float = 1e-5,
+        progress: _Progress | None = None,
     ) -> Path: ...
 
 _Set = Union[ConvexSet, CertifiedSet, SweptSet, _Path, list[Any]]
@@ -613,6 +652,7 @@ def inverse_kinematics(
     free_heading: bool = False,
     starts: int = 100,
     seed: int = 1,
+    progress: _Progress | None = None,
 ) -> InverseKinematics: ...
 def wrap(
     mesh: _Mesh,
@@ -624,7 +664,9 @@ def wrap(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Wrap: ...
-def replay(original: _Path, log: _Path, result: _Mesh, *, scale: float = 1.0) -> Verdict: ...
+def replay(
+    original: _Path, log: _Path, result: _Mesh, *, scale: float = 1.0, progress: _Progress | None = None
+) -> Verdict: ...
 def cache_entries(*, folder: _Path | None = None, verify: bool = False) -> list[dict[str, Any]]: ...
 def prune_cache(*, folder: _Path | None = None, size: int | None = None) -> dict[str, int]: ...
 def make_scene(
@@ -662,9 +704,16 @@ def solve(
     *,
     scene: _Path | None = None,
     search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
+    assume: Mapping[str, bool | str] | _Path | None = None,
     timeout: float | None = None,
     max_memory: int | None = None,
     seed: int = 1,
+    plugins: _Path | Sequence[_Path] = (),
+    processes: str | Sequence[str] = (),
+    process_timeout: float = 10.0,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+    no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Solution: ...
@@ -674,4 +723,56 @@ def check_plan(
     plan: Solution | dict[str, Any] | _Path,
     *,
     scene: _Path | None = None,
-) -> tuple[bool, str]: ...
+    plugins: _Path | Sequence[_Path] = (),
+    processes: str | Sequence[str] = (),
+    process_timeout: float = 10.0,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> PlanCheck: ...
+def run_plan(
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    *,
+    scene: _Path,
+    outcomes: int | Mapping[str, bool | str] | _Path = "all",
+    replan: int = 100,
+    timeout: float | None = None,
+    seed: int = 1,
+    rate: float = 1000.0,
+    max_acceleration: float = 5.0,
+    time_optimal: bool = False,
+    trajectories: _Path | None = None,
+    package_path: _Path | Sequence[_Path] = (),
+    plugins: _Path | Sequence[_Path] = (),
+    processes: str | Sequence[str] = (),
+    process_timeout: float = 10.0,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> PlanRun: ...
+def draw_plan(
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    *,
+    format: Literal["text", "dot", "svg"] = "svg",
+    tree: bool = False,
+    scene: _Path | None = None,
+    plugins: _Path | Sequence[_Path] = (),
+    processes: str | Sequence[str] = (),
+    process_timeout: float = 10.0,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+) -> str: ...
+def convert_domain(
+    domain: _Path,
+    problem: _Path | None = None,
+    *,
+    to: _Language,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+) -> str: ...

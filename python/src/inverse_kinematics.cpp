@@ -121,7 +121,8 @@ InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
                                 const std::optional<std::string>& tip,
                                 const std::optional<std::string>& base, const py::object& pose_of,
                                 const py::object& reference, bool numeric, bool ignore_limits,
-                                bool copies, bool free_heading, int starts, std::uint64_t seed) {
+                                bool copies, bool free_heading, int starts, std::uint64_t seed,
+                                const py::object& progress) {
   if (pose.is_none() == pose_of.is_none())
     throw Error(ErrorCode::InvalidArgument, "give pose, or pose_of");
   if (starts < 1) throw Error(ErrorCode::InvalidArgument, "starts must be at least 1");
@@ -149,6 +150,8 @@ InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
   request.free_heading = free_heading;
   request.starts = starts;
   request.seed = seed;
+  Watch watch(progress);
+  request.progress = watch.hook();
   out.answer = run(0, [&] { return kinematics::find_configurations(*arm, request); });
   return out;
 }
@@ -180,6 +183,8 @@ ignore_limits, copies, free_heading : bool
     poses with another heading.
 starts, seed : int
     Of the numeric search.
+progress
+    As for `decimate`; told by the numeric search.
 
 Raises
 ------
@@ -234,7 +239,8 @@ void bind_inverse_kinematics(py::module_& module) {
              py::arg("base") = py::none(), py::arg("pose_of") = py::none(),
              py::arg("reference") = py::none(), py::arg("numeric") = false,
              py::arg("ignore_limits") = false, py::arg("copies") = false,
-             py::arg("free_heading") = false, py::arg("starts") = 100, py::arg("seed") = 1, kDoc);
+             py::arg("free_heading") = false, py::arg("starts") = 100, py::arg("seed") = 1,
+             py::arg("progress") = py::none(), kDoc);
 }
 
 }  // namespace kaboum::python

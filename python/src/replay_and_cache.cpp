@@ -24,12 +24,13 @@ std::string file_of(const py::object& path, const char* argument) {
 }
 
 Verdict replay(const py::object& original, const py::object& log, const py::object& result,
-               double scale) {
+               double scale, const py::object& progress) {
   const std::string from = file_of(original, "original"), by = file_of(log, "log");
   if (!(scale >= 1e-9 && scale <= 1e9))
     throw Error(ErrorCode::InvalidArgument, "scale must be a number from 1e-9 to 1e9");
   const MeshValue made = mesh_of(result, "result");
   bmesh::Log steps;
+  Watch watch(progress);
   const verify::ReplayResult r = run(0, [&] {
     std::vector<char> bytes;
     io::ReadResult input = io::read_mesh(from, {}, &bytes);
@@ -39,7 +40,7 @@ Verdict replay(const py::object& original, const py::object& log, const py::obje
                   by + ": the log was made from another file than " + from);
     io::require_recorded_scale(by, steps.tool, scale);
     io::scale(input, scale, from);
-    return verify::replay(input.mesh, steps, *made.mesh);
+    return verify::replay(input.mesh, steps, *made.mesh, watch.hook());
   });
   Verdict out;
   out.answer = r.verified ? verify::Answer::Verified : verify::Answer::Refuted;
@@ -122,7 +123,7 @@ py::dict prune_cache(const py::object& folder, const std::optional<std::uintmax_
 void bind_replay_and_cache(py::module_& module) {
   module.def(
       "replay", &replay, py::arg("original"), py::arg("log"), py::arg("result"), py::kw_only(),
-      py::arg("scale") = 1.0,
+      py::arg("scale") = 1.0, py::arg("progress") = py::none(),
       R"(Derives a result of `bmesh-decimate --log` again and checks every step exactly, as `bmesh-replay`.
 
 Parameters
@@ -134,6 +135,8 @@ result : mesh
     What was written.
 scale : float
     That the original's coordinates were multiplied by.
+progress
+    As for `decimate`.
 
 Raises
 ------

@@ -143,6 +143,7 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, const py::o
   bodies.set.preparation.drop_sheets = drop_sheets;
   bodies.set.wrap.emplace().where_needed = true;
   Watch watch(progress);
+  r.search.progress = watch.hook();
   return run(threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
     certify::RobotHooks hooks;
@@ -236,8 +237,7 @@ Verdict verify_sweep(const py::object& robot, const py::object& path, const py::
 constexpr const char* kSweepDoc =
     R"(Bounds the volume that a robot sweeps along a path by convex bodies.
 
-Options and defaults are those of sweep-approx (docs/algorithms/swept-volumes.md). Ctrl-C is looked
-at while the links' bodies are made, not during the sweep.
+Options and defaults are those of sweep-approx (docs/algorithms/swept-volumes.md).
 
 Parameters
 ----------

@@ -109,39 +109,53 @@ WorldValue read_world(const py::object& scene) {
   });
 }
 
+/// Calls `look` for every row of configurations, and says how many it has been called for.
+template <class Look>
+void for_rows(const robot::Path& rows, Watch& watch, const Look& look) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i % 16 == 0)
+      watch(std::to_string(i) + " of " + std::to_string(rows.size()) + " configurations");
+    look(rows[i]);
+  }
+}
+
 std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
-                                     const robot::Path& rows, bool resting) {
+                                     const robot::Path& rows, bool resting, Watch& watch) {
   return run(0, [&] {
     world::Scratch scratch;
     std::vector<ContactList> out;
-    for (const std::vector<double>& q : rows)
+    for_rows(rows, watch, [&](const std::vector<double>& q) {
       out.push_back({in, in.checker->find_contacts(state_at(in, robot, q), scratch, {resting})});
+    });
     return out;
   });
 }
 
 py::object check(const WorldValue& in, const py::object& q, const std::optional<std::string>& robot,
-                 bool resting) {
+                 bool resting, const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
-  std::vector<ContactList> made = contacts_at(in, index, rows, resting);
+  Watch watch(progress);
+  std::vector<ContactList> made = contacts_at(in, index, rows, resting, watch);
   if (one) return py::cast(std::move(made.front()));
   return py::cast(std::move(made));
 }
 
 py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
-                           const std::optional<std::string>& robot) {
+                           const std::optional<std::string>& robot, const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  Watch watch(progress);
   const std::vector<char> free = run(0, [&] {
     world::Scratch scratch;
     std::vector<char> out;
-    for (const std::vector<double>& row : rows)
+    for_rows(rows, watch, [&](const std::vector<double>& row) {
       out.push_back(in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0);
+    });
     return out;
   });
   py::array_t<bool> out(static_cast<py::ssize_t>(free.size()));
@@ -152,13 +166,15 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
 
 MotionValue check_motion(const WorldValue& in, const py::object& path,
                          const std::optional<std::string>& robot, double resolution,
-                         std::size_t max_intervals) {
+                         std::size_t max_intervals, const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
+  Watch watch(progress);
   return run(0, [&] {
     world::MotionOptions options;
+    options.progress = watch.hook();
     options.resolution = resolution;
     options.most_intervals = max_intervals;
     return MotionValue{
@@ -168,7 +184,8 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
 
 PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
                     const std::optional<std::string>& robot, std::uint64_t seed, double max_work,
-                    std::size_t max_nodes, int shortcuts, double resolution) {
+                    std::size_t max_nodes, int shortcuts, double resolution,
+                    const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
   bool one = false;
@@ -177,8 +194,10 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   const robot::Path to = rows_of(goals, variables, "goals", one);
   if (!(max_work > 0)) throw Error(ErrorCode::InvalidArgument, "max_work must be above 0");
   if (shortcuts < 0) throw Error(ErrorCode::InvalidArgument, "shortcuts must be at least 0");
+  Watch watch(progress);
   return run(0, [&] {
     motion::PathOptions options;
+    options.check.progress = watch.hook();
     options.seed = seed;
     options.most_work = max_work;
     options.most_nodes = max_nodes;
@@ -293,7 +312,7 @@ using WorldClass = py::class_<WorldValue>;
 void bind_questions(WorldClass& world) {
   world
       .def("check", &check, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false,
+           py::arg("resting") = false, py::arg("progress") = py::none(),
            R"(All contacts of the world with a robot at a configuration, the other robots at home.
 
 Parameters
@@ -303,13 +322,16 @@ q : array
 robot : str, optional
     Its name, where the scene has several.
 resting : bool
-    Look at pairs of objects that rest, too.)")
+    Look at pairs of objects that rest, too.
+progress : callable, optional
+    Is told what is being done, as a str, now and then; what it raises ends the call, as Ctrl-C.)")
       .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           py::arg("progress") = py::none(),
            "Of n x k values, n bools: whether each configuration is free, for certain.")
       .def(
           "check_motion", &check_motion, py::arg("path"), py::kw_only(),
           py::arg("robot") = py::none(), py::arg("resolution") = 1e-5,
-          py::arg("max_intervals") = 1'000'000,
+          py::arg("max_intervals") = 1'000'000, py::arg("progress") = py::none(),
           R"(Whether a robot may move along straight segments of joint values: at every instant, not at samples.
 
 Parameters
@@ -320,10 +342,13 @@ robot : str, optional
 resolution : float
     What is not farther apart counts as contact. [length]
 max_intervals : int
-    Of time that are looked at.)")
+    Of time that are looked at.
+progress
+    As of `check`.)")
       .def("find_path", &find_path, py::arg("start"), py::arg("goals"), py::kw_only(),
            py::arg("robot") = py::none(), py::arg("seed") = 1, py::arg("max_work") = 10.0,
            py::arg("max_nodes") = 100'000, py::arg("shortcuts") = 60, py::arg("resolution") = 1e-5,
+           py::arg("progress") = py::none(),
            R"(A path from a configuration to one of several, certified free at every instant.
 
 Parameters
@@ -341,7 +366,9 @@ max_nodes : int
 shortcuts : int
     That are tried to shorten a path.
 resolution : float
-    As of `check_motion`. [length])");
+    As of `check_motion`. [length]
+progress
+    As of `check`.)");
 }
 
 void bind_world(py::module_& module) {

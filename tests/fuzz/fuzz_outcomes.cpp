@@ -2,10 +2,10 @@
 // planned for and a plan carried out, or throws Error.
 
 #include <kaboum/plan/load.h>
+#include <kaboum/plan/outcomes.h>
 #include <kaboum/plan/replay.h>
 #include <kaboum/plan/solve.h>
 
-#include "../../tools/kaboum-plan/outcomes.h"
 #include "fuzz.h"
 
 namespace {
@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string text(reinterpret_cast<const char*>(data), size);
     plan::RunOptions run;
     run.outcomes = plan::RunOptions::Outcomes::Given;
-    run.given = tools::parse_outcomes(text, "fuzz");
+    run.given = plan::parse_outcomes(text, "fuzz");
     plan::SolveOptions options;
     options.assumed = run.given;
     if (plan::solve(model, options).outcome != plan::Outcome::Solved)

@@ -1,5 +1,6 @@
 """Plans, and their check."""
 
+import json
 import os
 import subprocess
 import sys
@@ -10,22 +11,31 @@ import pytest
 import kaboum
 from conftest import SOURCE
 
-STACKED = SOURCE / "examples" / "domains" / "stacked"
+
+def problem_of(name, size, folder):
+    """Domain and problem of an example."""
+    place = SOURCE / "examples" / "domains" / name
+    text = subprocess.run([sys.executable, place / "make-problem", size], check=True, capture_output=True).stdout
+    (folder / "problem.kpl").write_bytes(text)
+    return place / "domain.kpl", folder / "problem.kpl"
 
 
 @pytest.fixture
 def stacked(tmp_path):
-    """Domain and problem."""
-    text = subprocess.run([sys.executable, STACKED / "make-problem", "4"], check=True, capture_output=True).stdout
-    (tmp_path / "problem.kpl").write_bytes(text)
-    return STACKED / "domain.kpl", tmp_path / "problem.kpl"
+    return problem_of("stacked", "4", tmp_path)
+
+
+@pytest.fixture
+def sensing(tmp_path):
+    return problem_of("force-sensing", "3", tmp_path)
 
 
 def test_plan_is_found_and_holds(stacked):
     solution = kaboum.solve(*stacked, search="astar")
     assert solution and solution.outcome == "solved"
-    assert kaboum.check_plan(*stacked, solution) == (True, "")
-    assert kaboum.check_plan(*stacked, solution.plan)[0]
+    check = kaboum.check_plan(*stacked, solution)
+    assert check and check.violation == "" and check.states > 0 and check.ends > 0 and check.size == solution.size
+    assert kaboum.check_plan(*stacked, solution.plan)
     assert solution.text and solution.statistics["states_expanded"] > 0
 
 
@@ -35,8 +45,8 @@ def test_plan_of_another_problem_is_refuted(stacked):
     text = stacked[1].read_text()
     changed.write_text(text[: text.index("init:")] + "init:\n")
     try:
-        valid, violation = kaboum.check_plan(stacked[0], changed, plan)
-        assert not valid and violation
+        check = kaboum.check_plan(stacked[0], changed, plan)
+        assert not check and check.violation
     except kaboum.Error as error:
         assert error.code == "invalid_input"
 
@@ -75,7 +85,101 @@ def test_scene(tmp_path):
     scene = tmp_path / "cell" / "cell.json"
     solution = kaboum.solve(*files, scene=scene, seed=3)
     assert solution and solution.statistics["external_calls"] > 0
-    assert kaboum.check_plan(*files, solution, scene=scene)[0]
+    assert kaboum.check_plan(*files, solution, scene=scene)
+
+
+def test_plans_are_the_programs(stacked, tmp_path):
+    """solve and show, in process and by the program."""
+    code, text = run("kaboum-plan", "solve", *stacked, "--search", "astar", "-o", tmp_path / "theirs.json")
+    assert code == 0, text
+    solution = kaboum.solve(*stacked, search="astar")
+    solution.write(tmp_path / "ours.json")
+    assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "theirs.json").read_bytes()
+    assert solution.size["nodes"] > 0 and solution.failed_calls == []
+    for form, suffix in (("text", "txt"), ("dot", "dot"), ("svg", "svg")):
+        for tree in (False, True):
+            out = tmp_path / f"drawn.{suffix}"
+            code, text = run("kaboum-plan", "show", *stacked, "--plan", tmp_path / "ours.json", "-o", out, *["--tree"] * tree)
+            assert code == 0, text
+            assert kaboum.draw_plan(*stacked, tmp_path / "ours.json", format=form, tree=tree) == out.read_text()
+
+
+def test_domains_are_converted(sensing, tmp_path):
+    simple = tmp_path / "simple.kpl"
+    simple.write_text("types: thing\nconstants: thing a\npredicates: ready(thing)\nclosed: all\naction prepare(?o : thing)\n"
+                      "  preconds: K(!ready(?o))\n  effects: add(Kf, ready(?o))\ninit: K(!ready(a))\ngoal: K(ready(a))\n")
+    for files, to in (((simple,), "pddl"), ((simple,), "kpl"), (sensing, "kpl")):
+        code, text = run("kaboum-plan", "convert", *files, "-o", tmp_path / f"both.{to}")
+        assert code == 0, text
+        assert kaboum.convert_domain(*files, to=to) == (tmp_path / f"both.{to}").read_text()
+    with pytest.raises(kaboum.Error, match="PDDL cannot say"):
+        kaboum.convert_domain(*sensing, to="pddl")
+    with pytest.raises(kaboum.Error, match="language"):
+        kaboum.convert_domain(tmp_path / "domain.txt", to="pddl")
+    with pytest.raises(kaboum.Error, match="xml"):
+        kaboum.convert_domain(*sensing, to="xml")
+    (tmp_path / "domain.txt").write_text(simple.read_text())
+    assert kaboum.convert_domain(tmp_path / "domain.txt", to="kpl", input_format="kpl") == kaboum.convert_domain(simple, to="kpl")
+
+
+def test_assumptions_leave_branches_out(sensing):
+    whole = kaboum.solve(*sensing)
+    branch = next(line.split("[", 1)[-1].split("]")[0] for line in whole.text.splitlines() if "isSpillable" in line)
+    atom = branch[branch.index("isSpillable"):].split(")")[0] + ")"
+    less = kaboum.solve(*sensing, assume={atom: False})
+    assert less and less.size["leaves"] < whole.size["leaves"]
+    check = kaboum.check_plan(*sensing, less)
+    assert not check and check.violation
+    with pytest.raises(kaboum.Error, match="outcomes"):
+        kaboum.solve(*sensing, assume={atom: 3})
+    with pytest.raises(kaboum.Error, match="outcomes"):
+        kaboum.solve(*sensing, assume=[atom])
+
+
+def test_processes_answer_external_functions(stacked):
+    with pytest.raises(kaboum.Error) as error:
+        kaboum.solve(*stacked, processes="exit 1")
+    assert error.value.code == "invalid_input"
+    with pytest.raises(kaboum.Error, match="processes"):
+        kaboum.solve(*stacked, processes=3)
+
+
+def test_plans_are_carried_out(tmp_path):
+    """As kaboum-plan run: every branch, one of a seed, one that is given; wrong plans are not good."""
+    scene = make_cell(tmp_path / "cell")
+    files = SOURCE / "examples" / "scenarios" / "stacked" / "domain.kpl", tmp_path / "cell" / "problem.kpl"
+    solution = kaboum.solve(*files, scene=scene, seed=3)
+    solution.write(tmp_path / "plan.json")
+    stages = []
+    done = kaboum.run_plan(*files, solution, scene=scene, rate=100, trajectories=tmp_path / "ours", progress=stages.append)
+    assert done and done.problems == [] and done.replans == [] and stages
+    code, text = run("kaboum-plan", "run", *files, "--scene", scene, "--plan", tmp_path / "plan.json", "--rate", "100",
+                     "--trajectories", tmp_path / "theirs", "--report", tmp_path / "report.json")
+    assert code == 0, text
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert done.counts == {name: report[name] for name in done.counts}
+    ours, theirs = (sorted((tmp_path / name).iterdir()) for name in ("ours", "theirs"))
+    assert [f.name for f in ours] == [f.name for f in theirs] and ours
+    assert all(a.read_bytes() == b.read_bytes() for a, b in zip(ours, theirs))
+    one = kaboum.run_plan(*files, solution, scene=scene, rate=100, outcomes=7)
+    assert one and one.counts == {**one.counts, "branches": 1, "samples": done.counts["samples"]}
+    too_fast = kaboum.run_plan(*files, solution, scene=scene, rate=100, outcomes=7, time_optimal=True)
+    assert "most_velocity" in too_fast.counts
+
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        kaboum.run_plan(*files, solution, scene=scene, progress=stop)
+    with pytest.raises(Enough):
+        kaboum.check_plan(*files, solution, scene=scene, progress=stop)
+    with pytest.raises(kaboum.Error, match="rate"):
+        kaboum.run_plan(*files, solution, scene=scene, rate=0)
+    with pytest.raises(kaboum.Error, match="outcomes"):
+        kaboum.run_plan(*files, solution, scene=scene, outcomes=1.5)
 
 
 @pytest.fixture(scope="module")

@@ -57,7 +57,9 @@ int check(const Options& o) {
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
-  const verify::ReplayResult r = verify::replay(input.mesh, log, result.mesh);
+  tools::Progress progress(o.common.quiet);
+  const verify::ReplayResult r = verify::replay(
+      input.mesh, log, result.mesh, [&](const std::string& stage) { progress.show(stage); });
   tools::write_report(o.common, "bmesh-replay",
                       {{"verified", r.verified},
                        {"scale", o.scale},

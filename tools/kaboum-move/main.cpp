@@ -36,8 +36,12 @@ int move(const MoveOptions& o) {
       inputs);
   for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
   const world::Checker checker(r.scene.world);
-  const PathAnswer answer =
-      find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, path_options(o));
+  const PathAnswer answer = [&] {
+    tools::Progress progress(o.common.quiet);
+    motion::PathOptions options = path_options(o);
+    options.check.progress = [&](const std::string& stage) { progress.show(stage); };
+    return find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, options);
+  }();
   tools::Json report = tools::answer_json(r, answer, o);
   if (!r.notes.empty()) report["notes"] = r.notes;
   if (answer.outcome != Outcome::Found) {

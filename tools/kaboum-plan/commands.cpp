@@ -14,6 +14,7 @@
 #include <map>
 
 #include "common/result_files.h"
+#include "explain.h"
 #include "input.h"
 #include "page.h"
 
@@ -57,9 +58,8 @@ Json geometry_json(const manipulation::GeometryCounters& c) {
           {"positive", c.positive}, {"path_s", c.path_seconds}};
 }
 
-/// What the report calls an outcome, what is said of it where there is no plan, and its exit code.
+/// What is said of an outcome where there is no plan, and its exit code.
 struct Verdict {
-  const char* status;
   std::string sentence;
   int code;
 };
@@ -67,22 +67,21 @@ struct Verdict {
 Verdict verdict(const plan::Solution& s) {
   switch (s.outcome) {
     case plan::Outcome::Solved:
-      return {"solved", "", kDone};
+      return {"", kDone};
     case plan::Outcome::Unsolvable:
-      return {"unsolvable",
-              s.refused.empty() ? "unsolvable: every possibility was tried"
+      return {s.refused.empty() ? "unsolvable: every possibility was tried"
                                 : "unsolvable with what external functions answer: " + s.refused,
               kNo};
     case plan::Outcome::NotInferred:
-      return {"not inferred",
-              "no plan with what the knowledge state can infer; it is not proved that there is "
-              "none: " +
-                  s.lost,
-              kNotInferred};
+      return {
+          "no plan with what the knowledge state can infer; it is not proved that there is "
+          "none: " +
+              s.lost,
+          kNotInferred};
     case plan::Outcome::Limit:
       break;
   }
-  return {"limit", "no plan found: " + s.limit, kLimit};
+  return {"no plan found: " + s.limit, kLimit};
 }
 
 /// @throws Error{InvalidArgument} for an extension that names none of them.
@@ -102,8 +101,8 @@ std::string drawing_format(const PlanOptions& o) {
 
 int solve(const PlanOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  ExternalWatch watch;
-  const plan::Model model = load_model(o, &watch);
+  const execution::PlanningTask task = read_task(o, !o.no_cache);
+  const plan::Model model = task.load();
   plan::SolveOptions options;
   options.algorithm = kAlgorithms.at(o.search);
   options.timeout = o.timeout;
@@ -126,20 +125,21 @@ int solve(const PlanOptions& o) {
                  {"problem", o.problem},
                  {"search", o.search},
                  {"assumed", options.assumed},
-                 {"status", said.status},
+                 {"status", plan::name_of(solution.outcome)},
                  {"limit", solution.limit},
                  {"lost", solution.lost},
                  {"refused", solution.refused},
                  {"scene", o.scene},
                  {"statistics", statistics_json(solution.statistics)}};
-  watch.save();
+  task.keep_answers();
   if (!o.scene.empty()) {
-    report["geometry"] = geometry_json(*o.counters);
-    report["geometry"]["answers_reused"] = watch.cache ? watch.cache->reused() : 0;
+    report["geometry"] = geometry_json(task.counters());
+    report["geometry"]["answers_reused"] = task.answers_reused();
   }
   if (o.explain) {
-    report["explanation"] = watch.explanation.json();
-    std::cerr << watch.explanation.text();
+    const auto failures = task.failures();
+    report["explanation"] = failures_json(failures);
+    std::cerr << failures_text(failures);
   }
   plan::PlanSize size;
   std::string text;
@@ -167,9 +167,15 @@ int solve(const PlanOptions& o) {
 }
 
 int check(const PlanOptions& o) {
-  const plan::Model model = load_model(o);
+  const execution::PlanningTask task = read_task(o);
+  const plan::Model model = task.load();
   const plan::Plan p = read_plan_file(model, o.plan);
-  const plan::CheckResult r = plan::check(model, p);
+  const plan::CheckResult r = [&] {
+    Progress progress(o.common.quiet);
+    return plan::check(model, p, plan::kMostStates, [&](std::uint64_t states) {
+      if (states % 1024 == 0) progress.show(std::to_string(states) + " states replayed");
+    });
+  }();
   write_report(o.common, "kaboum-plan",
                {{"command", "check"},
                 {"valid", r.valid},
@@ -190,7 +196,8 @@ int check(const PlanOptions& o) {
 int show(const PlanOptions& o) {
   if (!o.html.empty()) return write_page(o);
   const std::string format = drawing_format(o);
-  const plan::Model model = load_model(o);
+  const execution::PlanningTask task = read_task(o);
+  const plan::Model model = task.load();
   plan::Plan p = read_plan_file(model, o.plan);
   if (o.tree) p = plan::expand_tree(p);
   io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
@@ -200,9 +207,10 @@ int show(const PlanOptions& o) {
 }
 
 int convert(const PlanOptions& o) {
-  const PlanTexts texts = read_texts(o);
+  const plan::TaskTexts texts = execution::read_texts(task_files(o));
   const plan::Language to = language_of(o.output, o.output_format, "--output-format");
-  io::write_file(o.output, plan::convert(texts.domain, texts.second(), to));
+  io::write_file(o.output,
+                 plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, to));
   return kDone;
 }
 

@@ -1,36 +1,17 @@
 #pragma once
 
-#include <kaboum/plan/externals.h>
+#include <kaboum/plan/failed_calls.h>
 
-#include <map>
-#include <memory>
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
 namespace kaboum::tools {
 
-/// Why external functions returned no value: how often each, and what was in the way.
-class Explanation {
- public:
-  /// Functions whose failures are noted. They outlive this.
-  [[nodiscard]] plan::ExternalBindings watch(const plan::ExternalBindings& bindings);
-
-  /// The most frequent failures first.
-  [[nodiscard]] Json json() const;
-  /// The same for people; empty: nothing has failed.
-  [[nodiscard]] std::string text() const;
-
- private:
-  struct Failure {
-    std::string call, reason;
-    bool final = false;  ///< impossible, rather than not found
-    std::size_t times = 0;
-  };
-  [[nodiscard]] std::vector<Failure> failures() const;
-
-  using Notes = std::map<std::pair<std::string, std::string>, std::pair<bool, std::size_t>>;
-  std::shared_ptr<Notes> notes_ = std::make_shared<Notes>();
-};
+/// Why external functions returned no value, in a report.
+Json failures_json(const std::vector<plan::FailedCalls::Failure>& failures);
+/// The same for people, the most frequent ones; empty: nothing has failed.
+std::string failures_text(const std::vector<plan::FailedCalls::Failure>& failures);
 
 }  // namespace kaboum::tools

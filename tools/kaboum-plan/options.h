@@ -1,7 +1,5 @@
 #pragma once
 
-#include <kaboum/manipulation/externals.h>
-
 #include <string>
 #include <vector>
 
@@ -29,8 +27,6 @@ struct PlanOptions {
   std::vector<std::string> packages;            ///< of run and show
   std::vector<std::string> processes, plugins;  ///< with external functions of a user's own
   double process_timeout = 10;                  ///< [s]
-  std::shared_ptr<manipulation::GeometryCounters> counters =
-      std::make_shared<manipulation::GeometryCounters>();  ///< of the scene's functions
   CommonOptions common;
 };
 

@@ -31,11 +31,12 @@ std::vector<execution::ExactMesh> meshes_of(const SceneFile& scene, const PlanOp
 int write_page(const PlanOptions& o) {
   if (o.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
-  const SceneFile scene = read_scene(o.scene);
+  const execution::PlanningTask task = read_task(o);
+  const SceneFile& scene = *task.scene();
   std::vector<std::string> inputs = scene.inputs;
   inputs.insert(inputs.end(), {o.plan, o.domain, o.problem});
   require_apart({{"--html", o.html}}, inputs);
-  const plan::Model model = load_model(o);
+  const plan::Model model = task.load();
   plan::Plan plan = read_plan_file(model, o.plan);
   if (o.tree) plan = plan::expand_tree(plan);
   execution::Recording recording(scene.world, model, plan, {});

@@ -3,24 +3,16 @@
 #include "run.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/execution/exact_cell.h>
-#include <kaboum/execution/simulation.h>
-#include <kaboum/io/mesh_io.h>
+#include <kaboum/execution/run_plan.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <deque>
-#include <filesystem>
 #include <iostream>
-#include <memory>
 
-#include "common/scene_file.h"
 #include "input.h"
 
 namespace kaboum::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// "all", "seed:N", or a JSON file of outcomes.
 plan::RunOptions run_options(const std::string& outcomes) {
@@ -40,43 +32,12 @@ plan::RunOptions run_options(const std::string& outcomes) {
   return out;
 }
 
-/// Writes a file for each motion: N-ROBOT.csv, in the order in which they are carried out.
-execution::MotionSink csv_sink(const world::World& world, const std::string& folder) {
-  if (folder.empty()) return {};
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw Error(ErrorCode::OutputFailed, folder + ": cannot be created: " + error.message());
-  // Every plan that is carried out counts on.
-  return [&world, folder, number = std::make_shared<int>(0)](
-             const plan::RunStep& step, std::size_t robot, const motion::Trajectory& trajectory) {
-    char name[64];
-    std::snprintf(name, sizeof name, "%05d-node%u-", ++*number, step.node);
-    io::write_file(fs::path(folder) / (name + world.robots[robot].name + ".csv"),
-                   to_csv(trajectory, world.robots[robot].kinematics));
-  };
-}
-
 execution::SimulationOptions simulation_options(const PlanOptions& o) {
   execution::SimulationOptions out;
   out.rate = o.rate;
   out.acceleration = o.acceleration;
   if (o.time_optimal) out.profile = motion::Profile::Trapezoid;
   return out;
-}
-
-const char* name_of(plan::Outcome outcome) {
-  switch (outcome) {
-    case plan::Outcome::Solved:
-      return "solved";
-    case plan::Outcome::Unsolvable:
-      return "unsolvable";
-    case plan::Outcome::NotInferred:
-      return "not inferred";
-    case plan::Outcome::Limit:
-      break;
-  }
-  return "limit";
 }
 
 Json replans_json(const std::vector<plan::Replan>& replans) {
@@ -168,45 +129,36 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
 }
 
 int run_plan(const PlanOptions& o) {
-  plan::ReplanOptions options;
-  options.run = run_options(o.outcomes);
-  options.most = o.replan;
-  options.solve.algorithm = plan::Algorithm::Greedy;
-  options.solve.seed = o.common.seed;
-  options.solve.timeout = o.timeout;
-  const SceneFile scene = read_scene(o.scene);
-  const plan::TaskTexts task = read_task(o);
-  const plan::Model model =
-      plan::load(task.domain, task.problem ? &*task.problem : nullptr, task.bindings);
+  execution::PlanRunRequest request;
+  request.replan.run = run_options(o.outcomes);
+  request.replan.most = o.replan;
+  request.replan.solve.algorithm = plan::Algorithm::Greedy;
+  request.replan.solve.seed = o.common.seed;
+  request.replan.solve.timeout = o.timeout;
+  request.simulation = simulation_options(o);
+  request.packages = o.packages;
+  request.trajectories = o.trajectories;
+  const execution::PlanningTask task = read_task(o);
+  const plan::Model model = task.load();
   const plan::Plan plan = read_plan_file(model, o.plan);
-  std::vector<std::string> notes;
-  const judge::Cell cell = execution::exact_cell(scene.world, o.scene, o.packages, notes);
-  for (const std::string& note : notes) log(o.common.quiet, note);
-  const execution::MotionSink sink = csv_sink(scene.world, o.trajectories);
-  std::deque<execution::Simulation> simulations;  // of each plan
-  const plan::StepsOf steps = [&](const plan::Model& m, const plan::Plan& p) {
-    execution::Simulation& simulation =
-        simulations.emplace_back(scene.world, cell, m, p, simulation_options(o), sink);
-    return [&simulation](const plan::RunStep& step) { simulation.carry_out(step); };
-  };
-  plan::ReplanSummary done;
-  if (o.replan == 0) {
-    done.run = plan::run(model, plan, options.run, steps(model, plan));
-  } else {
-    done = plan::run_and_replan(task, model, plan, options, steps);
-  }
-  const plan::RunSummary& summary = done.run;
-  execution::SimulationReport r;
-  for (const execution::Simulation& simulation : simulations) r += simulation.report();
+  const execution::PlanRunReport done = [&] {
+    Progress progress(o.common.quiet);
+    request.simulation.progress = [&](const std::string& stage) { progress.show(stage); };
+    return execution::run_plan(task, model, plan, request);
+  }();
+  for (const std::string& note : done.notes) log(o.common.quiet, note);
+  const plan::RunSummary& summary = done.plans.run;
+  const std::vector<plan::Replan>& replans = done.plans.replans;
+  const execution::SimulationReport& r = done.simulation;
   Json report = report_json(r, summary);
   report["command"] = "run";
   report["scene"] = o.scene;
   report["outcomes"] = o.outcomes;
   report["rate"] = o.rate;
-  report["triangles"] = cell.triangles();
-  report["notes"] = notes;
-  report["replans"] = replans_json(done.replans);
-  const bool good = r.good() && done.complete();
+  report["triangles"] = done.triangles;
+  report["notes"] = done.notes;
+  report["replans"] = replans_json(replans);
+  const bool good = done.good();
   report["verdict"] = good ? "good" : "not good";
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
@@ -215,11 +167,11 @@ int run_plan(const PlanOptions& o) {
               << (summary.branches == 1 ? " branch, " : " branches, ") << r.motions << " motions, "
               << r.samples << " samples, " << r.collisions << " collisions, " << r.limit_violations
               << " limit violations, " << r.jumps << " jumps"
-              << (done.replans.empty() ? ""
-                                       : ", planned again " + std::to_string(done.replans.size()) +
-                                             (done.replans.size() == 1 ? " time" : " times"))
+              << (replans.empty() ? ""
+                                  : ", planned again " + std::to_string(replans.size()) +
+                                        (replans.size() == 1 ? " time" : " times"))
               << '\n';
-  const int missing = say_missing(done.replans);
+  const int missing = say_missing(replans);
   return r.good() ? missing : kNo;
 }
 

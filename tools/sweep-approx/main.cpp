@@ -93,6 +93,8 @@ void say_bad_links(const Run& run) {
 /// @return whether float32 is fine enough.
 bool sweep_bodies(Run& run) {
   const double before = user_seconds();
+  Progress progress(run.o.common.quiet);
+  run.request.search.progress = [&](const std::string& stage) { progress.show(stage); };
   try {
     auto made = certify::certify_sweep(run.robot, run.bodies, run.path, run.request);
     if (!made) return false;

@@ -23,10 +23,11 @@ namespace {
 
 class Checker {
  public:
-  Checker(const Model& model, const Plan& plan, std::uint64_t limit)
+  Checker(const Model& model, const Plan& plan, std::uint64_t limit, const CheckProgress& progress)
       : model_(model),
         plan_(plan),
         limit_(limit),
+        progress_(progress),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
         transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut),
@@ -103,6 +104,7 @@ class Checker {
     if (++result_.states > limit_)
       throw Error(ErrorCode::LimitReached,
                   "more than " + std::to_string(limit_) + " states to replay");
+    if (progress_) progress_(result_.states);
   }
 
   void visit(Index node, RuntimeKnowledge k, std::size_t parent, std::string label) {
@@ -302,6 +304,7 @@ class Checker {
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
+  const CheckProgress& progress_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
@@ -320,12 +323,13 @@ class Checker {
 
 }  // namespace
 
-CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit) {
+CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit,
+                  const CheckProgress& progress) {
   measure(model, plan);  // refuses cycles
-  Checker checker(model, plan, limit);
+  Checker checker(model, plan, limit, progress);
   CheckResult by_databases = checker.run();
   if (by_databases.valid || !checker.kept_less() || !WorldReplay::takes(model)) return by_databases;
-  if (const auto by_worlds = WorldReplay(model, plan, limit).run()) return *by_worlds;
+  if (const auto by_worlds = WorldReplay(model, plan, limit, progress).run()) return *by_worlds;
   throw Error(ErrorCode::LimitReached,
               "the databases of knowledge do not confirm the plan (" + by_databases.violation +
                   "), and there are too many possible worlds to replay it on them");

@@ -7,10 +7,12 @@
 
 namespace kaboum::plan {
 
-WorldReplay::WorldReplay(const Model& model, const Plan& plan, std::uint64_t limit)
+WorldReplay::WorldReplay(const Model& model, const Plan& plan, std::uint64_t limit,
+                         const CheckProgress& progress)
     : model_(model),
       plan_(plan),
       limit_(limit),
+      progress_(progress),
       evaluator_(model, plan),
       live_(model, plan, evaluator_, LiveFacts::Sensing::Reads),
       rules_(model) {}
@@ -35,6 +37,7 @@ void WorldReplay::visit(Index node, const WorldRules::Belief& b, std::size_t par
   if (++result_.states > limit_)
     throw Error(ErrorCode::LimitReached,
                 "more than " + std::to_string(limit_) + " states to replay");
+  if (progress_) progress_(result_.states);
   visits_.push_back({node, &it->second, parent, std::move(label)});
 }
 

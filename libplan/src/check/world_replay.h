@@ -18,7 +18,8 @@ namespace kaboum::plan {
 /// knowledge keep less than follows. The validator's own; the planner's sets share nothing with it.
 class WorldReplay {
  public:
-  WorldReplay(const Model& model, const Plan& plan, std::uint64_t limit);
+  WorldReplay(const Model& model, const Plan& plan, std::uint64_t limit,
+              const CheckProgress& progress);
 
   /// Whether the model is of the kind: it has neither external functions nor rules.
   static bool takes(const Model& model) { return model.externals.empty() && model.rules.empty(); }
@@ -45,6 +46,7 @@ class WorldReplay {
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
+  const CheckProgress& progress_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   WorldRules rules_;

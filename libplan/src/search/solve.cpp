@@ -189,6 +189,20 @@ void search_knowledge(const Model& model, const SolveOptions& options, const std
 
 }  // namespace
 
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::Solved:
+      return "solved";
+    case Outcome::Unsolvable:
+      return "unsolvable";
+    case Outcome::NotInferred:
+      return "not inferred";
+    case Outcome::Limit:
+      break;
+  }
+  return "limit";
+}
+
 Solution solve(const Model& model, const SolveOptions& options) {
   Solution solution;
   Limits limits(options, solution.statistics);

@@ -12,7 +12,8 @@ namespace kaboum::certify {
 
 /// What a swept set is asked to be.
 struct SweepRequest {
-  sweep::SweepOptions search;  ///< epsilon: of the margin [length]
+  /// epsilon: of the margin [length]. Its progress is told of the decision, too.
+  sweep::SweepOptions search;
   /// Have libverify decide, from the bodies that are in the container, that these hold the robot
   /// all along the path. It takes longer than the search; without it the claim rests on the proof
   /// of the steps (docs/algorithms/swept-volumes.md).

@@ -17,6 +17,8 @@ struct SimulationOptions {
   double acceleration = 5;    ///< limit of each joint [rad/s², length/s²]
   double usual_velocity = 1;  ///< of joints whose URDF states none [rad/s, length/s]
   motion::Profile profile = motion::Profile::Quintic;
+  /// Is told now and then what is carried out; what it throws ends the work.
+  std::function<void(const std::string& stage)> progress = {};
 };
 
 /// What was looked at, and what was wrong.

@@ -4,6 +4,7 @@
 #include <kaboum/kinematics/solution_set.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct InverseRequest {
   int starts = 100;                 ///< of the numeric search
   std::uint64_t seed = 1;           ///< of the numeric search
   std::size_t representatives = 6;  ///< of each family, about
+  /// Is told of each start of the numeric search; what it throws ends the work.
+  std::function<void(const std::string& stage)> progress = {};
 };
 
 /// Configurations that reach a pose, and whether they are all.

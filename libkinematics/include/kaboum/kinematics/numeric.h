@@ -3,7 +3,9 @@
 #include <kaboum/kinematics/arm.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace kaboum::kinematics {
@@ -15,6 +17,8 @@ struct NumericOptions {
   double bound = 1e-10;       ///< on the position's error in parts of the reach, and the rotation's
   bool limits = true;         ///< whether solutions are to be within the joints' limits
   std::vector<double> first;  ///< empty: random as well
+  /// Is told of each start; what it throws ends the work.
+  std::function<void(const std::string& stage)> progress = {};
 };
 
 struct NumericSolution {

@@ -17,8 +17,8 @@ struct PathOptions {
   std::size_t most_nodes = 100'000;  ///< of the search trees
   /// The search ends after this time. It changes no path that is found. [s]
   double most_seconds = std::numeric_limits<double>::infinity();
-  int shortcuts = 60;  ///< that are tried to shorten a path; 0: as the search found it
-  world::MotionOptions check = {};
+  int shortcuts = 60;               ///< that are tried to shorten a path; 0: as the search found it
+  world::MotionOptions check = {};  ///< its progress is told of the whole search
 };
 
 /// Two things that stood in the way, and how often.

@@ -4,6 +4,7 @@
 #include <kaboum/plan/plan.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace kaboum::plan {
@@ -15,6 +16,11 @@ struct CheckResult {
   std::uint64_t leaves = 0;  ///< distinct of those at an end of the plan
 };
 
+constexpr std::uint64_t kMostStates = 2'000'000;  ///< that `check` replays by default
+
+/// Is told of each state that is replayed, how many there were; what it throws ends the work.
+using CheckProgress = std::function<void(std::uint64_t states)>;
+
 /// Replays a plan for every way the sensing may turn out: each precondition must hold, each branch
 /// be on something known by then and have a case for its value, and each end meet the goal.
 ///
@@ -24,6 +30,7 @@ struct CheckResult {
 /// down reads is dropped, so shared sub-plans are replayed once for all that reach them alike.
 ///
 /// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.
-CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = 2'000'000);
+CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = kMostStates,
+                  const CheckProgress& progress = {});
 
 }  // namespace kaboum::plan

@@ -60,6 +60,9 @@ enum class Outcome {
   Limit         ///< time, memory or size ran out first
 };
 
+/// "solved", "unsolvable", "not inferred", "limit".
+const char* name_of(Outcome outcome);
+
 struct Solution {
   Outcome outcome = Outcome::Limit;
   std::string limit;  ///< which, when the outcome is Limit

@@ -4,6 +4,7 @@
 #include <kaboum/robot/path.h>
 #include <kaboum/sweep/motion.h>
 
+#include <functional>
 #include <optional>
 
 namespace kaboum::sweep {
@@ -42,6 +43,8 @@ struct StepOptions {
   std::optional<double> max_excess;  ///< largest excess() allowed of a piece [length]
   bool merge = true;                 ///< pieces may span waypoints (Adaptive and Balanced)
   std::vector<SharedBounds> shared;  ///< per segment; Uniform and Baginski only
+  /// Is told of pieces now and then; what it throws ends the work.
+  std::function<void(std::size_t pieces)> progress = {};
 };
 
 /// InvalidArgument because no step of the path is short enough for the options.

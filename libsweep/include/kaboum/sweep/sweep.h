@@ -4,6 +4,9 @@
 #include <kaboum/robot/link_body.h>
 #include <kaboum/sweep/steps.h>
 
+#include <functional>
+#include <string>
+
 namespace kaboum::sweep {
 
 using robot::LinkBody;
@@ -18,6 +21,8 @@ struct SweepOptions {
   std::optional<double> max_excess;  ///< see StepOptions
   /// Polytopes that contain the sum with the ball of radius `margin`, which then is 0.
   bool explicit_margin = false;
+  /// Is told now and then what is done, in the calling thread; what it throws ends the work.
+  std::function<void(const std::string& stage)> progress = {};
 };
 
 enum class Stop {

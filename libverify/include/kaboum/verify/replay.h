@@ -5,9 +5,13 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace kaboum::verify {
+
+/// Is told now and then how far a replay is; what it throws ends the work. May be empty.
+using ReplayProgress = std::function<void(const std::string& stage)>;
 
 struct ReplayResult {
   bool verified = false;
@@ -44,7 +48,8 @@ struct ReplayResult {
 /// @param original  as read from the input file.
 /// @param result    as read from the result file.
 /// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.
-ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result);
+ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result,
+                    const ReplayProgress& progress = {});
 
 /// Checks as `replay` does, but the base mesh and all levels instead of one result: the base is the
 /// original as the log interprets it; every step is certified, against the level before (the
@@ -54,6 +59,7 @@ ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geo
 ///
 /// @param original  as read from the input file.
 /// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.
-ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive);
+ReplayResult replay_progressive(const geom::Mesh& original, const bmesh::Progressive& progressive,
+                                const ReplayProgress& progress = {});
 
 }  // namespace kaboum::verify

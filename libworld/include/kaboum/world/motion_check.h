@@ -3,6 +3,9 @@
 #include <kaboum/robot/path.h>
 #include <kaboum/world/checker.h>
 
+#include <functional>
+#include <string>
+
 namespace kaboum::world {
 
 struct MotionOptions {
@@ -14,6 +17,8 @@ struct MotionOptions {
   /// is seen ends the search, which takes less time: `share` is 0 then.
   bool where = true;
   Scratch* scratch = nullptr;  ///< that is used; null: one of its own
+  /// Is told now and then what is done; what it throws ends the work.
+  std::function<void(const std::string& stage)> progress = {};
 };
 
 struct MotionAnswer {

@@ -1,12 +1,11 @@
 // Outcomes of sensing, as users state them.
 
-#include "outcomes.h"
-
 #include <kaboum/base/error.h>
+#include <kaboum/plan/outcomes.h>
 
 #include <nlohmann/json.hpp>
 
-namespace kaboum::tools {
+namespace kaboum::plan {
 
 std::map<std::string, std::string> parse_outcomes(const std::string& text,
                                                   const std::string& file) {
@@ -26,4 +25,4 @@ std::map<std::string, std::string> parse_outcomes(const std::string& text,
   return out;
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::plan

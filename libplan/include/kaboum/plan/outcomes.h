@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace kaboum::tools {
+namespace kaboum::plan {
 
 /// How sensing turns out, of JSON {"isSpillable(o1)": true, "place(o2)": "shelf"}: by atom or term
 /// "true", "false" or a value.
@@ -11,4 +11,4 @@ namespace kaboum::tools {
 /// @throws Error{InvalidInput} for other texts.
 std::map<std::string, std::string> parse_outcomes(const std::string& text, const std::string& file);
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::plan

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/execution/exact_cell.h>
+#include <kaboum/execution/planning_task.h>
+#include <kaboum/execution/simulation.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kaboum::execution {
+
+/// How a plan is carried out.
+struct PlanRunRequest {
+  /// How sensing turns out, and how it is planned again; `most` 0: what the plan has no branch for
+  /// is an error.
+  plan::ReplanOptions replan;
+  /// Its progress is told of new plans, too, unless these have their own.
+  SimulationOptions simulation;
+  std::vector<std::string> packages = {};  ///< folders that package:// URIs are looked up in
+  /// Each motion's samples are written into this folder as CSV, in the order in which they are
+  /// carried out; empty: none.
+  std::filesystem::path trajectories = {};
+};
+
+/// What came of carrying a plan out.
+struct PlanRunReport {
+  SimulationReport simulation;
+  plan::ReplanSummary plans;
+  std::size_t triangles = 0;  ///< of the exact meshes
+  Notes notes;
+
+  /// Every way came to its end, and nothing on it was wrong.
+  [[nodiscard]] bool good() const { return simulation.good() && plans.complete(); }
+};
+
+/// Carries out a plan in simulation, and judges every sample by the scene's exact meshes.
+///
+/// @param model  of the task.
+/// @throws Error{InvalidArgument} for a task without a scene; as exact_cell, Simulation and
+///   plan::run_and_replan; Error{OutputFailed} for the folder of trajectories.
+PlanRunReport run_plan(const PlanningTask& task, const plan::Model& model, const plan::Plan& plan,
+                       const PlanRunRequest& request);
+
+}  // namespace kaboum::execution
