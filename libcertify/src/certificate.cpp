@@ -54,6 +54,7 @@ Json record_of(const SetCertificate& c) {
   j["notes"] = c.notes;
   if (c.min_thickness > 0)
     j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
+  if (!c.undecided.empty()) j["undecided"] = c.undecided;
   if (c.wrap) j["wrap"] = record_of(*c.wrap);
   return j;
 }
@@ -71,7 +72,9 @@ std::string to_json(const CertifiedSet& set) {
     j["cover"] = {
         {"of", in_words(c.subject)},
         {"surface", c.subject.dropped_sheets == 0 ? "verified" : "verified, without the sheets"},
-        {"solid", c.subject.holes == 0 ? "verified" : "verified, of the closed mesh"}};
+        {"solid", !c.undecided.empty()   ? "undecided"
+                  : c.subject.holes == 0 ? "verified"
+                                         : "verified, of the closed mesh"}};
   } else {
     j["inside_of"] = in_words(c.subject);
     j["inside"] = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
@@ -121,6 +124,7 @@ SetCertificate read_record(std::string_view text) {
       j.at("min_thickness").at("wished").get_to(c.min_thickness);
       c.thickened = count_at(j.at("min_thickness"), "thickened");
     }
+    if (j.contains("undecided")) j.at("undecided").get_to(c.undecided);
     if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));
     c.subject.wrapped = c.wrap.has_value();
     return c;

@@ -313,6 +313,9 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
               ErrorCode::InvalidInput,
               "walls, or triangles with repeated corners, stick out of the solid (" + out + ")");
         }
+      if (outer && !wrap)
+        certificate.undecided =
+            undecided_solid(mesh, prepared, asked.preparation, verify::sum_of(set));
       return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
     }
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +

@@ -178,6 +178,9 @@ std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const Enclosur
   made.triangles = back.triangles.size();
   if (hooks.progress) hooks.progress("verifying");
   made.inside = look_at(given.wrap ? mesh : verify::held_triangles(mesh, solid), back);
+  if (!given.wrap && made.inside.answer == verify::Answer::Verified)
+    if (std::string why = undecided_solid(mesh, solid, request.preparation, back); !why.empty())
+      made.inside = {verify::Answer::Undecided, std::move(why), 0, {}};
   return Issuer::issue(std::move(back), std::move(made), std::move(bytes));
 }
 

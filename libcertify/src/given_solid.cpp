@@ -4,6 +4,8 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/preparation_doubt.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/verify/subject.h>
 
 #include <algorithm>
 
@@ -12,6 +14,28 @@ namespace kaboum::certify {
 bool is_as_it_was(const geom::PreparationReport& r) {
   return r.reversed_triangles == 0 && r.collapsed_triangles == 0 && r.dropped_copies == 0 &&
          r.cancelled_walls == 0 && r.dropped_sheets == 0 && r.holes == 0 && !r.hollow;
+}
+
+std::string undecided_solid(const geom::Mesh& mesh, const geom::Prepared& prepared,
+                            const geom::PrepareOptions& options, const geom::Mesh& outer) {
+  if (options.keep_orientation)
+    return geom::signed_volume(prepared.solid.mesh()) < 0
+               ? "it is inside out: its volume is negative"
+               : std::string();
+  const verify::Subject subject = verify::subject_of(mesh, prepared);
+  if (!subject.both_ways) return {};
+  verify::Inclusion known;
+  known.solid.answer = known.surface.answer = verify::Answer::Verified;
+  const auto look = [&](const geom::Mesh& inner, bool surface_only) {
+    verify::InclusionOptions limits;
+    limits.surface_only = surface_only;
+    limits.max_work = verify::usual_work(inner.triangles.size() + outer.triangles.size());
+    return verify::verify_inclusion(inner, outer, limits);
+  };
+  const verify::Claim solid =
+      verify::decide_rest(subject, subject.mesh, verify::Claims::All, std::move(known), look)
+          .inclusion.solid;
+  return solid.answer == verify::Answer::Verified ? std::string() : solid.reason;
 }
 
 geom::Mesh with_fillings(geom::Mesh mesh, const geom::SolidMesh& solid) {

@@ -37,6 +37,12 @@ GivenSolid give_solid(const geom::Mesh& mesh, Prepare prepare, const geom::Prepa
 /// prepared is that of the prepared mesh.
 bool is_as_it_was(const geom::PreparationReport& report);
 
+/// Why it is not known whether a result holds all that triangles, which are inside, are meant to
+/// bound; empty: it does. Decided as the verifier does.
+/// @param outer  closed, and holds the prepared solid
+std::string undecided_solid(const geom::Mesh& mesh, const geom::Prepared& prepared,
+                            const geom::PrepareOptions& options, const geom::Mesh& outer);
+
 /// The triangles, and those that fill their holes: the solid that is closed so is wrapped, too.
 geom::Mesh with_fillings(geom::Mesh mesh, const geom::SolidMesh& solid);
 

@@ -26,6 +26,9 @@ MeshOutcome outcome_of(const CertifiedLinkMesh& mesh) {
   if (!mesh.flaw.empty()) {
     out.outcome = Outcome::Far;
     out.why = mesh.flaw;
+  } else if (!c.undecided.empty()) {
+    out.outcome = Outcome::Undecided;
+    out.why = mesh.mesh.file.string() + ": " + c.undecided;
   } else if (c.stop == bcd::Stop::OutOfWork) {
     out.outcome = Outcome::Late;
   } else if (!c.reached()) {

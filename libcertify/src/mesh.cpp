@@ -138,6 +138,22 @@ MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& req
   return certify(original, request, hooks, nullptr);
 }
 
+namespace {
+
+std::string undecided_of(const geom::Mesh& input, const BoundedMesh& made,
+                         const MeshRequest& request, const geom::PrepareOptions& options) {
+  if (request.direction != bmesh::Direction::Outer || options.keep_orientation ||
+      !made.original.report.hollow || !made.original.solid.closed())
+    return {};
+  for (const CertifiedMesh& mesh : made.series.meshes)
+    if (std::string why = undecided_solid(input, made.original, options, mesh.artefact());
+        !why.empty())
+      return why;
+  return {};
+}
+
+}  // namespace
+
 BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
                        const MeshPreparation& preparation, const MeshHooks& hooks) {
   using Wrap = MeshPreparation::Wrap;
@@ -165,6 +181,7 @@ BoundedMesh bound_mesh(const geom::Mesh& input, const MeshRequest& request,
   const auto certify_as_prepared = [&] {
     if (hooks.prepared) hooks.prepared();
     made.series = certify(made.original, request, hooks, nullptr);
+    made.undecided = undecided_of(input, made, request, preparation.options);
   };
   if (doubtful) {
     why = geom::doubt_about(made.original.report);

@@ -54,18 +54,18 @@ class Replay {
   }
 
   ReplayResult run(const geom::Mesh& result) {
-    if (!start() || !play_to(log_.steps.size()) || !same_as(result)) return report_;
+    if (!start() || !play_to(log_.steps.size()) || !has_area() || !same_as(result)) return report_;
     return verified();
   }
 
   ReplayResult run(const Progressive& p) {
     if (!start() || !is_base(p.base)) return report_;
     for (std::size_t i = 0; i < p.levels.size(); ++i) {
-      if (!play_to(p.levels[i].steps) || !is_level(p.levels[i], i)) return report_;
+      if (!play_to(p.levels[i].steps) || !has_area() || !is_level(p.levels[i], i)) return report_;
       keep_present();
       ++report_.levels;
     }
-    if (!play_to(log_.steps.size())) return report_;
+    if (!play_to(log_.steps.size()) || !has_area()) return report_;
     return verified();
   }
 
@@ -74,6 +74,7 @@ class Replay {
     report_.dropped = log_.dropped.size();
     report_.reversed = log_.reversed.size();
     if (!interpret()) return false;
+    if (!has_area()) return false;
     find_border();
     if (report_.filled != 0 && !report_.closed)
       return violated("the triangles that fill holes leave the mesh open");
@@ -88,6 +89,16 @@ class Replay {
       if (!step(report_.steps)) return false;
     }
     return true;
+  }
+
+  /// Of nothing nothing is verified.
+  bool has_area() {
+    const auto flat = [&](const Corners& c) {
+      return repeated(c) || CGAL::collinear(points_[c[0]], points_[c[1]], points_[c[2]]);
+    };
+    return log_.direction == bmesh::Direction::Any || !std::ranges::all_of(triangles_, flat) ||
+           violated("after " + std::to_string(report_.steps) +
+                    " steps no triangle with an area is left, of which something could be claimed");
   }
 
   ReplayResult verified() {

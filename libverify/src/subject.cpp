@@ -146,34 +146,38 @@ geom::Mesh turned(geom::Mesh mesh) {
   return mesh;
 }
 
-Subject unprepared_subject(const geom::Mesh& file) {
+Subject unprepared_subject(const geom::Mesh& file, const std::vector<std::uint32_t>& quads) {
   Subject out;
   out.mesh = file;
   out.both_ways = true;
+  out.has_more = !quads.empty();
+  if (!out.has_more) return out;
+  out.triangles = file;
+  add_other_ways(quads, out.triangles);
+  return out;
+}
+
+Subject subject_of(const geom::Mesh& file, const geom::Prepared& prepared) {
+  Subject out;
+  out.mesh = prepared.solid.mesh();
+  out.filled_triangles = prepared.solid.filled_triangles();
+  out.is_prepared = true;
+  out.both_ways = prepared.report.hollow.has_value();
+  out.has_more = !prepared.report.left_out.empty();
+  if (out.has_more) out.triangles = held_triangles(file, prepared);
+  out.report = prepared.report;
   return out;
 }
 
 Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& options) {
   try {
-    geom::Prepared prepared = geom::prepare(file, options);
-    Subject out;
-    out.mesh = prepared.solid.mesh();
-    out.filled_triangles = prepared.solid.filled_triangles();
-    out.is_prepared = true;
-    out.both_ways = prepared.report.hollow.has_value();
-    out.has_more = !prepared.report.left_out.empty();
-    if (out.has_more) out.triangles = held_triangles(file, prepared);
-    out.report = std::move(prepared.report);
-    return out;
+    return subject_of(file, geom::prepare(file, options));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::InvalidInput || options.drop_sheets) throw;
-    Subject out = unprepared_subject(file);
+    using Diagonal = geom::PrepareOptions::Diagonal;
+    Subject out = options.diagonal == Diagonal::AsGiven ? unprepared_subject(file)
+                                                        : unprepared_subject(file, options.quads);
     out.refusal = error.what();
-    out.has_more =
-        options.diagonal != geom::PrepareOptions::Diagonal::AsGiven && !options.quads.empty();
-    if (!out.has_more) return out;
-    out.triangles = file;
-    add_other_ways(options.quads, out.triangles);
     return out;
   }
 }

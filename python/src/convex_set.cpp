@@ -2,6 +2,7 @@
 
 #include "convex_set.h"
 
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/certify/set_options.h>
 #include <kaboum/io/convex_io.h>
@@ -152,6 +153,10 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
         *value.mesh, value.sha256, r, running.no_cache ? nullptr : &cache,
         {watch.hook(), [&](const std::string& text) { out.notes.push_back(text); }});
     if (!found) throw certify::TooCoarse(value.source.empty() ? "the mesh" : value.source);
+    const certify::SetCertificate& c = found->set.certificate();
+    const double diagonal = c.wrap ? c.wrap->diagonal : c.diagonal;
+    if (std::string text = certify::warning_of(r.wanted_epsilon(), diagonal); !text.empty())
+      out.notes.push_back(std::move(text));
     out.made = found->set;
     out.cached = found->cached;
     return out;

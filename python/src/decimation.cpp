@@ -1,5 +1,6 @@
 // Bounding meshes: kaboum.decimate, as bmesh-decimate.
 
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/certify/mesh_options.h>
@@ -198,6 +199,11 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshO
     const certify::MeshHooks hooks{.progress = watch.hook(), .found = {}, .prepared = {}};
     const certify::MeshRequest& request = options.request;
     certify::BoundedMesh made;
+    const geom::Mesh& input = original ? original->solid.mesh() : *value.mesh;
+    if (std::string text =
+            certify::warning_of(request.epsilon, geom::bounding_box(input).diagonal());
+        !text.empty())
+      notes.push_back(std::move(text));
     if (original) {
       made.series = certify::certify_meshes(*original, request, hooks);
       notes.insert(notes.end(), original->report.notes.begin(), original->report.notes.end());

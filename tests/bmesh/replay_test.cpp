@@ -14,6 +14,7 @@ namespace {
 using namespace kaboum;         // NOLINT: the test uses most of it
 using namespace kaboum::bmesh;  // NOLINT
 using verify::replay;
+using verify::replay_progressive;
 
 test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
                    Effort effort = Effort::Fast) {
@@ -383,6 +384,38 @@ TEST(Replay, FillsHolesOfShellsTurnedLater) {
       EXPECT_FALSE(replay(input, mutant, p.solid.mesh()).verified) << missing << ' ' << turned;
     }
   EXPECT_GT(fans_turned, 100U);
+}
+
+// Nothing is verified about nothing: no triangles, none with an area, none that are left.
+TEST(Replay, NothingIsVerifiedOfNothing) {
+  geom::Mesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
+  geom::Mesh needle = sheet;  // collinear
+  needle.vertices[2] = {0.5, 0, 0};
+  geom::Mesh segment = sheet;
+  segment.triangles = {{0, 1, 1}};
+  Log drops_both, drops_one;
+  drops_both.dropped = {0, 1};
+  drops_one.dropped = {0};
+  const std::vector<std::pair<geom::Mesh, Log>> cases{
+      {{}, {}}, {needle, {}}, {sheet, drops_both}, {segment, drops_one}};
+  for (const Direction d : {Direction::Outer, Direction::Inner})
+    for (const auto& [mesh, log] : cases) {
+      Progressive p;
+      p.log = log;
+      p.log.direction = d;
+      geom::Mesh left = mesh;
+      if (!log.dropped.empty()) left = {};
+      p.base = left;
+      for (const auto& found : {replay(mesh, p.log, left), replay_progressive(mesh, p)}) {
+        EXPECT_FALSE(found.verified);
+        EXPECT_NE(found.violation.find("no triangle with an area"), std::string::npos)
+            << found.violation;
+      }
+    }
+  // Two triangles back to back that are not dropped have an area.
+  EXPECT_TRUE(replay(sheet, {}, sheet).verified);
 }
 
 TEST(Replay, RefusesNonsense) {

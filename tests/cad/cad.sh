@@ -99,6 +99,15 @@ shows 1 "link 'base': refuted: .*every triangle is inside, but [1-9].* points of
 grep -q '"faces_outside": [1-9]' r.json || fail "no faces outside: $(cat r.json)"
 shows 0 '^verified: .*exact faces: of these nothing is said' "$BIN/bound-verify" robot ball.urdf strict-ball/ball.urdf --prepare --exact-points 0
 expect 0 '' "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.01 --no-cache
+shows 0 '^verified: .*no point of these that was looked at sticks out' "$BIN/bound-verify" sweep arm.urdf path.csv swept.glb --prepare --report r.json
+grep -q '"exact_points"' r.json || fail "no points of exact faces: $(cat r.json)"
+# Bodies of the triangles alone: points refute the motion, too, unless they are not looked at.
+sed 's/ scale="[^"]*"//' ball.urdf >mm.urdf
+printf 'j\n0\n' >still.csv
+expect 0 '' "$BIN/bcd-decompose" mm.urdf -o strict-mm --prepare strict --epsilon 2% --effort fast --no-cache
+shows 1 'points of exact faces: refuted: [1-9][0-9]* of ' "$BIN/bound-verify" sweep mm.urdf still.csv strict-mm/links/base.glb --prepare
+shows 0 '^verified: .*exact faces: of these nothing is said' \
+  "$BIN/bound-verify" sweep mm.urdf still.csv strict-mm/links/base.glb --prepare --exact-points 0
 expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --no-cache
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001
 head -c 2000 parts/vase.step >cut.step

@@ -100,6 +100,11 @@ def ring(n, inner, outer):
 off("ring", *ring(40, 0.6, 1))
 robot("ring", [("base", [mesh("ring.off"), mesh("ring.off", "0.5 0.5 -1")]), ("arm", [mesh("good.off")])])
 robot("some", [("base", [mesh("good.off")])] + [(name, [mesh(name + ".off")]) for name in odd[:6]])
+# The same in a box: every triangle is inside, and half of what it winds round is a hollow.
+off("hollow", *add(prism([(-1, -1), (2, -1), (2, 2), (-1, 2)], -1, 1), prism([(0, 0), (1, 1), (1, 0), (0, 1)], 0, 0.5)))
+off("bow", *prism([(0, 0), (1, 1), (1.5, 0.5), (1, 0), (0, 1)], 0, 0.5))
+for name in ("hollow", "crossed", "bow", "sheet", "open"):
+    robot("one-" + name, [("base", [mesh("good.off")]), (name, [mesh(name + ".off")])])
 robot("few", [("base", [mesh("good.off")]), ("plate", [mesh("plate.off")]), ("tool", [mesh("sheet.off")])])
 END
 
@@ -238,6 +243,33 @@ expect 0 'sheet.off: judged as it is, for it cannot be prepared' bound-verify sw
 
 # strict and off do as they are told: what they cannot hold stays, and is named.
 made 1 "link 'sheet': NOT enclosed" bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare strict
+# Which solid is meant is not known, and not all that may be is inside: undecided, as the verifier says.
+for program in 'bcd-decompose --effort fast' bmesh-decimate; do
+  # shellcheck disable=SC2086
+  made 7 "link 'hollow': whether every triangle is inside is NOT decided: .*hollow.off: a part of the surface crosses itself" $program \
+    "$R/one-hollow.urdf" -o out --epsilon 0.05 --prepare strict
+  # shellcheck disable=SC2086
+  made 7 "1 of 2 links is not held" $program "$R/one-hollow.urdf" -o out --epsilon 0.05 --prepare strict  # from the cache
+  # shellcheck disable=SC2086
+  made 0 'every triangle of 2 links is inside' $program "$R/one-hollow.urdf" -o out --epsilon 0.05
+done
+for name in crossed bow; do
+  made 7 "link '$name': .* is NOT decided" bcd-decompose --effort fast "$R/one-$name.urdf" -o out --epsilon 0.05 --prepare strict
+  made 1 "link '$name': NOT every triangle is inside" bmesh-decimate "$R/one-$name.urdf" -o out --epsilon 0.05 --prepare strict
+done
+made 7 "link 'bow': .* is NOT decided: .*inside out" bcd-decompose --effort fast "$R/one-bow.urdf" -o out --epsilon 0.05 --prepare off
+# What stays as it was is refuted, too.
+for program in 'bcd-decompose --effort fast' bmesh-decimate; do
+  for name in sheet open; do
+    # shellcheck disable=SC2086
+    made 1 "link '$name': NOT enclosed" $program "$R/one-$name.urdf" -o out --epsilon 0.05 --prepare strict
+  done
+done
+expect 7 'every triangle is inside, but whether all that they bound is, is NOT decided' bcd-decompose --effort fast "$R/m/hollow.off" -o h.glb \
+  --prepare strict --epsilon 0.05
+shows 7 'undecided' bound-verify cover "$R/m/hollow.off" h.glb --prepare
+expect 7 'whether all that its triangles bound is enclosed is NOT decided' bmesh-decimate "$R/m/hollow.off" -o h.off --prepare strict --epsilon 0.05
+shows 7 'undecided' bound-verify mesh --outer "$R/m/hollow.off" h.off --prepare
 # Too near for a wrap: every triangle is inside, but not as near as asked for.
 made 1 "link 'plate': every triangle is inside, but not as near" bcd-decompose "$R/few.urdf" -o out --links plate --epsilon 1e-7 --effort fast
 

@@ -128,6 +128,12 @@ def test_inner_set(ring):
     assert inner.record["direction"] == "inner"
 
 
+def test_a_large_epsilon_is_warned_of():
+    for make in (lambda e: kaboum.decompose(cube(), epsilon=e, no_cache=True), lambda e: kaboum.decimate(cube(), epsilon=e)):
+        assert any("WARNING: epsilon is" in note for note in make(5).notes)
+        assert not any("WARNING" in note for note in make("1%").notes)
+
+
 def test_whatever_triangles_are_wrapped():
     soup = (np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.3, 1], [0.4, 0.2, 1]]), np.arange(6).reshape(2, 3))
     with pytest.raises(kaboum.Error, match="seal needs prepare wrap"):

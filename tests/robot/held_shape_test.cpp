@@ -67,7 +67,11 @@ TEST(HeldShape, NotEveryMeshHolds) {
   for (const geom::Mesh* mesh : std::initializer_list<const geom::Mesh*>{&open, &inverted}) {
     const Holders none({{"a", mesh}});
     EXPECT_EQ(none.left_out().size(), 1U);
-    EXPECT_EQ(none.hold(inner, Claims::All).answer, Answer::Undecided);
+    EXPECT_EQ(none.hold(inner, Claims::All).answer, Answer::Refuted);
+    EXPECT_EQ(none.hold(inner, Claims::Solid).answer, Answer::Undecided);
+    // Beside others it may be meant otherwise.
+    const Holders two({{"a", mesh}, {"b", mesh}});
+    EXPECT_EQ(two.hold(inner, Claims::All).answer, Answer::Undecided);
   }
   const geom::Mesh hollow = merged({solid, flipped(block({0.25, 0.25, 0.25}, {1.5, 1.5, 1.5}))});
   const Holders crooked({{"hollow", &hollow}});

@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/verify/robot_verdict.h>
 
+#include <algorithm>
 #include <map>
 
 #include "support/shapes.h"
@@ -153,6 +154,50 @@ TEST(RobotVerdict, OneMeshThatIsNotConvexRefutes) {
             Answer::Refuted);
   EXPECT_EQ(Case(merged({kBox, sheet(0.3)}), {ring, kRound}).decide(Solid::Prepared).answer,
             Answer::Undecided);
+}
+
+// What is kept as it was, or is inside out, is no more undecided than what is not there.
+TEST(RobotVerdict, ALoneMeshThatHoldsNothingRefutes) {
+  for (const Solid solid : {Solid::AsFile, Solid::Prepared, Solid::Enclosed}) {
+    EXPECT_EQ(Case(sheet(0.3), {sheet(0.3)}).decide(solid).answer, Answer::Refuted);
+    EXPECT_EQ(Case(kBox, {flipped(kRound)}).decide(solid).answer, Answer::Refuted);
+    EXPECT_EQ(Case(bow_tie(), {bow_tie()}).decide(solid).answer, Answer::Refuted);
+    // Beside others it may be meant otherwise.
+    EXPECT_EQ(Case(kBox, {flipped(kRound), flipped(kWide)}).decide(solid).answer,
+              Answer::Undecided);
+  }
+  // It is inside out as a whole, yet winds forwards round what it is to hold.
+  const geom::Mesh both = merged({kRound, translated(flipped(kWide), {5, 0, 0})});
+  EXPECT_EQ(Case(kBox, {both}).decide(Solid::Prepared).answer, Answer::Undecided);
+}
+
+// Quads that are not plane are to be held whichever way they are split.
+TEST(RobotVerdict, BothWaysOfSplittingAQuadAreAskedFor) {
+  geom::Mesh low = kBox;  // its top is the quad, with one corner raised
+  const auto on_top = [&](const geom::Triangle& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t v) { return low.vertices[v].z() == 1; });
+  };
+  std::vector<geom::Triangle> top, rest;
+  for (const geom::Triangle& t : low.triangles) (on_top(t) ? top : rest).push_back(t);
+  ASSERT_EQ(top.size(), 2U);
+  low.triangles = top;
+  low.triangles.insert(low.triangles.end(), rest.begin(), rest.end());
+  // A corner of one of both triangles only.
+  for (const std::uint32_t v : top[0])
+    if (std::ranges::find(top[1], v) == top[1].end()) low.vertices[v].z() = 0.7;
+  // As it is read, along the other corners, which are higher; the other way is lower.
+  geom::Mesh valley = low;
+  for (geom::Vec3& v : valley.vertices)
+    if (v.z() >= 0.7) v.z() = v.z() == 1 ? 0.7 : 1;
+  for (const Solid solid : {Solid::Prepared, Solid::Enclosed}) {
+    Case plain(valley, {valley}), told(valley, {valley});
+    told.files["original"].quads = {0};
+    EXPECT_EQ(plain.decide(solid).answer, Answer::Verified);
+    EXPECT_EQ(told.decide(solid).answer, Answer::Refuted);
+    Case held(valley, {kRound});
+    held.files["original"].quads = {0};
+    EXPECT_EQ(held.decide(solid).answer, Answer::Verified);
+  }
 }
 
 TEST(RobotVerdict, TheWorstShapeIsTheLinks) {

@@ -17,14 +17,17 @@ std::string percent(double length, double diagonal) {
 }  // namespace
 
 int code_of(const certify::SetCertificate& certificate) {
-  if (certificate.stop == bcd::Stop::Done) return kDone;
+  if (certificate.stop == bcd::Stop::Done) return certificate.undecided.empty() ? kDone : kLimit;
   return certificate.stop == bcd::Stop::OutOfWork ? kLimit : kNo;
 }
 
 std::string shortfall(const certify::SetCertificate& c) {
   switch (c.stop) {
     case bcd::Stop::Done:
-      return {};
+      return c.undecided.empty() ? std::string()
+                                 : "every triangle is inside, but whether all that they bound is, "
+                                   "is NOT decided: " +
+                                       c.undecided;
     case bcd::Stop::OutOfWork:
       return "epsilon was not reached within the work allowed; allow more with --max-work, or a "
              "larger epsilon";

@@ -218,6 +218,12 @@ int conclude(const DecimationCase& run) {
     no = no || code == kNo;
     limit = limit || code == kLimit;
   }
+  if (!run.made.undecided.empty()) {
+    log(false, "bmesh-decimate: " + run.asked.input +
+                   ": whether all that its triangles bound is enclosed is NOT decided: " +
+                   run.made.undecided + ". The result is written; --prepare wrap encloses it");
+    limit = true;
+  }
   return no ? kNo : limit ? kLimit : kDone;
 }
 
@@ -312,6 +318,7 @@ Json preparation_of(const DecimationCase& run) {
           {"why_wrapped", run.made.why_wrapped.empty() ? Json() : Json(run.made.why_wrapped)},
           {"why_not_wrapped",
            run.made.why_not_wrapped.empty() ? Json() : Json(run.made.why_not_wrapped)},
+          {"undecided", run.made.undecided.empty() ? Json() : Json(run.made.undecided)},
           {"wrap", run.wrap() ? Json::parse(certify::to_json(*run.wrap())) : Json()},
           {"collapsed_triangles", run.input.collapsed_triangles + p.collapsed_triangles},
           {"dropped_copies", p.dropped_copies},

@@ -139,6 +139,7 @@ void add_sweep_command(CLI::App& app, VerifyOptions& o) {
   add_witness(*c, o);
   add_approximation_format(*c, o, "SWEPT");
   add_links(*c, o);
+  add_exact_points(*c, o);
   add_geometry(*c, o, "ROBOT");
   add_motion(*c, o);
   add_common_options(*c, o.common);

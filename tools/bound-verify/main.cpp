@@ -69,6 +69,7 @@ int verify_sweep(const VerifyOptions& o) {
   sweep.drop_sheets = o.drop_sheets;
   sweep.degrees = o.degrees;
   sweep.max_cells = o.max_cells;
+  sweep.exact_points = o.exact_points;
   return tools::verify_sweep(sweep, o.common);
 }
 

@@ -53,6 +53,10 @@ void decide(SweepCase& run, Progress& progress) {
   options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
   run.claims = verify::verify_sweep(run.shapes.shapes, run.path, run.swept.set, options);
   run.answer = answer_of(run.claims, claims_of(o.claims));
+  if (run.shapes.exact.empty()) return;
+  progress.show("deciding: points of exact faces");
+  run.exact = verify::verify_moving_points(run.shapes.exact, run.path, run.swept.set);
+  if (run.exact) run.answer = verify::worse(run.answer, run.exact->points.answer);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ struct VerifySweepOptions {
   bool prepare = false, drop_sheets = false;  ///< the links' meshes, as bcd-decompose does
   bool degrees = false;                       ///< angles of the path and of --joint
   std::size_t max_cells = 20000;
+  std::size_t exact_points = 0;  ///< of CAD files; 0: triangles alone
 };
 
 /// Decides the claims, prints and reports them. @return the exit code.

@@ -6,6 +6,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot/mesh_files.h>
+#include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/moving_robot.h>
 
 #include <algorithm>
@@ -19,8 +20,14 @@ namespace {
 using robot::Geometry;
 
 /// A mesh of the robot as the file has it, or as prepared where that can be.
-geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, SweepShapes& out) {
-  io::ReadResult read = io::read_mesh(path);
+/// @param exact  points of its exact faces, where it has any
+geom::Mesh read_link_mesh(const std::string& path, const VerifySweepOptions& o, SweepShapes& out,
+                          verify::ExactPoints& exact) {
+  std::vector<char> bytes;
+  io::ReadResult read = io::read_mesh(path, {}, &bytes);
+  if (o.exact_points > 0 && io::is_cad(read.format))
+    exact =
+        verify::read_exact_points(bytes, read.format, path, o.exact_points, 1, read.exact_faces);
   for (const std::string& note : read.notes) out.mesh_notes.add(path, note);
   out.cad = out.cad || io::is_cad(read.format);
   if (!o.prepare) return std::move(read.mesh);
@@ -55,14 +62,17 @@ void add_link(const robot::RobotFile& file, std::uint32_t index, const VerifySwe
   const std::size_t before = out.shapes.size();
   for (const Geometry& g : o.geometry == "visual" ? link.visual : link.collision) {
     geom::Mesh mesh;
+    verify::ExactPoints exact;
     if (g.shape == Geometry::Shape::Mesh) {
       out.files.push_back(robot::find_only_mesh(g.mesh, file.path, o.packages).string());
-      mesh = read_link_mesh(out.files.back(), o, out);
+      mesh = read_link_mesh(out.files.back(), o, out, exact);
     }
     const std::string name = link.name + "/" + std::to_string(count++);
     auto shape = verify::moving_shape(file.robot, index, g, std::move(mesh));
     if (!shape) continue;
     shape->name = name;
+    if (!exact.points.empty())
+      out.exact.push_back({name, verify::scaled(std::move(exact), g.size), shape->chain});
     out.shapes.push_back(std::move(*shape));
     out.links.push_back(index);
   }

@@ -3,6 +3,7 @@
 #include <kaboum/base/notes.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/verify/moving_points.h>
 #include <kaboum/verify/sweep.h>
 
 #include <cstdint>
@@ -18,8 +19,9 @@ namespace kaboum::tools {
 /// The shapes of a robot's links that are to be held.
 struct SweepShapes {
   std::vector<verify::MovingShape> shapes;
-  std::vector<std::uint32_t> links;  ///< of the shapes
-  std::vector<std::string> files;    ///< of the meshes
+  std::vector<std::uint32_t> links;         ///< of the shapes
+  std::vector<verify::MovingPoints> exact;  ///< of the exact faces of CAD files
+  std::vector<std::string> files;           ///< of the meshes
   std::vector<std::string> notes;
   Notes mesh_notes;
   DroppedSheets dropped;

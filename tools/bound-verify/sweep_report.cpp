@@ -2,6 +2,7 @@
 
 #include "sweep_report.h"
 
+#include <kaboum/base/number_text.h>
 #include <kaboum/verify/moving_robot.h>
 
 #include <iomanip>
@@ -25,6 +26,18 @@ std::string say(const verify::SweepPlace& p, const SweepCase& run) {
   text << std::setprecision(17) << run.shapes.shapes[p.shape].name << " at " << p.s
        << " of segment " << p.segment + 1 << ", " << point(p.point);
   return text.str();
+}
+
+std::string line_of(const verify::MovingPointClaim& exact, const SweepCase& run) {
+  const verify::PointClaim& p = exact.points;
+  std::string text = std::string("points of exact faces: ") + name_of(p.answer) + ": ";
+  if (p.answer == Answer::Undefined) return text + p.reason;
+  text += std::to_string(p.outside) + " of " + std::to_string(p.points) + " looked at, at " +
+          std::to_string(exact.configurations) + " configurations, stick out";
+  if (p.outside == 0) return text;
+  return text + ", by up to " + number_up(p.farthest) + ": of " +
+         run.shapes.exact[exact.shape].name + " at " + number_text(exact.s) + " of segment " +
+         std::to_string(exact.segment + 1) + ", " + point(p.at);
 }
 
 }  // namespace
@@ -57,10 +70,14 @@ std::vector<std::string> lines_of(const SweepCase& run) {
     lines.push_back(std::to_string(claims.open_meshes) +
                     " meshes are not closed: their surfaces alone are judged");
   const SweepShapes& shapes = run.shapes;
+  if (run.exact) lines.push_back(line_of(*run.exact, run));
   lines.push_back(std::string(name_of(run.answer)) + ": " +
                   robot::links_judged(shapes.judged, shapes.asked, shapes.bare) +
                   except_sheets(shapes.dropped) +
-                  (shapes.cad && run.answer == Answer::Verified ? kOfTriangles : ""));
+                  (!shapes.cad || run.answer != Answer::Verified ? ""
+                   : run.exact ? "; of the triangles, which stand for exact faces; no point of "
+                                 "these that was looked at sticks out"
+                               : kOfTriangles));
   return lines;
 }
 
@@ -109,6 +126,20 @@ Json report_of(const SweepCase& run) {
   if (claims.refuting) json["claims"]["surface"]["place"] = to_json(*claims.refuting, run);
   if (claims.undecided)
     json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, run);
+  if (const auto& exact = run.exact) {
+    Json& claim = json["claims"]["exact_points"];
+    claim = {{"answer", name_of(exact->points.answer)}, {"reason", exact->points.reason},
+             {"points", exact->points.points},          {"outside", exact->points.outside},
+             {"configurations", exact->configurations}, {"rounding", exact->points.rounding}};
+    if (exact->points.outside > 0) {
+      claim["shape"] = shapes.exact[exact->shape].name;
+      claim["segment"] = exact->segment + 1;
+      claim["s"] = exact->s;
+      claim["farthest"] = exact->points.farthest;
+      claim["at"] = to_json(exact->points.at);
+      claim["face"] = exact->points.face + 1;
+    }
+  }
   if (run.knows_farthest()) json["largest_found"] = to_json(claims.farthest, run);
   json["prepared"] = o.prepare;
   json["dropped_sheet_triangles"] = shapes.dropped;

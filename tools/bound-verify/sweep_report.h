@@ -3,6 +3,7 @@
 #include <kaboum/robot/path.h>
 #include <kaboum/verify/sweep.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct SweepCase {
   SweptInput swept;
   double gap = 0;  ///< verify::SweepOptions::gap
   verify::SweepClaims claims;
-  verify::Answer answer = verify::Answer::Undefined;  ///< of those that decide
+  std::optional<verify::MovingPointClaim> exact = {};  ///< they refute, and prove nothing
+  verify::Answer answer = verify::Answer::Undefined;   ///< of those that decide
 
   /// Whether a distance from the bodies was measured that is to be told.
   [[nodiscard]] bool knows_farthest() const {

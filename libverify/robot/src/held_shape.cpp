@@ -28,8 +28,18 @@ Holders::Holders(const std::vector<NamedMesh>& meshes) : given_(meshes.size()) {
       set_.bodies.push_back({name, *mesh});
     }
   }
+  if (given_ == 1 && set_.bodies.empty()) lone_ = *meshes.front().mesh;
   convex_ = verify_convexity(set_).convex;
   sum_ = sum_of(set_);
+}
+
+bool Holders::lone_refutes(const geom::Mesh& mesh, const InclusionOptions& limits) const {
+  if (!lone_ || lone_->triangles.empty()) return false;
+  if (!closed(*lone_)) return true;
+  InclusionOptions options = limits;
+  options.surface_only = true;
+  options.max_work = options.max_work.value_or(usual_work(mesh.triangles.size()));
+  return verify_inclusion(mesh, *lone_, options).surface.answer == Answer::Refuted;
 }
 
 HeldShape Holders::hold(const geom::Mesh& mesh, Claims claims,
@@ -56,6 +66,10 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
     const bool any = claims != Claims::Solid || (closed(mesh) && geom::signed_volume(mesh) != 0);
     undecided("the result's link has no closed mesh of its pose and scale");
     if (given_ == 0 && any) out.answer = Answer::Refuted;
+    if (claims != Claims::Solid && lone_refutes(mesh, limits)) {
+      out.answer = Answer::Refuted;
+      out.reason = "the result's link has one mesh of its pose and scale, which does not hold it";
+    }
     return out;
   }
   const Inclusion& in = out.inclusion.emplace(verify_inclusion(mesh, sum_, limits));

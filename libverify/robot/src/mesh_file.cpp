@@ -18,6 +18,7 @@ MeshFile read_mesh_file(const std::string& path, std::size_t exact_points) {
     if (exact_points > 0 && io::is_cad(read.format))
       file.exact = read_exact_points(bytes, read.format, path, exact_points, 1, read.exact_faces);
     file.mesh = std::move(read.mesh);
+    file.quads = std::move(read.bent_quads);
     file.notes = std::move(read.notes);
   } catch (const Error& error) {
     if (!is_of_one_mesh(error)) throw;

@@ -53,9 +53,12 @@ struct JudgedFile : Subject {
 JudgedFile judged_file(const MeshFile& file, const RobotQuestion& q) {
   JudgedFile out{{}, &file};
   static_cast<Subject&>(out) = naming(file.path, [&] {
-    return q.solid != Solid::Prepared ? unprepared_subject(file.mesh)
-                                      : prepared_subject(file.mesh, {.drop_sheets = q.drop_sheets,
-                                                                     .holes = geom::Holes::Fill});
+    if (q.solid == Solid::AsFile) return unprepared_subject(file.mesh);
+    if (q.solid == Solid::Enclosed) return unprepared_subject(file.mesh, file.quads);
+    return prepared_subject(file.mesh, {.drop_sheets = q.drop_sheets,
+                                        .holes = geom::Holes::Fill,
+                                        .quads = file.quads,
+                                        .diagonal = geom::PrepareOptions::Diagonal::Outward});
   });
   if (q.solid == Solid::AsFile) out.both_ways = false;
   return out;

@@ -75,6 +75,9 @@ struct SetCertificate {
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
   bcd::Method method = bcd::Method::Planes;
+  /// Why it is not known that an outer set holds all that the triangles, which are inside, are
+  /// meant to bound; empty: it does.
+  std::string undecided;
   /// Of the solid, where it is that of a wrap: distances are then to the solid or to the triangles
   /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
   std::optional<WrapCertificate> wrap;

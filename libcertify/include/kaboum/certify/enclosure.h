@@ -34,7 +34,8 @@ struct EnclosureRequest {
 };
 
 /// Whether every triangle of a file lies in the solid of a mesh: decided by libverify from the
-/// bytes of both. Triangles of sheets dropped on request are not asked for.
+/// bytes of both. Triangles of sheets dropped on request are not asked for. Undecided as well where
+/// all are inside, but which solid they bound is not known and not all that it may be is.
 struct TrianglesInside {
   verify::Answer answer = verify::Answer::Undefined;
   std::string reason;             ///< of what is not verified

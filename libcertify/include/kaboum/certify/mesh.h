@@ -133,6 +133,9 @@ struct BoundedMesh {
   std::string why_wrapped;              ///< where that was not asked for
   std::string why_not_wrapped;          ///< where it was needed
   MeshSeries series;
+  /// Why it is not known that outer results hold all that the triangles are meant to bound; empty:
+  /// they do.
+  std::string undecided;
 
   /// Whether all triangles of the input are in all results (outer), or all triangles of these in
   /// the input's solid (inner); Undefined where nothing is claimed.

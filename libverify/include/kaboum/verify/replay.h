@@ -35,7 +35,8 @@ struct ReplayResult {
 /// or the tetrahedron between them has no triangle of the original in its interior and lies outside
 /// its solid (inner: inside; not checked for bmesh::Direction::Any, which claims nothing); no
 /// vertex of an unbalanced edge moves; and the triangles left are exactly those of `result`,
-/// coordinate by coordinate.
+/// coordinate by coordinate. Where no triangle of the original, as interpreted, or of the result
+/// has an area, nothing is verified.
 ///
 /// The original is taken as the log interprets it: turned triangles are applied and counted,
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains

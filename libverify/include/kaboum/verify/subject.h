@@ -31,13 +31,17 @@ struct Subject {
   std::string refusal;       ///< why it could not be prepared; empty: it was, or nobody tried
 };
 
+/// A subject of triangles that were prepared.
+Subject subject_of(const geom::Mesh& file, const geom::Prepared& prepared);
+
 /// Prepares the triangles of a file.
 /// @throws Error as geom::prepare where sheets were to be dropped, and on other errors than
 ///   InvalidInput
 Subject prepared_subject(const geom::Mesh& file, const geom::PrepareOptions& options);
 
 /// The triangles as they are, whichever way they are oriented.
-Subject unprepared_subject(const geom::Mesh& file);
+/// @param quads  geom::PrepareOptions::quads: they are to lie inside split the other way as well
+Subject unprepared_subject(const geom::Mesh& file, const std::vector<std::uint32_t>& quads = {});
 
 /// Claims about a subject, and the meshes that they are about.
 struct SubjectClaims {

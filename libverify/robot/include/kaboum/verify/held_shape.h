@@ -39,9 +39,10 @@ class Holders {
   /// about a point only where one of them does.
   explicit Holders(const std::vector<NamedMesh>& meshes);
 
-  /// Whether the mesh is in the union of the holders. Where there are several and they are not all
-  /// convex, negative windings of one may hide what another holds: what would be refuted is
-  /// undecided then.
+  /// Whether the mesh is in the union of the holders. Refuted where none was given, or the only one
+  /// is left out and its triangles do not lie in what that one winds round. Where there are several
+  /// and they are not all convex, negative windings of one may hide what another holds: what would
+  /// be refuted is undecided then.
   /// @throws as verify_inclusion
   [[nodiscard]] HeldShape hold(const geom::Mesh& mesh, Claims claims,
                                const InclusionOptions& limits = {}) const;
@@ -75,7 +76,11 @@ class Holders {
   }
 
  private:
+  /// Whether the only mesh, which is open or inside out, does not hold all triangles of another.
+  [[nodiscard]] bool lone_refutes(const geom::Mesh& mesh, const InclusionOptions& limits) const;
+
   std::size_t given_;
+  std::optional<geom::Mesh> lone_;  ///< the only mesh, where it is left out
   geom::ConvexSet set_;
   geom::Mesh sum_;
   Claim convex_;

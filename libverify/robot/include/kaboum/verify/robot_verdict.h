@@ -31,6 +31,7 @@ struct MeshFile {
   std::string path, sha256;
   geom::Mesh mesh;
   std::vector<std::string> notes = {};
+  std::vector<std::uint32_t> quads = {};  ///< geom::PrepareOptions::quads
   /// Points of the exact faces that the triangles stand for, where these are looked at.
   std::optional<ExactPoints> exact = {};
   std::optional<Error> error = {};  ///< why it could not be read; then it has no mesh
