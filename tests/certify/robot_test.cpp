@@ -219,7 +219,7 @@ TEST_F(RobotTest, SweptSetsAreDecidedOnTheBytes) {
   EXPECT_GT(made->certificate().margin, 0);
   EXPECT_EQ(made->certificate().sources.size(), made->artefact().bodies.size());
   const auto decided = [&](const geom::ConvexSet& set) {
-    return decide_motion(file, bodies, quarter_, set, 20000).answer;
+    return decide_motion(file, bodies, quarter_, set, 20000, {}).answer;
   };
   EXPECT_EQ(decided(made->artefact()), verify::Answer::Verified);
   geom::ConvexSet bad = made->artefact();
