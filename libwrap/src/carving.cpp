@@ -254,10 +254,7 @@ class Carver {
     const Sphere& s = info_[c].sphere;
     const bool inside = (p - s.center).norm() < s.radius;
     if (delaunay_.insert(p, inside || from == kNone ? c : from, apart_) == kNone) return;
-    if (delaunay_.point_count() > options_.max_points)
-      throw Error(ErrorCode::LimitReached, "a wrap so fine needs more than " +
-                                               std::to_string(options_.max_points) +
-                                               " points; seal larger gaps");
+    if (delaunay_.point_count() > options_.max_points) throw_too_fine(options_.max_points);
     for (const std::uint32_t d : delaunay_.made()) take_up(d);
     for (const std::uint32_t d : delaunay_.made()) push_gates_into(d);
   }
@@ -464,6 +461,11 @@ geom::Mesh Carver::boundary() const {
 }
 
 }  // namespace
+
+void throw_too_fine(std::size_t most) {
+  throw Error(ErrorCode::LimitReached, "a wrap so fine needs more than " + std::to_string(most) +
+                                           " points; seal larger gaps");
+}
 
 Carving carve(const geom::Mesh& input, const Obstacle& obstacle, const CarvingOptions& options) {
   Carver carver(input, obstacle, options);

@@ -29,4 +29,7 @@ struct Carving {
 /// @throws Error{LimitReached}
 Carving carve(const geom::Mesh& input, const Obstacle& obstacle, const CarvingOptions& options);
 
+/// @throws Error{LimitReached}, always: more points are needed than may be.
+[[noreturn]] void throw_too_fine(std::size_t most);
+
 }  // namespace kaboum::wrap

@@ -360,5 +360,34 @@ TEST(Wrap, RefusesWhatCannotBe) {
   EXPECT_EQ(code(cube, options), ErrorCode::InvalidInput);
 }
 
+TEST(Wrap, WhatIsMuchTooFineIsRefusedAtOnce) {
+  // What the refusal counts on: points of the tetrahedra by area over the square of the radius.
+  const Mesh plate{{{0, 0, 0}, {1, 0, 0}, {0.2, 0.9, 0.1}}, {{0, 1, 2}}};
+  for (const Mesh& mesh : {plate, test::box({1, 1, 1}, 1), test::box({1, 1, 0.01}, 1)}) {
+    for (const double seal : {0.2, 0.1, 0.05}) {
+      WrapOptions options;
+      options.seal = seal;
+      options.offset = seal / 20;
+      double area = 0;
+      for (const auto& [u, v, w] : mesh.triangles)
+        area = std::max(area, (mesh.vertices[v] - mesh.vertices[u])
+                                      .cross(mesh.vertices[w] - mesh.vertices[u])
+                                      .norm() /
+                                  2);
+      EXPECT_GE(static_cast<double>(wrap(mesh, options).points), 0.5 * area / (seal * seal / 4));
+    }
+  }
+  WrapOptions options;
+  options.float32 = false;
+  options.seal = 1e-7;
+  options.offset = 1e-8;
+  try {
+    wrap(plate, options);  // for minutes, without the refusal
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::LimitReached);
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::wrap
