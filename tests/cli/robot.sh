@@ -143,7 +143,7 @@ one_link one/face.urdf face3.off
 shows 0 'verified' "$V" robot one/t.urdf one/t.urdf
 shows 7 'no closed mesh' "$V" robot one/t.urdf one/faces.urdf
 grep -q 'face3.off and 3 more meshes: it is not closed' err.txt || fail "the open mesh is not named"
-shows 7 'no closed mesh' "$V" robot one/face.urdf one/face.urdf
+shows 1 'one mesh of its pose and scale, which does not hold it' "$V" robot one/face.urdf one/face.urdf
 shows 0 'every triangle is inside: 1 mesh in 1 body' "$V" robot one/t.urdf one/both.urdf
 shows 0 'as far as open meshes define it' "$V" robot one/face.urdf one/t.urdf
 expect 7 'inside out' "$V" robot one/inverse.urdf one/t.urdf --claims solid
