@@ -50,9 +50,9 @@ Simulation::Simulation(const world::World& world, const judge::Cell& cell, const
       cell_(cell),
       model_(model),
       plan_(plan),
-      options_(options),
+      options_(std::move(options)),
       sink_(std::move(sink)) {
-  require_above_zero(options);
+  require_above_zero(options_);
 }
 
 void Simulation::say(const std::string& problem) {

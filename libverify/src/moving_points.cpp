@@ -30,14 +30,14 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
   return q;
 }
 
-/// The claim about one shape at one configuration.
-PointClaim look(const MovingPoints& shape, const std::vector<double>& q, std::size_t every,
-                const geom::Mesh& sum, double margin) {
+/// The claim about every n-th point of one shape, from the given one on, at one configuration.
+PointClaim look(const MovingPoints& shape, const std::vector<double>& q, std::size_t first,
+                std::size_t every, const geom::Mesh& sum, double margin) {
   const auto pose = pose_of(shape.chain, q);
   std::vector<geom::Vec3> points;
   std::vector<std::uint32_t> of_face;
   double radius = 0;
-  for (std::size_t i = 0; i < shape.exact.points.size(); i += every) {
+  for (std::size_t i = first; i < shape.exact.points.size(); i += every) {
     const geom::Vec3& p = shape.exact.points[i];
     points.emplace_back(pose.leftCols<3>() * p + pose.col(3));
     of_face.push_back(i < shape.exact.of_face.size() ? shape.exact.of_face[i] : 0);
@@ -76,12 +76,12 @@ std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoint
   MovingPointClaim out;
   out.points.answer = Answer::Verified;
   const auto look_at = [&](std::size_t segment, double s) {
-    ++out.configurations;
+    const std::size_t first = out.configurations++ % density.every;  // all have their turn
     const std::vector<double>&from = path[segment],
           &to = path[std::min(segment + 1, path.size() - 1)];
     const std::vector<double> q = between(from, to, s);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const PointClaim found = look(shapes[i], q, density.every, sum, set.margin);
+      const PointClaim found = look(shapes[i], q, first, density.every, sum, set.margin);
       if (found.answer == Answer::Undefined && found.points > 0 && out.points.outside == 0) {
         out.points.answer = Answer::Undefined;
         out.points.reason = found.reason;

@@ -63,6 +63,11 @@ PointClaim verify_points(const PointQuestion& q, const geom::Mesh& solid, double
   }
   // A point is wrong by at most √3 times what its coordinates are.
   const double allowed = (margin + 1.8 * q.rounding) * (1 + 0x1p-50);
+  const bool finite = std::ranges::all_of(q.points, [](const Vec3& p) { return p.allFinite(); });
+  if (!finite || !std::isfinite(allowed)) {
+    out.reason = "numbers are not finite";
+    return out;
+  }
   std::vector<double> depths(q.points.size());
   verify::parallel_for(std::size_t{0}, q.points.size(),
                        [&](std::size_t i) { depths[i] = outside.depth(q.points[i]); });

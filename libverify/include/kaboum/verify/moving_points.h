@@ -30,7 +30,8 @@ struct MovingPointClaim {
 
 /// Decides of each point at the waypoints and at configurations between them whether it lies
 /// outside a set of convex bodies, margin included: certainly, roundings of poses taken off. Where
-/// that would be more than some 500,000 looks, some of the points are looked at.
+/// that would be more than some 500,000 looks, every n-th point is looked at, others at each
+/// configuration.
 /// @return nullopt if there are no points
 /// @throws as verify_points
 std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoints> shapes,
