@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "outside.h"
+
 namespace kaboum::verify {
 namespace {
 
 constexpr double kLooks = 5e5;         ///< at points, altogether
 constexpr std::size_t kMostStops = 8;  ///< configurations of a segment
 
-/// What the points are looked at with: every so manieth, at so many configurations of a segment.
+/// The sampling: every n-th point, at so many configurations of a segment.
 struct Density {
   std::size_t every = 1, stops = 1;
 };
@@ -32,7 +34,7 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 /// The claim about every n-th point of one shape, from the given one on, at one configuration.
 PointClaim look(const MovingPoints& shape, const std::vector<double>& q, std::size_t first,
-                std::size_t every, const geom::Mesh& sum, double margin) {
+                std::size_t every, const Outside& outside, double margin) {
   const auto pose = pose_of(shape.chain, q);
   std::vector<geom::Vec3> points;
   std::vector<std::uint32_t> of_face;
@@ -47,7 +49,7 @@ PointClaim look(const MovingPoints& shape, const std::vector<double>& q, std::si
   const double rounding =
       (1.8 * shape.exact.rounding + bound_motion(shape.chain, q, q, radius).rounding) *
       (1 + 0x1p-50);
-  return verify_points({points, of_face, rounding}, sum, margin);
+  return verify_points({points, of_face, rounding}, outside, margin);
 }
 
 }  // namespace
@@ -69,7 +71,7 @@ std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoint
   std::size_t count = 0;
   for (const MovingPoints& shape : shapes) count += shape.exact.points.size();
   if (count == 0 || path.empty()) return std::nullopt;
-  const geom::Mesh sum = sum_of(set);
+  const Outside outside(sum_of(set));
   const std::size_t segments = std::max<std::size_t>(1, path.size() - 1);
   Density density = density_of(count, segments);
   if (path.size() == 1) density.stops = 1;
@@ -81,7 +83,7 @@ std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoint
           &to = path[std::min(segment + 1, path.size() - 1)];
     const std::vector<double> q = between(from, to, s);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const PointClaim found = look(shapes[i], q, first, density.every, sum, set.margin);
+      const PointClaim found = look(shapes[i], q, first, density.every, outside, set.margin);
       if (found.answer == Answer::Undefined && found.points > 0 && out.points.outside == 0) {
         out.points.answer = Answer::Undefined;
         out.points.reason = found.reason;

@@ -20,7 +20,7 @@ ExternalBindings FailedCalls::watch(const ExternalBindings& bindings) {
         for (std::size_t i = 0; i < q.arguments.size(); ++i)
           call += (i > 0 ? ", " : "") + q.arguments[i];
         auto& [impossible, times] = (*notes)[{call + ")", answer.reason}];
-        impossible = answer.kind == Answer::Kind::Impossible;
+        impossible = (times == 0 || impossible) && answer.kind == Answer::Kind::Impossible;
         ++times;
       }
       return answer;

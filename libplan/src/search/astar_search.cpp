@@ -13,7 +13,7 @@
 namespace kaboum::plan {
 namespace {
 
-/// Of a state that the evaluator, which is safe, calls a dead end.
+/// The estimate of dead ends.
 constexpr std::uint64_t kDeadEnd = ~std::uint64_t{0};
 
 class AStarSearch {

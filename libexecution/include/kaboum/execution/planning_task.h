@@ -41,7 +41,7 @@ class PlanningTask {
   /// @throws Error as plan::load.
   [[nodiscard]] plan::Model load() const;
 
-  /// What the scene's functions have done so far.
+  /// Counters of the scene's functions, of all calls so far.
   [[nodiscard]] const manipulation::GeometryCounters& counters() const;
   [[nodiscard]] std::vector<plan::FailedCalls::Failure> failures() const;
   [[nodiscard]] std::size_t answers_reused() const;

@@ -10,10 +10,9 @@
 
 namespace kaboum::execution {
 
-/// How a plan is carried out.
+/// Options of carrying out a plan.
 struct PlanRunRequest {
-  /// How sensing turns out, and how it is planned again; `most` 0: what the plan has no branch for
-  /// is an error.
+  /// Outcomes of sensing, and planning again; `most` 0: an outcome without a branch is an error.
   plan::ReplanOptions replan;
   /// Its progress is told of new plans, too, unless these have their own.
   SimulationOptions simulation;
@@ -23,7 +22,7 @@ struct PlanRunRequest {
   std::filesystem::path trajectories = {};
 };
 
-/// What came of carrying a plan out.
+/// The report on a plan that was carried out.
 struct PlanRunReport {
   SimulationReport simulation;
   plan::ReplanSummary plans;

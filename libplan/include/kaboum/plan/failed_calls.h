@@ -16,7 +16,7 @@ class FailedCalls {
  public:
   struct Failure {
     std::string call, reason;
-    bool impossible = false;  ///< rather than not found
+    bool impossible = false;  ///< each time; else not found, at least once
     std::size_t times = 0;
   };
 
