@@ -134,9 +134,9 @@ class Update {
       fail(path.string()
                .append(" is out of date and was made with '")
                .append(*unknown)
-               .append("', which this command does not know: make it anew with bcd-decompose ")
-               .append(parameters)
-               .append(", and put its SHA-256 into the scene"));
+               .append("', which is not known here: make it anew with bcd-decompose, and put its "
+                       "SHA-256 into the scene; it was made with ")
+               .append(parameters));
     if (parameters.empty())
       fail(path.string() + " is out of date, and does not say how it was made: make it anew");
     return out;

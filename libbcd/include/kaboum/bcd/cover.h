@@ -14,13 +14,6 @@ namespace kaboum::bcd {
 /// How much work the search spends.
 enum class Effort { Fast, Normal, Best };
 
-/// How bodies are found; the claims are the same. The last two are there to be compared with.
-enum class Method {
-  Planes,    ///< cuts that follow the shape, merging, refinement
-  Clusters,  ///< clusters of triangles, as HACD forms them, take the pieces of such cuts
-  Voxels,    ///< cuts across the axes, as V-HACD chooses them, and merging
-};
-
 /// Whether the input is simplified to a bounding mesh first ([gaschler2016] §4.4.2): within a tenth
 /// of epsilon, which the bodies' distance to the input includes.
 enum class PreStep {
@@ -65,7 +58,6 @@ struct CoverOptions : SetOptions {
   /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
   /// the smallest distance with which both hold. Not with min_thickness.
   std::optional<std::size_t> max_total_vertices;
-  Method method = Method::Planes;
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. [length]
   double min_thickness = 0;

@@ -29,7 +29,6 @@ struct SetRequest {
 
   // Of outer sets; inner ones refuse them.
   std::optional<std::size_t> max_total_vertices;
-  bcd::Method method = bcd::Method::Planes;
   bcd::PreStep pre_step = bcd::PreStep::Auto;
   std::optional<double> simplify;      ///< share of epsilon for leaving out vertices
   std::optional<double> improve_work;  ///< nominal seconds, see bcd::SetOptions
@@ -74,7 +73,6 @@ struct SetCertificate {
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
-  bcd::Method method = bcd::Method::Planes;
   /// Why it is not known that an outer set holds all that the triangles, which are inside, are
   /// meant to bound; empty: it does.
   std::string undecided;
