@@ -7,6 +7,7 @@
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -66,8 +67,9 @@ TEST(ComparedMethods, ALetterInTwo) {
 }
 
 TEST(ComparedMethods, DistancesAreToTheMeshBeforeItsPreStep) {
-  const Mesh mesh = kaboum::test::torus(1, 0.3, 80, 40);
+  const Mesh mesh = kaboum::test::torus(1, 0.3, 120, 60);
   const geom::Prepared input = geom::prepare(mesh);
+  const SolidField solid(mesh, 2000, 0);
   CoverOptions options = at_most(8);
   options.pre_step = PreStep::On;
   for (const ComparedMethod method : kMethods) {
@@ -75,6 +77,12 @@ TEST(ComparedMethods, DistancesAreToTheMeshBeforeItsPreStep) {
     EXPECT_GT(result.statistics.pre_step_triangles, 0U);
     EXPECT_LT(result.statistics.pre_step_triangles, mesh.triangles.size());
     test::expect_cover(input.solid.mesh(), result, 64);
+    double farthest = 0;
+    for (const geom::ConvexBody& body : result.bodies)
+      for (const Vec3& p : body.hull.vertices)
+        if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
+    EXPECT_LE(farthest, result.excess_upper);
+    EXPECT_GT(farthest, 0);
   }
 }
 
