@@ -100,7 +100,7 @@ double placing_error(const Geometry& g, double size) {
 
 namespace {
 
-/// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
+/// Appends the bodies of one shape in the frame of its link, points within the bodies' radii:
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set  of the mesh in its own frame and unit; unused for other shapes.
 void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
@@ -117,9 +117,9 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
   }
   const bool exact = is_placed_exactly(g);
   for (const geom::ConvexBody& body : set->bodies) {
-    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
+    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * body.radius};
     double size = 0;
-    for (const geom::Vec3& p : body.hull.vertices) {
+    for (const geom::Vec3& p : body.core.vertices) {
       const geom::Vec3 scaled = p.cwiseProduct(g.size);
       size = std::max(size, scaled.norm());
       b.points.emplace_back(exact ? scaled : g.origin * scaled);
