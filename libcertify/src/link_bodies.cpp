@@ -198,7 +198,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   if (bodies.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +
-                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+                    (request.shapes.visual ? std::string() : "; try «geometry=visual»"));
   return Issuer::issue(std::move(bodies), std::move(out), {});
 }
 

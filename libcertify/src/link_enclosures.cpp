@@ -37,7 +37,7 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
   if (found.meshes.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a mesh" +
-                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+                    (request.shapes.visual ? std::string() : "; try «geometry=visual»"));
   LinkEnclosures out;
   out.meshes.resize(found.meshes.size());
   std::vector<std::exception_ptr> flaws(found.meshes.size());

@@ -54,7 +54,7 @@ Comparison::Comparison(Shape a, Shape b, CompareOptions options) : options_(std:
       throw Error(ErrorCode::InvalidInput,
                   name +
                       ": bodies with a radius have a curved surface, to which distances are not "
-                      "stable (gaps close); measure solid to solid with --solid");
+                      "stable (gaps close); measure solid to solid («solid»)");
     side.each_points([&](const std::vector<Vec3>& points) {
       for (const Vec3& v : points)
         if (!v.allFinite())

@@ -56,11 +56,11 @@ std::optional<std::string> ExactScene::find_contact(const std::vector<double>& q
   std::vector<Posed> placed;
   for (const Body& body : bodies) {
     poses.push_back(body.link ? links[*body.link] * body.pose : body.pose);
-    placed.push_back(posed(body.core, poses.back()));
+    placed.push_back(posed(body.hull, poses.back()));
   }
   for (const auto& [i, j] : pairs)
     if (!clearly_apart(placed[i], placed[j]) &&
-        rational_within(bodies[i].core, poses[i], bodies[j].core, poses[j], 0))
+        rational_within(bodies[i].hull, poses[i], bodies[j].hull, poses[j], 0))
       return bodies[i].name + " and " + bodies[j].name;
   return std::nullopt;
 }
