@@ -60,15 +60,41 @@ bool is_of_mesh(const Error& error) {
   return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
 }
 
+/// The hooks, which set `ended` where one of them throws: that is no mesh's flaw.
+RobotHooks watched(const RobotHooks& hooks, bool& ended) {
+  RobotHooks out = hooks;
+  if (hooks.progress)
+    out.progress = [&](const std::string& stage) {
+      ended = true;
+      hooks.progress(stage);
+      ended = false;
+    };
+  if (hooks.note)
+    out.note = [&](const std::string& file, const std::string& text) {
+      ended = true;
+      hooks.note(file, text);
+      ended = false;
+    };
+  if (hooks.made)
+    out.made = [&](const CertifiedLinkMesh& mesh) {
+      ended = true;
+      hooks.made(mesh);
+      ended = false;
+    };
+  return out;
+}
+
 /// As certify_link_mesh, but for what may be wrong with the mesh: RobotRequest::partial.
 CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
                                   const RobotRequest& request, const SetCache* cache,
-                                  const RobotHooks& hooks, std::exception_ptr& first) {
+                                  const RobotHooks& given, std::exception_ptr& first) {
+  bool ended = false;
+  const RobotHooks hooks = watched(given, ended);
   std::string flaw;
   try {
     return certify_link_mesh(mesh, epsilon, request, cache, hooks);
   } catch (const Error& error) {
-    if (!request.partial || !is_of_mesh(error)) throw;
+    if (ended || !request.partial || !is_of_mesh(error)) throw;
     flaw = error.what();
     if (!first) first = std::current_exception();
   }
@@ -80,7 +106,7 @@ CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::option
     out.made = certify_link_mesh(mesh, {}, loose, cache, hooks).made;
     out.held = true;
   } catch (const Error& error) {
-    if (!is_of_mesh(error)) throw;
+    if (ended || !is_of_mesh(error)) throw;
   }
   return out;
 }

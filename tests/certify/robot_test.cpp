@@ -339,6 +339,29 @@ class MixedRobotTest : public RobotTest {
   geom::Mesh mesh_of(const std::string& name) const { return io::read_mesh(folder_ / name).mesh; }
 };
 
+// What a hook throws ends the work, and is no flaw of the mesh that is being looked at.
+TEST_F(MixedRobotTest, WhatAHookThrowsIsNoFlawOfAMesh) {
+  const robot::RobotFile robot = mixed();
+  const auto stop = [](const std::string&) {
+    throw Error(ErrorCode::InvalidInput, "the user's own");
+  };
+  const auto message_of = [](const auto& work) -> std::string {
+    try {
+      work();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing thrown";
+  };
+  RobotHooks hooks;
+  hooks.progress = stop;
+  const std::string of_sets = message_of([&] { certify_robot(robot, tolerant(), nullptr, hooks); }),
+                    of_meshes =
+                        message_of([&] { enclose_links(robot, enclosures(), nullptr, stop); });
+  EXPECT_TRUE(of_sets.ends_with("the user's own")) << of_sets;
+  EXPECT_TRUE(of_meshes.ends_with("the user's own")) << of_meshes;
+}
+
 TEST_F(MixedRobotTest, OneBadMeshIsNamedAndTheRestHeld) {
   const robot::RobotFile robot = mixed();
   EXPECT_THROW(certify_robot(robot, fast()), Error);
