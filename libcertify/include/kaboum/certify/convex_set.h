@@ -15,7 +15,7 @@
 
 namespace kaboum::certify {
 
-/// What a set of convex bodies is asked to be.
+/// Request for a set of convex bodies.
 struct SetRequest {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
@@ -58,7 +58,7 @@ struct SetRequest {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// What was found out about a set. A claim only as part of a CertifiedSet.
+/// Certificate of a set. A claim only as part of a CertifiedSet.
 struct SetCertificate {
   SetRequest::Direction direction = SetRequest::Direction::Outer;
   bcd::Stop stop = bcd::Stop::Done;
@@ -82,7 +82,7 @@ struct SetCertificate {
   /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
   std::optional<WrapCertificate> wrap;
 
-  /// Whether epsilon, if asked for, is reached, within all limits.
+  /// True if epsilon, if asked for, is reached, within all limits.
   [[nodiscard]] bool reached() const { return stop == bcd::Stop::Done; }
 };
 
@@ -93,7 +93,7 @@ using CertifiedSet = Certified<geom::ConvexSet, SetCertificate>;
 /// As in reports of bcd-decompose, with the claims and what they are about: a JSON object.
 std::string to_json(const CertifiedSet& set);
 
-/// How long work is watched. Both may be empty; called from the calling thread.
+/// Callbacks of long work. Both may be empty; called from the calling thread.
 struct Hooks {
   std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
   std::function<void(const std::string& text)> note;       ///< things a user should know
