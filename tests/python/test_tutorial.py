@@ -21,7 +21,8 @@ def folder(tmp_path):
 
 
 def run_session(folder, text):
-    return subprocess.run([sys.executable, "-c", text], cwd=folder, env=os.environ, capture_output=True, text=True, check=False)
+    (folder / "session.py").write_text(text)  # a file, so that errors show the line that failed
+    return subprocess.run([sys.executable, "session.py"], cwd=folder, env=os.environ, capture_output=True, text=True, check=False)
 
 
 def test_session(folder):
