@@ -206,7 +206,7 @@ int run(int argc, char** argv) {
   for (const auto& [item, mesh] : exact) {
     if (!sets.empty() && sets.back().first == item) continue;
     const world::BoundingSet& outer = world.outer(item);
-    for (std::size_t i = 0; i < outer.size(); ++i) sets.emplace_back(item, outer.body(i).hull);
+    for (std::size_t i = 0; i < outer.size(); ++i) sets.emplace_back(item, outer.body(i).core);
   }
   const Times ours = decided(checker, all);
   world::Scratch scratch;

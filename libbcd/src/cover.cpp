@@ -19,7 +19,7 @@ namespace {
 void measure_anew(CoverCandidate& result, const Mesh& closed) {
   const SolidField solid(closed, kMeasuringGrid, 0);
   std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
+  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
   ExcessOptions options;
   options.absolute_gap = kMeasuredGap * solid.diagonal();
   options.worth_measuring = kWorthMeasuring;

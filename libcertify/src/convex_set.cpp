@@ -81,8 +81,8 @@ struct Refutation {
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
-        geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
-      return {"a body is thinner than --min-thickness", {}};
+        geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
+      return {"a body is thinner than «min-thickness»", {}};
   const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
     for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;

@@ -20,11 +20,11 @@ ComplementOfUnion::ComplementOfUnion(const MeshPair& meshes, const geom::ConvexS
   std::vector<Bounds> boxes;
   std::vector<std::uint32_t> items;
   for (const geom::ConvexBody& body : set.bodies) {
-    if (body.hull.triangles.empty() || !MeshPair(geom::Mesh{}, body.hull).closed(kOutside))
+    if (body.core.triangles.empty() || !MeshPair(geom::Mesh{}, body.core).closed(kOutside))
       continue;
-    Body planes = body_of(body.hull, meshes);
+    Body planes = body_of(body.core, meshes);
     if (planes.planes.empty()) continue;
-    const geom::Box3 box = geom::bounding_box(body.hull);
+    const geom::Box3 box = geom::bounding_box(body.core);
     Bounds bounds;
     for (int k = 0; k < 3; ++k) {
       bounds.low[k] = box.min[k] * meshes.scale();

@@ -95,10 +95,8 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
   const verify::MeshVerdict found = run(asked.threads, [&] {
     const auto subject = subject_of(original, asked, out.notes);
     const geom::Mesh& mesh = subject ? subject->mesh : *original.mesh;
-    const double margin = set != nullptr ? set->margin : 0;
-    if (asked.relation == verify::Relation::Inner && margin > 0)
-      throw Error(ErrorCode::InvalidInput,
-                  "the set's margin enlarges the bodies; an inner set must have none");
+    const bool cover = asked.relation == verify::Relation::Cover && set != nullptr;
+    const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
     std::optional<double> bound;
     if (asked.epsilon) {
       bound = asked.epsilon->of(geom::bounding_box(mesh).diagonal());

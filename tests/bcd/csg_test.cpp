@@ -103,7 +103,7 @@ KnownUnion union_of_prisms(std::mt19937& random, int count) {
 bool truly_covered(const Mesh& mesh, const std::vector<ConvexBody>& bodies) {
   std::vector<Mesh> hulls;
   hulls.reserve(bodies.size());
-  for (const ConvexBody& body : bodies) hulls.push_back(body.hull);
+  for (const ConvexBody& body : bodies) hulls.push_back(body.core);
   const auto verdict = kaboum::test::arrangement_verdict(mesh, kaboum::test::merged(hulls));
   return *verdict.solid && *verdict.surface;
 }
@@ -126,8 +126,8 @@ int expect_points_covered(const Mesh& mesh, const std::vector<ConvexBody>& bodie
 }
 
 ConvexBody shrunk(ConvexBody body) {
-  const Vec3 center = geom::bounding_box(body.hull).center();
-  for (Vec3& p : body.hull.vertices) p = center + (1 - 1e-6) * (p - center);
+  const Vec3 center = geom::bounding_box(body.core).center();
+  for (Vec3& p : body.core.vertices) p = center + (1 - 1e-6) * (p - center);
   return body;
 }
 
@@ -200,16 +200,16 @@ TEST(Csg, ACornerInsideTheSolidCannotBeLeftOut) {
     for (std::size_t i = 0; i < octants.size(); ++i) {
       std::vector<ConvexBody> mutant = octants;
       std::vector<Vec3> points;
-      for (const Vec3& p : octants[i].hull.vertices) {
+      for (const Vec3& p : octants[i].core.vertices) {
         if (p != corner) {
           points.push_back(p);
           continue;
         }
-        const Vec3 inward = geom::bounding_box(octants[i].hull).center() - corner;
+        const Vec3 inward = geom::bounding_box(octants[i].core).center() - corner;
         for (int k = 0; k < 3; ++k)
           points.emplace_back(corner + 2 * depth * inward[k] * Vec3::Unit(k));
       }
-      mutant[i].hull = *geom::convex_hull(points);
+      mutant[i].core = *geom::convex_hull(points);
       EXPECT_FALSE(truly_covered(cube, mutant));
       const verify::Cover cover = verify::verify_cover(cube, test::set_of(mutant));
       EXPECT_EQ(cover.convex.answer, Answer::Verified);
