@@ -78,7 +78,7 @@ std::vector<Body> by_voxels(SearchState& state, std::size_t target) {
 void measure_anew(CoverCandidate& result, const Mesh& closed) {
   const SolidField solid(closed, kMeasuringGrid, 0);
   std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
+  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
   ExcessOptions options;
   options.absolute_gap = kMeasuredGap * solid.diagonal();
   options.worth_measuring = kWorthMeasuring;
