@@ -30,8 +30,9 @@ CoverOptions at_most(std::size_t bodies) {
 Mesh letter() { return test::prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1); }
 
 TEST(ComparedMethods, CoverWithSoManyBodiesOrSaySo) {
-  int done = 0, seen = 0;
-  test::for_each_solid(100, [&](const auto&, const geom::Prepared& prepared) {
+  int done = 0, seen = 0, families = 0;
+  test::for_each_solid(300, [&](const auto&, const geom::Prepared& prepared) {
+    if (families++ % 2 != 0) return;
     const ComparedMethod method = kMethods.at(static_cast<std::size_t>(seen++ % 2));
     const CoverCandidate result = find_cover_by(method, prepared.solid, at_most(6));
     if (result.stop == Stop::TooCoarse) return;
@@ -39,8 +40,8 @@ TEST(ComparedMethods, CoverWithSoManyBodiesOrSaySo) {
     EXPECT_EQ(result.stop == Stop::Done, result.bodies.size() <= 6);
     done += result.stop == Stop::Done ? 1 : 0;
   });
-  EXPECT_GE(seen, 8);
-  EXPECT_GE(done, seen - 3);
+  EXPECT_GE(seen, 4);
+  EXPECT_GE(done, seen - 1);
 }
 
 TEST(ComparedMethods, AtMostSoManyBodies) {
