@@ -189,9 +189,10 @@ double distance_to_bodies(const geom::ConvexSet& set, const Vec3& p) {
     const std::vector<Vec3>& v = body.core.vertices;
     if (body.core.triangles.empty()) {
       const Vec3 along = v.back() - v.front();
-      const double share = along.squaredNorm() > 0
-                               ? std::clamp((p - v.front()).dot(along) / along.squaredNorm(), 0., 1.)
-                               : 0;
+      const double share =
+          along.squaredNorm() > 0
+              ? std::clamp((p - v.front()).dot(along) / along.squaredNorm(), 0., 1.)
+              : 0;
       look(v.front() + share * along, body.radius);
     }
     for (const geom::Triangle& t : body.core.triangles)
