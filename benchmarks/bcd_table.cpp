@@ -142,7 +142,7 @@ class Table {
     Peer peer;
     std::vector<geom::Mesh> hulls;
     for (const geom::ConvexBody& body : io::read_convex_set(file).bodies) {
-      std::optional<geom::Mesh> hull = geom::convex_hull(body.hull.vertices);
+      std::optional<geom::Mesh> hull = geom::convex_hull(body.core.vertices);
       if (!hull) continue;
       peer.vertices += hull->vertices.size();
       peer.largest = std::max(peer.largest, hull->vertices.size());

@@ -72,18 +72,18 @@ class Judge {
       add({Item::kObject, o}, io::read_mesh(files.at(world.objects[o].name)).mesh);
   }
 
-  struct Placed {
+  struct Placement {
     const Solid* solid;
     geom::Transform at;
     double epsilon;
   };
 
-  [[nodiscard]] std::map<Item, Placed> place(const WorldState& state) const {
+  [[nodiscard]] std::map<Item, Placement> place(const WorldState& state) const {
     std::vector<std::vector<geom::Transform>> links;
     for (std::size_t r = 0; r < world_.robots.size(); ++r)
       links.push_back(
           judge::places(world_.robots[r].kinematics, world_.robots[r].base, state.q[r]));
-    std::map<Item, Placed> out;
+    std::map<Item, Placement> out;
     for (const auto& [item, solid] : solids_) {
       geom::Transform at;
       if (item.robot != Item::kObject)
@@ -97,13 +97,13 @@ class Judge {
     return out;
   }
 
-  static bool meet(const Placed& a, const Placed& b) {
+  static bool meet(const Placement& a, const Placement& b) {
     return a.solid->meets(a.at, *b.solid, b.at);
   }
 
   /// Whether they are at most `times` the sum of their epsilons apart. A billionth more: rounding,
   /// and errors of places.
-  static bool are_near(const Placed& a, const Placed& b, double times) {
+  static bool are_near(const Placement& a, const Placement& b, double times) {
     return meet(a, b) || a.solid->is_within(a.at, *b.solid, b.at,
                                             (times * (a.epsilon + b.epsilon) + 1e-9) * (1 + 1e-9));
   }

@@ -42,7 +42,7 @@ Model model_of(const std::string& name, bool convex, const std::vector<geom::Mes
 Model load_set(const std::string& path) {
   std::vector<geom::Mesh> bodies;
   for (const geom::ConvexBody& body : io::read_convex_set(path).bodies)
-    if (auto hull = geom::convex_hull(body.hull.vertices)) bodies.push_back(std::move(*hull));
+    if (auto hull = geom::convex_hull(body.core.vertices)) bodies.push_back(std::move(*hull));
   return model_of(path, true, bodies);
 }
 

@@ -72,10 +72,10 @@ Models models_of(const world::World& world, const robot::RobotFile& file,
   out.triangles = collide::triangles_of(world, file, object);
   for (const world::LinkShape& shape : world.robots[0].shapes)
     for (std::size_t i = 0; i < shape.outer.size(); ++i)
-      out.sets.robot.push_back({shape.link, shape.outer.body(i).hull});
+      out.sets.robot.push_back({shape.link, shape.outer.body(i).core});
   for (const world::Object& o : world.objects) {
     for (std::size_t i = 0; i < o.outer.size(); ++i)
-      out.sets.scene.push_back(collide::placed(o.outer.body(i).hull, o.pose));
+      out.sets.scene.push_back(collide::placed(o.outer.body(i).core, o.pose));
   }
   std::printf("%zu bodies of the robot, %zu objects with %zu bodies (mesh of %zu triangles)\n",
               out.sets.robot.size(), world.objects.size(), out.sets.scene.size(),

@@ -27,7 +27,7 @@ using world::Item;
 using world::WorldState;
 
 /// A configuration, or a motion where there is a path.
-struct Asked {
+struct Recording {
   WorldState state;
   std::size_t robot = 0;
   robot::Path path;
@@ -36,7 +36,7 @@ struct Asked {
 
 class Recorder : public world::Observer {
  public:
-  std::vector<Asked> asked_of;
+  std::vector<Recording> asked_of;
 
   void asked(const WorldState& state) override { asked_of.push_back({state, 0, {}, {}}); }
   void asked(const WorldState& state, std::size_t robot, const robot::Path& path,
@@ -54,7 +54,8 @@ double cpu_seconds() {
 }
 
 /// Samples of a motion, so near to each other that no point moves by more than `step` in between.
-std::vector<WorldState> samples_of(const world::Checker& checker, const Asked& asked, double step) {
+std::vector<WorldState> samples_of(const world::Checker& checker, const Recording& asked,
+                                   double step) {
   const world::RobotModel& model = checker.world().robots[asked.robot];
   std::vector<WorldState> out;
   WorldState state = asked.state;
@@ -99,8 +100,9 @@ struct Times {
 
 /// Decides every question by samples, until one is in contact.
 template <typename Choose, typename Collide>
-Times sampled(const std::vector<Asked>& all, const std::vector<std::vector<WorldState>>& samples,
-              const Choose& choose, const Collide& collide) {
+Times sampled(const std::vector<Recording>& all,
+              const std::vector<std::vector<WorldState>>& samples, const Choose& choose,
+              const Collide& collide) {
   Times out;
   const double start = cpu_seconds();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -119,29 +121,29 @@ Times sampled(const std::vector<Asked>& all, const std::vector<std::vector<World
 
 template <typename MakeShapes>
 Times sampled_in(const world::Checker& checker, const search::Meshes& meshes,
-                 const MakeShapes& make, const std::vector<Asked>& all,
+                 const MakeShapes& make, const std::vector<Recording>& all,
                  const std::vector<std::vector<WorldState>>& samples) {
   search::OtherWorld other(checker, meshes, make);
   return sampled(
       all, samples,
-      [&](const Asked& a) {
+      [&](const Recording& a) {
         if (a.path.empty())
           other.choose_pairs(a.state);
         else
           other.choose_pairs(samples[static_cast<std::size_t>(&a - all.data())].front(), a.robot,
                              a.things ? &*a.things : nullptr);
       },
-      [&](const Asked& a, const WorldState& state, bool first) {
+      [&](const Recording& a, const WorldState& state, bool first) {
         return other.collide(state, first || a.path.empty() ? search::OtherWorld::kAll : a.robot);
       });
 }
 
 /// As the planner asks: motions at every instant.
-Times decided(const world::Checker& checker, const std::vector<Asked>& all) {
+Times decided(const world::Checker& checker, const std::vector<Recording>& all) {
   Times out;
   world::Scratch scratch;
   const double start = cpu_seconds();
-  for (const Asked& a : all) {
+  for (const Recording& a : all) {
     bool contact = false;
     if (a.path.empty())
       contact = !checker.is_free(a.state, scratch);
@@ -187,11 +189,11 @@ int run(int argc, char** argv) {
   const plan::Solution solution = plan::solve(
       plan::load(domain, &problem, manipulation::bind_externals(std::move(scene.world), options)),
       how);
-  const std::vector<Asked> all = std::move(recorder->asked_of);
+  const std::vector<Recording> all = std::move(recorder->asked_of);
   const world::Checker checker(world);
   std::vector<std::vector<WorldState>> samples;
   std::size_t motions = 0;
-  for (const Asked& a : all) {
+  for (const Recording& a : all) {
     motions += a.path.empty() ? 0 : 1;
     samples.push_back(a.path.empty() ? std::vector{a.state} : samples_of(checker, a, step));
   }
@@ -204,13 +206,13 @@ int run(int argc, char** argv) {
   for (const auto& [item, mesh] : exact) {
     if (!sets.empty() && sets.back().first == item) continue;
     const world::BoundingSet& outer = world.outer(item);
-    for (std::size_t i = 0; i < outer.size(); ++i) sets.emplace_back(item, outer.body(i).hull);
+    for (std::size_t i = 0; i < outer.size(); ++i) sets.emplace_back(item, outer.body(i).core);
   }
   const Times ours = decided(checker, all);
   world::Scratch scratch;
   const Times ours_sampled = sampled(
-      all, samples, [](const Asked&) {},
-      [&](const Asked&, const WorldState& state, bool) {
+      all, samples, [](const Recording&) {},
+      [&](const Recording&, const WorldState& state, bool) {
         return !checker.is_free(state, scratch);
       });
   const auto in = [&](const search::Meshes& meshes, const auto& make) {

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   if (!swept) return 1;  // float32 is too coarse
   const bool decided = swept->certificate().motion == certify::MotionClaim::Decided;
   std::cout << swept->artefact().bodies.size() << " bodies and a margin of "
-            << swept->artefact().margin
+            << swept->certificate().margin
             << " hold all of them along the path: " << (decided ? "decided" : "proved") << '\n';
   return decided ? 0 : 1;
 }

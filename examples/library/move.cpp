@@ -12,7 +12,7 @@ int main() {
   using namespace kaboum;
   // Sets that bound real links and objects come from certify::certify_robot and certify_set.
   const auto bound = [](const geom::Vec3& low, const geom::Vec3& high) {
-    return world::BoundingSet({{box(low, high), 0}}, collide::Direction::Outer, 0.001);
+    return world::BoundingSet({{"box", box(low, high)}}, collide::Direction::Outer, 0.001);
   };
   world::World cell;
   world::RobotModel& arm = cell.robots.emplace_back();

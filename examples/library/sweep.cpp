@@ -27,6 +27,7 @@ int main() {
   options.epsilon = 0.01;  // [m]
   const sweep::SweepResult swept = sweep::swept_volume(arm, {&forearm, 1}, quarter, options);
   std::cout << "the tip ends at (" << tip.transpose() << "); " << swept.set.bodies.size()
-            << " bodies and a margin of " << swept.set.margin << " hold the motion\n";
+            << " bodies and a margin of " << geom::margin_of(swept.set).value_or(0)
+            << " hold the motion\n";
   return swept.certified && !swept.set.bodies.empty() ? 0 : 1;
 }

@@ -166,6 +166,40 @@ std::string meaning(const std::string& text,
   return out + text.substr(at);
 }
 
+std::string remedy(
+    const std::string& text,
+    const std::function<std::string(const std::string& name, const std::string& value)>& spelled) {
+  constexpr std::string_view kOpen = "«", kClose = "»";
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t open = text.find(kOpen); open != std::string::npos;
+       open = text.find(kOpen, at)) {
+    const std::size_t from = open + kOpen.size(), close = text.find(kClose, from);
+    if (close == std::string::npos) break;
+    const std::string option = text.substr(from, close - from);
+    const std::size_t equals = option.find('=');
+    out.append(text, at, open - at);
+    out += spelled(option.substr(0, equals),
+                   equals == std::string::npos ? "" : option.substr(equals + 1));
+    at = close + kClose.size();
+  }
+  return out + text.substr(at);
+}
+
+std::string remedy_of_program(const std::string& text) {
+  return remedy(text, [](const std::string& name, const std::string& value) {
+    return "--" + name + (value.empty() ? "" : " " + value);
+  });
+}
+
+std::string remedy_of_python(const std::string& text) {
+  return remedy(text, [](std::string name, const std::string& value) {
+    std::ranges::replace(name, '-', '_');
+    if (value.empty()) return name;
+    return name + "=" + (parsed<double>(value) ? value : "'" + value + "'");
+  });
+}
+
 std::string flaw_of(const OptionDescription& option, const std::string& value) {
   switch (option.kind) {
     case Kind::Flag:

@@ -108,7 +108,7 @@ void Contractor::contract_round(Index v, std::size_t slots, double growth, Tried
     if ((w < v && v < slots) || in_fan(v, w)) continue;
     const auto key = std::minmax(v, w);
     const std::uint64_t version = mesh_.version(v, w);
-    Tried& last = tried[std::uint64_t{key.first} << 32U | key.second];
+    Attempt& last = tried[std::uint64_t{key.first} << 32U | key.second];
     if (last.growth == 0 || last.version != version) {
       last = {version, std::numeric_limits<double>::infinity(), Vec3::Zero()};
       if (find_position(v, w, last.position)) last.growth = growth;

@@ -73,12 +73,12 @@ class Contractor {
     }
   };
   /// What is known of an edge that a rough contraction was not made of.
-  struct Tried {
+  struct Attempt {
     std::uint64_t version;
     double growth;  ///< or less than it is
     Vec3 position;
   };
-  using TriedEdges = std::unordered_map<std::uint64_t, Tried>;
+  using TriedEdges = std::unordered_map<std::uint64_t, Attempt>;
 
   [[nodiscard]] bool in_fan(Index a, Index b) const;
   void begin(std::size_t cap);

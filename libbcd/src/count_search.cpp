@@ -8,8 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "clusters.h"
-
 namespace kaboum::bcd {
 
 bool add_witness(SearchState& state, const Finished& f) {
@@ -61,25 +59,13 @@ std::vector<std::vector<Body>> CountSearch::cut_for(std::size_t target) {
 
 std::vector<Body> CountSearch::gather(std::size_t target, double epsilon) {
   state_.begin_cutting();
-  const Method method = state_.options().method;
-  if (target == 1 && method == Method::Planes) return {body_of(state_.tree(), 0)};
+  if (target == 1) return {body_of(state_.tree(), 0)};
   const std::vector<std::vector<Body>> snapshots = cut_for(target);
   state_.report("merging", 0.7);
-  if (method == Method::Clusters) return clustered(target, kUnbounded);
   std::vector<Body> bodies = best_merge(snapshots, target, kRoughFactor * epsilon);
   if (bodies.empty() && epsilon == kUnbounded)
     bodies = state_.merged(state_.leaf_bodies(), target, kUnbounded);
   local_.refine(bodies, target, epsilon == kUnbounded);
-  return bodies;
-}
-
-std::vector<Body> CountSearch::clustered(std::size_t target, double epsilon) {
-  const SolidField& solid = state_.solid();
-  std::vector<Body> bodies =
-      bodies_of_clusters(state_.tree(), solid, cluster_triangles(solid, target, epsilon));
-  // Clusters that do not touch.
-  if (epsilon == kUnbounded && bodies.size() > target)
-    bodies = state_.merged(std::move(bodies), target, kUnbounded);
   return bodies;
 }
 

@@ -18,10 +18,6 @@ class CountSearch {
   /// The same, not finished yet; none where twice `epsilon` is not reached.
   std::vector<Body> gather(std::size_t target, double epsilon = kUnbounded);
 
-  /// At most `target` bodies from clusters of triangles whose hulls are within `epsilon`, where
-  /// that is unbounded.
-  std::vector<Body> clustered(std::size_t target, double epsilon);
-
  private:
   std::vector<std::vector<Body>> cut_for(std::size_t target);
   std::vector<Body> best_merge(const std::vector<std::vector<Body>>& snapshots, std::size_t target,

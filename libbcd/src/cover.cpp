@@ -19,7 +19,7 @@ namespace {
 void measure_anew(CoverCandidate& result, const Mesh& closed) {
   const SolidField solid(closed, kMeasuringGrid, 0);
   std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.hull);
+  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
   ExcessOptions options;
   options.absolute_gap = kMeasuredGap * solid.diagonal();
   options.worth_measuring = kWorthMeasuring;
@@ -68,8 +68,8 @@ CoverCandidate search(const Mesh& closed, const CoverOptions& options, Allowance
 CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& options,
                                    Allowance& allowance) {
   CoverCandidate best = search(closed, options, allowance);
-  if (!options.epsilon || options.max_total_vertices || options.method != Method::Planes ||
-      options.effort == Effort::Fast || closed.triangles.size() > kQuickTriangles ||
+  if (!options.epsilon || options.max_total_vertices || options.effort == Effort::Fast ||
+      closed.triangles.size() > kQuickTriangles ||
       (best.stop == Stop::Done && best.bodies.size() <= 2))
     return best;                  // one body has been tried
   CoverOptions silent = options;  // the progress has been told

@@ -47,7 +47,7 @@ constexpr double kLeastSlope = 0.1;
 }  // namespace
 
 void CutChooser::prepare() {
-  if (std::exchange(prepared_, true) || options_.choose) return;
+  if (std::exchange(prepared_, true)) return;
   reflex_.find(solid_);
   if (options_.mirrors) mirrors_ = mirror_planes(solid_);
 }
@@ -208,7 +208,6 @@ void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list, dou
 }
 
 std::optional<Plane> CutChooser::choose(const CutNode& node) const {
-  if (options_.choose) return options_.choose(node.piece.cell, node.hull);
   std::vector<Candidate> list = candidates(node);
   evaluate(node, list, kUnscored);
   const auto best_of = [](const std::vector<Candidate>& l) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -23,9 +22,6 @@ struct SearchOptions {
   /// where slices are needed that only faces of the solid give, it has led to
   /// hundreds of bodies too many.
   double halving_bonus = 0;
-  /// Chooses the planes instead, given a cell and the hull of what is in it;
-  /// none: not to be cut.
-  std::function<std::optional<Plane>(const Cell&, const std::vector<Vec3>&)> choose = {};
 };
 
 /// Chooses planes to cut pieces by: of those that the solid and the piece

@@ -27,6 +27,8 @@ class CutTree {
   void reestimate(const SolidField::Witness& witness);
   /// Cuts this leaf. @return false when no plane cuts it.
   bool cut(int leaf);
+  /// Cuts this leaf by this plane. @pre something is in it.
+  void cut(int leaf, const Plane& plane);
 
   /// Cuts this leaf across the longest side of the box along the axes of its
   /// hull's covariance: for parts that are near enough, but have too many
@@ -75,7 +77,6 @@ class CutTree {
                                                     const Vec3& n) const;
   [[nodiscard]] double worst_half(const std::vector<int>& nodes, const Plane& plane,
                                   double limit) const;
-  void cut(int leaf, const Plane& plane);
 
   const SolidField& solid_;
   double shift_;  // half the overlap of neighbouring pieces [length]

@@ -22,13 +22,19 @@ void append(std::vector<Finished> bodies, CoverCandidate& result) {
   }
 }
 
+/// What a given number of bodies changes in how cuts are scored.
+Tuning for_task(Tuning how, const CoverOptions& options) {
+  if (!options.epsilon) how.search.halving_bonus = kHalvingBonus;
+  return how;
+}
+
 }  // namespace
 
 Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work, Tuning how)
-    : state_(closed, options, work, std::move(how)) {}
+    : state_(closed, options, work, for_task(std::move(how), options)) {}
 
 Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work)
-    : Decomposer(closed, options, work, tuning(options.effort, options.method)) {}
+    : Decomposer(closed, options, work, tuning(options.effort)) {}
 
 /// So many bodies that no search brings them down to the limits.
 std::size_t Decomposer::hopeless() const {

@@ -15,7 +15,7 @@ namespace kaboum::bcd {
 std::vector<Finished> EpsilonSearch::hull_within(double epsilon) {
   const CoverOptions& options = state_.options();
   std::vector<Body> whole{body_of(state_.tree(), 0)};
-  if (options.method != Method::Planes || whole[0].concavity.worst > epsilon) return {};
+  if (whole[0].concavity.worst > epsilon) return {};
   std::vector<Finished> out =
       finisher_.finish(whole, options.simplify * kAimedShare * epsilon, epsilon);
   if (!are_within(out, epsilon)) out.clear();
@@ -37,18 +37,13 @@ std::vector<Finished> EpsilonSearch::within(double epsilon, std::size_t most) {
   if (std::vector<Finished> one = hull_within(epsilon); !one.empty()) return one;
   state_.begin_cutting();
   const CutTree& tree = state_.tree();
-  const Method method = state_.options().method;
   const double aim = kAimedShare * epsilon;
-  const std::size_t fewest_possible = method == Method::Planes ? 2 : 1;
+  constexpr std::size_t kFewestPossible = 2;  // one has been tried
   std::vector<Body> best;
   const double begin = std::max(tree.worst(), epsilon);
   std::size_t most_leaves = kMostLeaves;
   for (const double threshold : state_.tuning().thresholds) {
     cut_until(threshold * aim, most_leaves, begin, aim);
-    if (method == Method::Clusters) {
-      best = count_.clustered(1, aim);
-      continue;
-    }
     std::size_t fewest = 0;
     std::vector<Body> parts;
     for (const int node : tree.nodes_within(kMergedFrom * threshold * aim))
@@ -57,7 +52,7 @@ std::vector<Finished> EpsilonSearch::within(double epsilon, std::size_t most) {
       // Of many bodies, each that is needless goes in the end.
       if (!best.empty() && (best.size() > state_.tuning().counted || state_.spent(kImproving)))
         break;
-      std::vector<Body> bodies = state_.merged(parts, fewest_possible, aim, weight);
+      std::vector<Body> bodies = state_.merged(parts, kFewestPossible, aim, weight);
       fewest = fewest == 0 ? bodies.size() : std::min(fewest, bodies.size());
       if (best.empty() || bodies.size() < best.size()) best = std::move(bodies);
     }

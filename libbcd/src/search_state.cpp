@@ -2,10 +2,7 @@
 
 #include "search_state.h"
 
-#include <memory>
 #include <utility>
-
-#include "voxel_cuts.h"
 
 namespace kaboum::bcd {
 
@@ -13,18 +10,7 @@ SearchState::SearchState(const Mesh& closed, const CoverOptions& options, double
     : options_(options),
       tuning_(std::move(how)),
       solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),
-      tree_(solid_, search_options(), options.safety) {}
-
-SearchOptions SearchState::search_options() const {
-  SearchOptions out = tuning_.search;
-  if (!options_.epsilon && options_.method == Method::Planes) out.halving_bonus = kHalvingBonus;
-  if (options_.method == Method::Voxels)
-    out.choose = [voxels = std::make_shared<VoxelCuts>(solid_, tuning_.grid)](
-                     const Cell& cell, const std::vector<Vec3>& hull) {
-      return voxels->choose(cell, hull);
-    };
-  return out;
-}
+      tree_(solid_, tuning_.search, options.safety) {}
 
 bool SearchState::spent(double share) {
   const Work& work = solid_.work();

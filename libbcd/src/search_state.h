@@ -44,8 +44,6 @@ class SearchState {
                            double volume_weight = kVolumeWeight);
 
  private:
-  [[nodiscard]] SearchOptions search_options() const;
-
   const CoverOptions& options_;
   Tuning tuning_;
   SolidField solid_;

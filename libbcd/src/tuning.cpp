@@ -37,16 +37,4 @@ Tuning tuning(Effort effort) {
           true};
 }
 
-Tuning tuning(Effort effort, Method method) {
-  Tuning out = tuning(effort);
-  if (method == Method::Planes) return out;
-  out.multiples = {out.multiples.back()};
-  out.thresholds = {out.thresholds.front()};
-  out.volume_weights = {1};
-  out.refinements = 0;
-  out.rounds = 1;
-  out.reduce = false;
-  return out;
-}
-
 }  // namespace kaboum::bcd

@@ -156,7 +156,5 @@ struct Tuning {
 };
 
 Tuning tuning(Effort effort);
-/// Nothing but what the other methods do; merging counts volume as they do.
-Tuning tuning(Effort effort, Method method);
 
 }  // namespace kaboum::bcd

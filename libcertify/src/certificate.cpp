@@ -32,7 +32,6 @@ Json record_of(const SetCertificate& c) {
   for (const StopName& s : kStops)
     if (s.stop == c.stop) j["stop"] = s.name;
   j["direction"] = name_of(c.direction);
-  j["method"] = name_of(c.method);
   j["bodies"] = c.bodies;
   j["vertices"] = c.vertices;
   j["largest_body_vertices"] = c.largest_body_vertices;
@@ -100,9 +99,6 @@ SetCertificate read_record(std::string_view text) {
     if (!known) throw Error(ErrorCode::InvalidInput, "no certificate: unknown stop");
     c.direction = j.at("direction").get<std::string>() == "outer" ? SetRequest::Direction::Outer
                                                                   : SetRequest::Direction::Inner;
-    const std::optional<bcd::Method> method = method_of(j.at("method").get<std::string>());
-    if (!method) throw Error(ErrorCode::InvalidInput, "no certificate: unknown method");
-    c.method = *method;
     c.bodies = count_at(j, "bodies");
     c.vertices = count_at(j, "vertices");
     c.largest_body_vertices = count_at(j, "largest_body_vertices");

@@ -50,7 +50,6 @@ bcd::CoverOptions cover_of(const SetRequest& r, double diagonal, const Hooks& ho
   bcd::CoverOptions options;
   static_cast<bcd::SetOptions&>(options) = search_of(r, diagonal, hooks);
   options.max_total_vertices = r.max_total_vertices;
-  options.method = r.method;
   options.min_thickness = r.min_thickness;
   if (r.simplify) options.simplify = *r.simplify;
   options.improve_work = r.improve_work;
@@ -64,7 +63,6 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
     if (condition)
       throw Error(ErrorCode::InvalidArgument, std::string("bodies inside the solid ") + what);
   };
-  refuse(r.method != bcd::Method::Planes, "have no choice of methods");
   refuse(r.min_thickness > 0, "cannot be thickened");
   refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
@@ -83,8 +81,8 @@ struct Refutation {
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
-        geom::least_width(body.hull, r.min_thickness).lower < r.min_thickness)
-      return {"a body is thinner than --min-thickness", {}};
+        geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
+      return {"a body is thinner than «min-thickness»", {}};
   const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
     for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;
@@ -249,7 +247,6 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.safety = safety;
   c.out_of_work = s.out_of_work;
   c.notes = prepared.report.notes;
-  c.method = r.method;
   return c;
 }
 

@@ -105,7 +105,7 @@ void add_inner_shape(InnerParts& parts, const robot::Link& link, std::uint32_t i
   for (const geom::ConvexBody& body : made.artefact().bodies) {
     std::vector<geom::Vec3> points;
     double size = 0;
-    for (const geom::Vec3& p : body.hull.vertices) {
+    for (const geom::Vec3& p : body.core.vertices) {
       const geom::Vec3 at = p.cwiseProduct(g.size);
       size = std::max(size, at.norm());
       points.emplace_back(exact ? at : g.origin * at);

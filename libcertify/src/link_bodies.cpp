@@ -60,15 +60,41 @@ bool is_of_mesh(const Error& error) {
   return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
 }
 
+/// The hooks, which set `ended` where one of them throws: that is no mesh's flaw.
+RobotHooks watched(const RobotHooks& hooks, bool& ended) {
+  RobotHooks out = hooks;
+  if (hooks.progress)
+    out.progress = [&](const std::string& stage) {
+      ended = true;
+      hooks.progress(stage);
+      ended = false;
+    };
+  if (hooks.note)
+    out.note = [&](const std::string& file, const std::string& text) {
+      ended = true;
+      hooks.note(file, text);
+      ended = false;
+    };
+  if (hooks.made)
+    out.made = [&](const CertifiedLinkMesh& mesh) {
+      ended = true;
+      hooks.made(mesh);
+      ended = false;
+    };
+  return out;
+}
+
 /// As certify_link_mesh, but for what may be wrong with the mesh: RobotRequest::partial.
 CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
                                   const RobotRequest& request, const SetCache* cache,
-                                  const RobotHooks& hooks, std::exception_ptr& first) {
+                                  const RobotHooks& given, std::exception_ptr& first) {
+  bool ended = false;
+  const RobotHooks hooks = watched(given, ended);
   std::string flaw;
   try {
     return certify_link_mesh(mesh, epsilon, request, cache, hooks);
   } catch (const Error& error) {
-    if (!request.partial || !is_of_mesh(error)) throw;
+    if (ended || !request.partial || !is_of_mesh(error)) throw;
     flaw = error.what();
     if (!first) first = std::current_exception();
   }
@@ -80,7 +106,7 @@ CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::option
     out.made = certify_link_mesh(mesh, {}, loose, cache, hooks).made;
     out.held = true;
   } catch (const Error& error) {
-    if (!is_of_mesh(error)) throw;
+    if (ended || !is_of_mesh(error)) throw;
   }
   return out;
 }
@@ -100,7 +126,7 @@ double placing_error(const Geometry& g, double size) {
 
 namespace {
 
-/// Appends the bodies of one shape in the frame of its link, points within the bodies' margins:
+/// Appends the bodies of one shape in the frame of its link, points within the bodies' radii:
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set  of the mesh in its own frame and unit; unused for other shapes.
 void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
@@ -117,9 +143,9 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::strin
   }
   const bool exact = is_placed_exactly(g);
   for (const geom::ConvexBody& body : set->bodies) {
-    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * set->margin};
+    robot::LinkBody b{name(), index, {}, g.size.cwiseAbs().maxCoeff() * body.radius};
     double size = 0;
-    for (const geom::Vec3& p : body.hull.vertices) {
+    for (const geom::Vec3& p : body.core.vertices) {
       const geom::Vec3 scaled = p.cwiseProduct(g.size);
       size = std::max(size, scaled.norm());
       b.points.emplace_back(exact ? scaled : g.origin * scaled);
@@ -198,7 +224,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   if (bodies.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +
-                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+                    (request.shapes.visual ? std::string() : "; try «geometry=visual»"));
   return Issuer::issue(std::move(bodies), std::move(out), {});
 }
 

@@ -151,8 +151,8 @@ std::optional<CertifiedLink> LinkCache::find(std::string& flaw) const {
     for (std::size_t n = r.count(1); n > 0; --n) {
       geom::ConvexBody& body = set.bodies.emplace_back();
       body.name = r.text();
-      body.hull.vertices = r.list<geom::Vec3>();
-      body.hull.triangles = r.list<geom::Triangle>();
+      body.core.vertices = r.list<geom::Vec3>();
+      body.core.triangles = r.list<geom::Triangle>();
     }
     std::vector<char> container = r.list<char>();
     r.end();
@@ -167,15 +167,16 @@ void LinkCache::store(const CertifiedLink& made) const {
   const geom::ConvexSet& set = made.artefact();
   geom::Provenance expected = link_.claims;
   expected.epsilon = set.provenance.epsilon;
-  ensure(set.margin == 0 && set.provenance == expected, "a link's set claims something else");
+  ensure(geom::margin_of(set) == 0.0 && set.provenance == expected,
+         "a link's set claims something else");
   if (folder_ == nullptr) return;
   Writer w;
   w.value(set.provenance.epsilon);
   w.value(std::uint64_t{set.bodies.size()});
   for (const geom::ConvexBody& body : set.bodies) {
     w.text(body.name);
-    w.list(body.hull.vertices);
-    w.list(body.hull.triangles);
+    w.list(body.core.vertices);
+    w.list(body.core.triangles);
   }
   w.list(made.bytes());
   folder_->store(kKind, key_, w.bytes());

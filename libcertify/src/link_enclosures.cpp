@@ -37,43 +37,47 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
   if (found.meshes.empty())
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a mesh" +
-                    (request.shapes.visual ? std::string() : "; try --geometry visual"));
+                    (request.shapes.visual ? std::string() : "; try «geometry=visual»"));
   LinkEnclosures out;
   out.meshes.resize(found.meshes.size());
   std::vector<std::exception_ptr> flaws(found.meshes.size());
   std::mutex mutex;
   std::size_t done = 0;
   const auto caller = std::this_thread::get_id();
-  parallel_for(std::size_t{0}, found.meshes.size(),
-               [&](std::size_t i) {
-                 const double start = now();
-                 // Within a mesh only the calling thread tells: what it is told to end, ends.
-                 MeshHooks hooks;
-                 if (progress && std::this_thread::get_id() == caller)
-                   hooks.progress = [&](const std::string& stage) {
-                     const std::lock_guard lock(mutex);
-                     progress(found.meshes[i].file.filename().string() + ": " + stage);
-                   };
-                 EnclosedLinkMesh& mesh = out.meshes[i];
-                 mesh.mesh = found.meshes[i];
-                 const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
-                 mesh.epsilon = asked.mesh.epsilon;
-                 try {
-                   mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache, hooks);
-                 } catch (const Error& error) {
-                   if (!request.partial || (error.code() != ErrorCode::InvalidInput &&
-                                            error.code() != ErrorCode::LimitReached))
-                     throw;
-                   mesh.flaw = error.what();
-                   flaws[i] = std::current_exception();
-                 }
-                 mesh.seconds = now() - start;
-                 if (!progress) return;
-                 const std::lock_guard lock(mutex);
-                 progress(std::to_string(++done) + " of " + std::to_string(found.meshes.size()) +
-                          " meshes enclosed");
-               },
-               {.alone = true});
+  parallel_for(
+      std::size_t{0}, found.meshes.size(),
+      [&](std::size_t i) {
+        const double start = now();
+        // Within a mesh only the calling thread tells: what it is told to end, ends.
+        MeshHooks hooks;
+        bool ended = false;  // by the hook: that is no mesh's flaw
+        if (progress && std::this_thread::get_id() == caller)
+          hooks.progress = [&](const std::string& stage) {
+            const std::lock_guard lock(mutex);
+            ended = true;
+            progress(found.meshes[i].file.filename().string() + ": " + stage);
+            ended = false;
+          };
+        EnclosedLinkMesh& mesh = out.meshes[i];
+        mesh.mesh = found.meshes[i];
+        const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
+        mesh.epsilon = asked.mesh.epsilon;
+        try {
+          mesh.made = enclose_file(mesh.mesh.file, request.format, asked, cache, hooks);
+        } catch (const Error& error) {
+          if (ended || !request.partial ||
+              (error.code() != ErrorCode::InvalidInput && error.code() != ErrorCode::LimitReached))
+            throw;
+          mesh.flaw = error.what();
+          flaws[i] = std::current_exception();
+        }
+        mesh.seconds = now() - start;
+        if (!progress) return;
+        const std::lock_guard lock(mutex);
+        progress(std::to_string(++done) + " of " + std::to_string(found.meshes.size()) +
+                 " meshes enclosed");
+      },
+      {.alone = true});
   if (std::ranges::all_of(flaws, [](const auto& flaw) { return flaw != nullptr; }))
     std::rethrow_exception(flaws.front());
   for (const EnclosedLinkMesh& mesh : out.meshes) {

@@ -132,7 +132,7 @@ LinkPolytopes link_polytopes(const std::vector<robot::LinkBody>& bodies, double 
 }
 
 std::string objection(const geom::ConvexSet& set, const std::vector<robot::LinkBody>& bodies) {
-  if (set.margin != 0) return "a margin is stated";
+  if (geom::margin_of(set) != 0.0) return "a radius is stated";
   std::vector<verify::RoundedHull> held;
   held.reserve(bodies.size());
   for (const robot::LinkBody& body : bodies) held.push_back({body.points, body.margin});
@@ -165,7 +165,7 @@ std::optional<InnerPolytopes> inner_polytopes(const std::vector<robot::LinkBody>
 
 std::string inner_objection(const geom::ConvexSet& set,
                             const std::vector<robot::LinkBody>& bodies) {
-  if (set.margin != 0) return "a margin is stated";
+  if (geom::margin_of(set) != 0.0) return "a radius is stated";
   if (set.bodies.size() != bodies.size())
     return std::to_string(set.bodies.size()) + " polytopes for " + std::to_string(bodies.size());
   const verify::Convexity convexity = verify::verify_convexity(set);
@@ -176,7 +176,7 @@ std::string inner_objection(const geom::ConvexSet& set,
     std::optional<geom::Mesh> hull = geom::convex_hull(bodies[i].points);
     if (!hull) return "body " + bodies[i].name + " is flat";
     around.bodies.push_back({bodies[i].name, *std::move(hull)});
-    held.push_back({set.bodies[i].hull.vertices, bodies[i].margin});
+    held.push_back({set.bodies[i].core.vertices, bodies[i].margin});
   }
   const verify::Claim claim = verify::verify_holding(around, held);
   return claim.answer == verify::Answer::Verified ? "" : claim.reason;

@@ -52,7 +52,7 @@ void require_area(const geom::Mesh& mesh) {
     if (has_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) return;
   throw Error(ErrorCode::InvalidInput,
               "no triangle has an area: they are segments, and enclose nothing; have a wrap give "
-              "them a thickness (--prepare wrap), or export the mesh with more digits");
+              "them a thickness («prepare=wrap»), or export the mesh with more digits");
 }
 
 // Closed by its own fill, a flat sheet would be certified to lie in a solid that is nothing.
@@ -60,7 +60,7 @@ void require_extent(const geom::Prepared& original) {
   if (original.solid.filled_triangles() > 0 && !geom::convex_hull(original.solid.mesh().vertices))
     throw Error(ErrorCode::InvalidInput,
                 "all triangles lie in one plane and enclose nothing; have a wrap give the sheet a "
-                "thickness (--prepare wrap), or have bcd-decompose cover it");
+                "thickness («prepare=wrap»), or have bcd-decompose cover it");
   require_area(original.solid.mesh());
 }
 

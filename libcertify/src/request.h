@@ -9,7 +9,5 @@ namespace kaboum::certify {
 geom::Provenance origin_of(const SetRequest& request, const std::string& sha256);
 
 const char* name_of(SetRequest::Direction direction);
-const char* name_of(bcd::Method method);
-std::optional<bcd::Method> method_of(std::string_view name);
 
 }  // namespace kaboum::certify

@@ -46,7 +46,8 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
       (certificate.wrap && certificate.wrap->clearance != *key.clearance) ||
       certificate.distance_upper != set.provenance.epsilon)
     fail("it claims another wrap, or another distance than its container");
-  if (set.provenance != expected || certificate.bodies != set.bodies.size() || set.margin != 0)
+  if (set.provenance != expected || certificate.bodies != set.bodies.size() ||
+      geom::margin_of(set) != 0.0)
     fail("its container is that of another input or of other options");
   return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
 }

@@ -20,9 +20,6 @@ using Names = std::array<std::pair<const char*, Value>, N>;
 using Direction = SetRequest::Direction;
 constexpr Names<Direction, 2> kDirections{
     {{"outer", Direction::Outer}, {"inner", Direction::Inner}}};
-constexpr Names<bcd::Method, 3> kMethods{{{"planes", bcd::Method::Planes},
-                                          {"clusters", bcd::Method::Clusters},
-                                          {"voxels", bcd::Method::Voxels}}};
 constexpr Names<bcd::Effort, 3> kEfforts{
     {{"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}}};
 constexpr Names<bcd::PreStep, 3> kPreSteps{
@@ -106,11 +103,6 @@ void add_search(std::vector<Option<R>>& out) {
        .otherwise = "30 of a robot, else no other limit; none with {effort} best"},
       [](auto& r) -> auto& { return r.request.improve_work; }));
   out.push_back(choice<R>(
-      {.name = "method",
-       .text = "How to find bodies; the claims are the same. clusters (of triangles, as HACD does) "
-               "and voxels (cuts across the axes, as V-HACD does) are there to be compared with"},
-      [](auto& r) -> auto& { return r.request.method; }, kMethods));
-  out.push_back(choice<R>(
       {.name = "pre-step",
        .text = "Simplify the input first to a mesh round it, within a tenth of epsilon (0.1% where "
                "none is given); distances remain those to the input; auto: above 20000 triangles, "
@@ -161,13 +153,6 @@ const char* name_in(const Names<Value, N>& names, Value value) {
 }  // namespace
 
 const char* name_of(Direction direction) { return name_in(kDirections, direction); }
-const char* name_of(bcd::Method method) { return name_in(kMethods, method); }
-
-std::optional<bcd::Method> method_of(std::string_view name) {
-  for (const auto& [known, method] : kMethods)
-    if (known == name) return method;
-  return {};
-}
 
 const std::vector<Option<SetOptions>>& set_options() {
   static const std::vector<Option<SetOptions>> options = table();

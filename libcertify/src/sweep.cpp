@@ -17,8 +17,8 @@ SweepCertificate certificate_of(const sweep::SweepResult& made, const CertifiedB
   SweepCertificate c;
   c.motion = made.certified ? MotionClaim::Proved : MotionClaim::None;
   c.bodies = set.bodies.size();
-  for (const geom::ConvexBody& body : set.bodies) c.vertices += body.hull.vertices.size();
-  c.margin = set.margin;
+  for (const geom::ConvexBody& body : set.bodies) c.vertices += body.core.vertices.size();
+  c.margin = geom::margin_of(set).value();
   c.deviation = made.deviation;
   c.left_out = made.left_out;
   c.rounding = made.rounding;
@@ -68,7 +68,7 @@ std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
   std::vector<char> container = io::serialise_convex_set(made.set, io::SetFormat::Glb);
   // What is written is what is decided.
   geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-  ensure(set.margin == made.set.margin, "the margin does not survive writing");
+  ensure(geom::margin_of(set) == geom::margin_of(made.set), "the margin does not survive writing");
   ensure(set.bodies.size() == made.set.bodies.size(), "a body does not survive writing");
   SweepCertificate certificate = certificate_of(made, bodies, set);
   decide(set, certificate, robot, bodies, path, request);

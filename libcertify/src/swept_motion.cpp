@@ -31,7 +31,7 @@ std::vector<verify::MovingShape> moving_shapes(const robot::RobotFile& robot,
       continue;
     }
     for (const geom::ConvexBody& body : made.meshes[*shape.mesh].made.found.set.artefact().bodies)
-      add(body.hull);
+      add(body.core);
   }
   ensure(verify::same_poses(robot.robot, out, links, path),
          "two ways to compute a link's pose disagree");

@@ -70,7 +70,7 @@ void refuse_deviation(double clearance) {
   throw Error(ErrorCode::InvalidInput,
               "the exact faces may be " + number(clearance) +
                   " from the triangles that stand for them, which leaves nothing of epsilon; allow "
-                  "more, or make what is claimed one about the triangles (--prepare strict)");
+                  "more, or make what is claimed one about the triangles («prepare=strict»)");
 }
 
 std::string in_words(const WrapCertificate& wrap) {

@@ -57,7 +57,7 @@ double bound_of_defect(const Eigen::Matrix3d& l, const Eigen::Matrix3d& defect) 
 
 /// A ball round the points that is at most a hundredth larger than the smallest
 /// one: M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
-BoundingSet::Ball ball_of(const std::vector<BoundingSet::Body>& bodies, const Box3& box) {
+BoundingSet::Ball ball_of(const std::vector<geom::ConvexBody>& bodies, const Box3& box) {
   BoundingSet::Ball out;
   out.radius = std::numeric_limits<double>::infinity();
   if (box.empty()) return {};
@@ -65,9 +65,9 @@ BoundingSet::Ball ball_of(const std::vector<BoundingSet::Body>& bodies, const Bo
   for (int step = 1; step <= 100; ++step) {
     double most = 0;
     Vec3 farthest = center;
-    for (const BoundingSet::Body& body : bodies) {
-      for (const Vec3& p : body.hull.vertices) {
-        const double reach = (p - center).norm() + body.margin;
+    for (const geom::ConvexBody& body : bodies) {
+      for (const Vec3& p : body.core.vertices) {
+        const double reach = (p - center).norm() + body.radius;
         if (reach <= most) continue;
         most = reach;
         farthest = p;
@@ -87,28 +87,26 @@ Direction direction_of(const geom::ConvexSet& set) {
               "the set does not state whether it is an outer or an inner one");
 }
 
-std::vector<BoundingSet::Body> bodies_of(const geom::ConvexSet& set) {
+std::vector<geom::ConvexBody> bodies_of(const geom::ConvexSet& set) {
   if (set.provenance.epsilon < 0)
     throw Error(ErrorCode::InvalidInput,
                 "the set states no epsilon: how far it is from its solid is not certified");
   if (const auto i = geom::find_not_convex(set))
     throw Error(ErrorCode::InvalidInput,
                 "body " + std::to_string(*i) + " ('" + set.bodies[*i].name + "') is not convex");
-  std::vector<BoundingSet::Body> out;
-  for (const geom::ConvexBody& body : set.bodies) out.push_back({body.hull, set.margin});
-  return out;
+  return set.bodies;
 }
 
 }  // namespace
 
-BoundingSet::BoundingSet(std::vector<Body> bodies, Direction direction, double epsilon)
+BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction direction, double epsilon)
     : bodies_(std::move(bodies)),
       direction_(direction),
       epsilon_(require_length(epsilon, "an epsilon")) {
-  for (const Body& body : bodies_) {
-    require_length(body.margin, "a margin");
-    const Box3& box = polytopes_.emplace_back(body.hull.vertices).box();
-    const Vec3 reach = Vec3::Constant(body.margin * kSumUp) +
+  for (const geom::ConvexBody& body : bodies_) {
+    require_length(body.radius, "a radius");
+    const Box3& box = polytopes_.emplace_back(body.core.vertices).box();
+    const Vec3 reach = Vec3::Constant(body.radius * kSumUp) +
                        0x1p-50 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
     box_.extend(Box3{box.min - reach, box.max + reach});
   }
@@ -123,7 +121,7 @@ BoundingSet::BoundingSet(std::vector<Body> bodies, Direction direction, double e
       rows_[(3 + k) * stride() + i] = half[k];
       rows_[(6 + k) * stride() + i] = polytopes_[body].magnitude()[k];
     }
-    rows_[9 * stride() + i] = bodies_[body].margin;
+    rows_[9 * stride() + i] = bodies_[body].radius;
   }
 }
 
@@ -147,7 +145,7 @@ void PosedSet::place(const geom::Transform& pose, double error) {
   box_ = {};
   if (set_->size() == 0) return;
   const std::size_t stride = set_->stride();
-  const Twos margin{set_->row(9)};
+  const Twos radius{set_->row(9)};
   for (std::size_t k = 0; k < 3; ++k) {
     // Posed::box, for two bodies at once.
     const double x = pose.linear(k, 0), y = pose.linear(k, 1), z = pose.linear(k, 2),
@@ -165,8 +163,8 @@ void PosedSet::place(const geom::Transform& pose, double error) {
       const Two wide = x_size * half[0][i] + y_size * half[1][i] + z_size * half[2][i];
       const Two large =
           x_size * magnitude[0][i] + y_size * magnitude[1][i] + z_size * magnitude[2][i] + t_size;
-      // Margin and error, rounded up.
-      const Two reach = (margin[i] * (1 + defect_) + error) * kSumUp;
+      // Radius and error, rounded up.
+      const Two reach = (radius[i] * (1 + defect_) + error) * kSumUp;
       const Two far = (wide + reach) * (1 + 0x1p-48) + 0x1p-48 * large + 0x1p-900;
       const Two from = at - far, to = at + far;
       std::memcpy(low + i, &from, sizeof from);

@@ -44,12 +44,12 @@ double sum_up(std::initializer_list<double> lengths) {
 }
 
 double reach_of(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j, double slack) {
-  return sum_up({a.margin_above(i), a.error(), b.margin_above(j), b.error(), slack});
+  return sum_up({a.radius_above(i), a.error(), b.radius_above(j), b.error(), slack});
 }
 
 /// Both margins, not above the exact sum.
 double margins(const PosedSet& a, std::size_t i, const PosedSet& b, std::size_t j) {
-  return (a.margin_below(i) + b.margin_below(j)) / kSumUp;
+  return (a.radius_below(i) + b.radius_below(j)) / kSumUp;
 }
 
 /// A polytope that is more than `by` inside the hull all round; nullopt where the hull is too thin.
@@ -189,8 +189,10 @@ bool certainly_collide(const PosedSet& a, const PosedSet& b) {
   const double errors = sum_up({a.error(), b.error()});
   return BoxPairs{a, b, 0}.any([&](std::size_t i, std::size_t j) {
     if (errors == 0) return are_within(a.body(i), b.body(j), margins(a, i, b, j));
-    const auto smaller = shrunk(a.set().body(i).hull, errors);
-    return smaller && are_within(Posed(*smaller, a.pose()), b.body(j), margins(a, i, b, j));
+    const double radii = margins(a, i, b, j);
+    if (radii > 2 * errors) return are_within(a.body(i), b.body(j), (radii - errors) / kSumUp);
+    const auto smaller = shrunk(a.set().body(i).core, errors);
+    return smaller && are_within(Posed(*smaller, a.pose()), b.body(j), radii);
   });
 }
 

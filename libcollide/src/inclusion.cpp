@@ -5,6 +5,7 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <kaboum/base/error.h>
 #include <kaboum/collide/inclusion.h>
+#include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/convex_hull.h>
 
 #include <algorithm>
@@ -197,6 +198,17 @@ class Subtraction {
 /// than 1e-9 in its entries, no length is shrunk or stretched by more than 1.6e-9 of it.
 constexpr double kCube = 1.0001;
 
+/// A polytope within a body whose radius is above 0: of a radius that is a little smaller, against
+/// rounding. No point of the body is farther from it than kLacking times the radius.
+geom::Mesh within(geom::ConvexBody body) {
+  static const geom::SpherePoints sphere = geom::sphere_points(2);
+  double largest = 0;
+  for (const Vec3& p : body.core.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  body.radius -= 0x1p-40 * body.radius + 0x1p-48 * largest;
+  return body.radius > 0 ? geom::inscribed_polytope(body, sphere) : body.core;
+}
+constexpr double kLacking = 0.02;
+
 /// The hull of cubes round the points, which hold balls of the radius.
 geom::Mesh enlarged(const geom::Mesh& hull, double radius) {
   if (radius == 0) return hull;
@@ -217,13 +229,15 @@ geom::Mesh enlarged(const geom::Mesh& hull, double radius) {
 }  // namespace
 
 double tolerance_of_inclusion(const PosedSet& outer, const PosedSet& inner) {
-  double margin = 0, size = 0;
+  double margin = 0, size = 0, lacking = 0;
   for (std::size_t i = 0; i < outer.set().size(); ++i) {
-    margin = std::max(margin, outer.set().body(i).margin);
+    margin = std::max(margin, outer.set().body(i).radius);
     size = std::max(size, outer.set().polytope(i).magnitude().maxCoeff());
   }
+  for (std::size_t j = 0; j < inner.set().size(); ++j)
+    lacking = std::max(lacking, kLacking * inner.set().body(j).radius);
   const double enlarged_by = margin + outer.error() + inner.error();
-  return outer.set().epsilon() + inner.set().epsilon() + outer.error() + inner.error() +
+  return outer.set().epsilon() + inner.set().epsilon() + outer.error() + inner.error() + lacking +
          (enlarged_by == 0 ? 0
                            : std::numbers::sqrt3 * kCube * kCube * (enlarged_by + 0x1p-49 * size));
 }
@@ -235,16 +249,18 @@ Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner, std::size
   bool undecided = false;
   for (std::size_t i = 0; i < outer.set().size(); ++i) {
     const double errors = outer.error() + inner.error();
-    const double radius = (outer.set().body(i).margin + errors) * (errors > 0 ? 1 + 0x1p-50 : 1);
-    const geom::Mesh hull = enlarged(outer.set().body(i).hull, radius);
+    const double radius = (outer.set().body(i).radius + errors) * (errors > 0 ? 1 + 0x1p-50 : 1);
+    const geom::Mesh hull = enlarged(outer.set().body(i).core, radius);
     const geom::Box3 box = Posed(Polytope(hull.vertices), outer.pose()).box();
     std::vector<std::vector<Plane>> bodies;
     for (std::size_t j = 0; j < inner.set().size(); ++j) {
       if (((box.min - inner.box(j).max).array() > 0).any() ||
           ((inner.box(j).min - box.max).array() > 0).any())
         continue;
-      const geom::Mesh& body = inner.set().body(j).hull;
-      bodies.push_back(planes_of(body, corners_of(body, inner.pose())));
+      const geom::ConvexBody& body = inner.set().body(j);
+      const geom::Mesh polytope = body.radius > 0 ? within(body) : body.core;
+      if (polytope.triangles.empty()) continue;  // without planes it would hold everything
+      bodies.push_back(planes_of(polytope, corners_of(polytope, inner.pose())));
     }
     const Inclusion found =
         Subtraction(std::move(bodies), most_pieces).decide(piece_of(hull, outer.pose()));

@@ -21,15 +21,18 @@ double Compared::upper() const { return std::max(a_to_b.max.max_upper, b_to_a.ma
 template <class Visit>
 void Comparison::Measured::each_points(Visit&& visit) {
   if (!shape.set) return visit(shape.mesh.vertices);
-  for (geom::ConvexBody& body : shape.set->bodies) visit(body.hull.vertices);
+  for (geom::ConvexBody& body : shape.set->bodies) visit(body.core.vertices);
 }
 
 geom::Box3 Comparison::Measured::box() const {
   if (!shape.set) return geom::bounding_box(shape.mesh);
   geom::Box3 box;
-  for (const geom::ConvexBody& body : shape.set->bodies) box.extend(geom::bounding_box(body.hull));
-  box.min.array() -= shape.set->margin;
-  box.max.array() += shape.set->margin;
+  for (const geom::ConvexBody& body : shape.set->bodies) {
+    for (const Vec3& p : body.core.vertices) {
+      box.extend(p - Vec3::Constant(body.radius));
+      box.extend(p + Vec3::Constant(body.radius));
+    }
+  }
   return box;
 }
 
@@ -47,11 +50,11 @@ Comparison::Comparison(Shape a, Shape b, CompareOptions options) : options_(std:
       throw Error(ErrorCode::InvalidInput,
                   name + (side.shape.set ? ": the empty set has no distance"
                                          : ": no triangles to measure to"));
-    if (side.shape.set && side.shape.set->margin > 0 && !options_.solid)
+    if (side.shape.set && geom::margin_of(*side.shape.set) != 0.0 && !options_.solid)
       throw Error(ErrorCode::InvalidInput,
                   name +
-                      ": a set with a margin has a curved surface, to which distances are not "
-                      "stable (gaps close); measure solid to solid with --solid");
+                      ": bodies with a radius have a curved surface, to which distances are not "
+                      "stable (gaps close); measure solid to solid («solid»)");
     side.each_points([&](const std::vector<Vec3>& points) {
       for (const Vec3& v : points)
         if (!v.allFinite())
@@ -164,10 +167,7 @@ Compared Comparison::measure() const {
 /// Whether one solid lies within the other, decided exactly: all distances are then 0, which
 /// branch and bound only approaches where their surfaces coincide.
 bool Comparison::certainly_within(const Measured& from, const Measured& to) {
-  const auto margin = [](const Measured& side) {
-    return side.shape.set ? side.shape.set->margin : 0;
-  };
-  if (margin(from) > margin(to)) return false;
+  if (from.solid->margin() > to.solid->margin() || from.solid->defect() > 0) return false;
   const auto chain = [](const Measured& side) {
     return side.shape.set ? verify::sum_of(*side.shape.set) : side.shape.mesh;
   };

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <span>
 
+#include "inflated.h"
+
 namespace kaboum::distance {
 namespace {
 
@@ -95,6 +97,9 @@ bool is_hidden(const Mesh& mesh, std::span<const char> whole, std::span<const ge
   });
 }
 
+/// Of subdivision: the finer, the fewer bodies there are, for as much work.
+int level_for(std::size_t bodies) { return bodies <= 20 ? 4 : bodies <= 200 ? 3 : 2; }
+
 }  // namespace
 
 /// Whose points are asked for: one chain, or bodies.
@@ -111,10 +116,18 @@ Solid::Solid(const Mesh& mesh)
   prepare();
 }
 
-Solid::Solid(const geom::ConvexSet& set)
-    : members_(std::make_unique<Members>()), set_(set), boundary_(union_boundary(set)) {
+Solid::Solid(const geom::ConvexSet& set) : members_(std::make_unique<Members>()), set_(set) {
   if (set.bodies.empty()) throw Error(ErrorCode::InvalidInput, "the empty set has no distance");
-  for (const geom::ConvexBody& body : set.bodies) members_->bodies.emplace_back(body.hull);
+  if (const auto margin = geom::margin_of(set)) {
+    margin_ = *margin;
+  } else {
+    require_convex(set);
+    Inflated inflated = inflate(set, level_for(set.bodies.size()));
+    set_ = std::move(inflated.polytopes);
+    defect_ = inflated.defect;
+  }
+  boundary_ = union_boundary(set_);
+  for (const geom::ConvexBody& body : set_.bodies) members_->bodies.emplace_back(body.core);
   prepare();
 }
 
@@ -160,8 +173,7 @@ std::optional<bool> Solid::contains(const Vec3& p, double free) const {
 }
 
 double Solid::distance(const Vec3& p, double to_boundary) const {
-  return contains(p, to_boundary) == std::optional(true) ? 0
-                                                         : std::max(0.0, to_boundary - set_.margin);
+  return contains(p, to_boundary) == std::optional(true) ? 0 : std::max(0.0, to_boundary - margin_);
 }
 
 bool Solid::covers_ball(const Vec3& center, double radius, double distance) const {
@@ -256,7 +268,7 @@ Minimum solid_minimum(const Solid& a, const Solid& b) {
   }
   const double margins = a.margin() + b.margin();
   // Where a boundary was cut and rounded, the true ones may be this much apart.
-  m.lower = std::max(0.0, m.lower - error - margins);
+  m.lower = std::max(0.0, m.lower - error - margins - a.defect() - b.defect());
   m.upper = std::max(0.0, m.upper + error - margins);
   return m;
 }

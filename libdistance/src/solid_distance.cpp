@@ -4,6 +4,7 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/distance/solid.h>
 #include <kaboum/geom/rounding.h>
+#include <kaboum/verify/cover.h>
 
 #include <algorithm>
 #include <cmath>
@@ -463,7 +464,8 @@ geom::DirectedDistance distance_with_margin(const Solid& a, const Solid& b,
     geom::DistanceOptions half = options;
     half.relative_gap *= 0.5;
     half.absolute_gap *= 0.5;
-    const geom::DirectedDistance d = geom::directed_distance(polytopes.mesh, boundary_b, half, &b);
+    const geom::DirectedDistance d =
+        geom::directed_distance(verify::sum_of(polytopes.polytopes), boundary_b, half, &b);
     best.queries += d.queries;
     best.max_upper = std::min(best.max_upper, d.max_upper + polytopes.defect);
     if (const double lower = d.max_lower - polytopes.excess; lower > best.max_lower) {
@@ -498,9 +500,12 @@ SolidDistance solid_distance(const Solid& a, const Solid& b, const TriangleSearc
   wish.offset = b.margin();
   result.within_gap =
       result.max_upper <= wish.wished(result.max_lower, box.diagonal()) * (1 + 1e-15);
-  // B's margin.
-  result.max_lower = std::max(0.0, result.max_lower - b.margin());
-  result.max_upper = std::max(0.0, result.max_upper - b.margin());
+  // B's margin, and polytopes that stand for bodies.
+  const double defect = a.defect() + b.defect();
+  result.max_lower = std::max(0.0, result.max_lower - b.margin() - defect);
+  result.max_upper = std::max(0.0, result.max_upper - b.margin() + defect);
+  if (defect > 0)
+    result.within_gap = result.max_upper <= options.wished(result.max_lower, box.diagonal());
   return result;
 }
 

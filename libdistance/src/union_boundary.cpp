@@ -68,7 +68,7 @@ Polygon whole(const std::array<Vec3, 3>& t) {
 class Clipper {
  public:
   explicit Clipper(const geom::ConvexSet& set) {
-    for (const auto& body : set.bodies) bodies_.push_back(make_body(body.hull));
+    for (const auto& body : set.bodies) bodies_.push_back(make_body(body.core));
   }
 
   Boundary run() const {
@@ -155,13 +155,16 @@ class Clipper {
 
 }  // namespace
 
-Boundary union_boundary(const geom::ConvexSet& set) {
+void require_convex(const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
-    if (!geom::is_convex(body.hull))
-      throw Error(ErrorCode::InvalidInput,
-                  "body '" + body.name +
-                      "' is not convex (or has no volume); measure it "
-                      "as a mesh: one file, with --a-as mesh or --b-as mesh");
+    if (!geom::is_convex(body))
+      throw Error(ErrorCode::InvalidInput, "body '" + body.name +
+                                               "' is not convex (or has no volume); measure it "
+                                               "as a mesh, in one file");
+}
+
+Boundary union_boundary(const geom::ConvexSet& set) {
+  require_convex(set);
   return Clipper(set).run();
 }
 

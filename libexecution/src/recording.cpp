@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/recording.h>
+#include <kaboum/geom/body_polytopes.h>
 #include <kaboum/io/packed_mesh.h>
 #include <kaboum/robot/page_data.h>
 
@@ -45,7 +46,8 @@ Json shape_json(const world::World& world, const world::Item& item) {
   }
   Json bodies = Json::array();
   const world::BoundingSet& set = world.outer(item);
-  for (std::size_t i = 0; i < set.size(); ++i) bodies.push_back(mesh_json(set.body(i).hull));
+  for (std::size_t i = 0; i < set.size(); ++i)
+    bodies.push_back(mesh_json(geom::surface_of(set.body(i))));
   out["bodies"] = std::move(bodies);
   return out;
 }

@@ -98,8 +98,8 @@ void refuse_sheets(std::span<const Cancelled> sheets) {
           " back to back with an opposite copy and no volume between (sheets; the first "
           "is input triangle " +
           std::to_string(first) +
-          "); have a wrap give the sheets a thickness (mesh-prepare --prepare wrap), or drop "
-          "them with --drop-sheets: they are then not enclosed");
+          "); have a wrap give the sheets a thickness (mesh-prepare, «prepare=wrap»), or drop "
+          "them with «drop-sheets»: they are then not enclosed");
 }
 
 }  // namespace kaboum::geom

@@ -50,7 +50,7 @@ std::string text_of(const InsideOut& found) {
          " inside out (the first at triangle " + std::to_string(found.triangle) + ", at " +
          point(found.at) +
          "): as the file is, what that encloses is not in the solid, and nothing is decided about "
-         "it; --prepare turns it and judges that solid";
+         "it; preparing turns it, and then that solid is judged";
 }
 
 }  // namespace kaboum::geom

@@ -462,7 +462,7 @@ class Preparation {
     if (options_.holes == Holes::Refuse)
       throw Error(ErrorCode::InvalidInput,
                   "the mesh is open at " + count_of(open, "edge", "edges") +
-                      " and bounds no solid; close it, or have its holes filled (--holes fill)");
+                      " and bounds no solid; close it, or have its holes filled («holes=fill»)");
     ensure(options_.holes == Holes::Keep, "a mesh whose holes are filled is still open");
     report_.notes.push_back("the mesh is open at " + count_of(open, "edge", "edges") +
                             " and bounds no solid");

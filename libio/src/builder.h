@@ -61,6 +61,8 @@ class MeshBuilder {
   void note(std::string text) { notes_.push_back(std::move(text)); }
   [[nodiscard]] bool has_faces() const { return !triangles_.empty() || !polygons_.empty(); }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
+  /// As they were added, where none are welded.
+  [[nodiscard]] const std::vector<geom::Vec3>& points() const { return points_; }
   [[nodiscard]] const Source& source() const { return source_; }
 
   /// @throws Error{InvalidInput} when no triangle is left.

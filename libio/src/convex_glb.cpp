@@ -1,6 +1,6 @@
-// Convex sets as glTF 2.0 binary: one mesh and one node without transform per body; margin and
-// provenance in the root's `extras`. Sets in glTF files of other programs: one body per place of a
-// mesh in the scene.
+// Convex sets as glTF 2.0 binary: one mesh and one node without transform per body, of triangles, a
+// line or a point as its core is; radii and provenance in the root's `extras`. Sets in glTF files
+// of other programs: one body per place of a mesh in the scene.
 
 #include <kaboum/base/error.h>
 
@@ -26,7 +26,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr int kTriangles = 4;
+constexpr int kPoints = 0, kLines = 1, kTriangles = 4;
+
+/// The number of a record's version, 0 where there is none.
+int version_of(const JsonItem::Json* record) {
+  if (record == nullptr || !record->is_object()) return 0;
+  const auto at = record->find("version");
+  return at != record->end() && at->is_number_integer() ? at->get<int>() : 0;
+}
 
 }  // namespace
 
@@ -34,19 +41,33 @@ geom::ConvexSet read_gltf_set(const Source& source, SetReadDetails& details) {
   GltfFile file(source);
   std::vector<std::string> names;
   std::deque<MeshBuilder> builders;
-  const GltfFacts facts = read_gltf_scene(file, [&](const std::string& name) -> MeshBuilder& {
-    names.push_back(name);
-    return builders.emplace_back(source);
-  });
   const JsonItem::Json* const record = gltf_set_record(file);
+  const bool cores = version_of(record) == 2;
+  const GltfFacts facts = read_gltf_scene(
+      file,
+      [&](const std::string& name) -> MeshBuilder& {
+        names.push_back(name);
+        return builders.emplace_back(source);
+      },
+      cores);
   if (record != nullptr && facts.placed)
     fail(source,
-         "a convex set whose nodes have transforms, for which its record (the margin, what is "
+         "a convex set whose nodes have transforms, for which its record (the radii, what is "
          "certified) does not hold; write the set again without transforms");
   geom::ConvexSet set;
   for (std::size_t i = 0; i < builders.size(); ++i) {
-    if (!builders[i].has_faces()) continue;  // lines and points, which the notes mention
+    const bool core = cores && !builders[i].has_faces();
+    if (!core && !builders[i].has_faces()) continue;  // lines and points, which the notes mention
     std::string name = names[i].empty() ? default_name(set.bodies.size()) : names[i];
+    if (core) {
+      const std::vector<geom::Vec3>& points = builders[i].points();
+      if (points.empty() || points.size() > 2)
+        fail(source, "body '" + name + "' has " + std::to_string(points.size()) +
+                         " points and no triangles; the core of a body is a polytope, a segment "
+                         "or a point");
+      set.bodies.push_back({std::move(name), {points, {}}});
+      continue;
+    }
     ReadResult result = builders[i].finish(Format::Glb, facts.floats);
     for (const std::string& note : result.notes)
       details.notes.push_back(std::string(name).append(": ").append(note));
@@ -95,38 +116,40 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
   Json accessors = Json::array(), views = Json::array();
   std::size_t offset = 0;
   for (const geom::ConvexBody& body : set.bodies) {
-    const geom::Mesh& hull = body.hull;
-    std::vector<std::uint32_t> original(hull.vertices.size());
+    const geom::Mesh& core = body.core;
+    std::vector<std::uint32_t> original(core.vertices.size());
     std::iota(original.begin(), original.end(), 0U);
-    require_float(hull, original, "GLB");
+    require_float(core, original, "GLB");
     geom::Box3 box;
-    for (const geom::Vec3& p : hull.vertices) box.extend(p);
-    const std::size_t point_bytes = 12 * hull.vertices.size();
-    const std::size_t index_bytes = 12 * hull.triangles.size();
-    const std::size_t index = meshes.size();
+    for (const geom::Vec3& p : core.vertices) box.extend(p);
+    const std::size_t point_bytes = 12 * core.vertices.size();
+    const std::size_t index_bytes = 12 * core.triangles.size();
+    const std::size_t index = meshes.size(), first = accessors.size();
     views.push_back({{"buffer", 0},
                      {"byteOffset", offset},
                      {"byteLength", point_bytes},
                      {"target", kArrayBuffer}});
-    views.push_back({{"buffer", 0},
-                     {"byteOffset", offset + point_bytes},
-                     {"byteLength", index_bytes},
-                     {"target", kElementArrayBuffer}});
+    if (index_bytes > 0)
+      views.push_back({{"buffer", 0},
+                       {"byteOffset", offset + point_bytes},
+                       {"byteLength", index_bytes},
+                       {"target", kElementArrayBuffer}});
     offset += point_bytes + index_bytes;
-    accessors.push_back({{"bufferView", 2 * index},
+    accessors.push_back({{"bufferView", first},
                          {"componentType", kFloat},
-                         {"count", hull.vertices.size()},
+                         {"count", core.vertices.size()},
                          {"type", "VEC3"},
                          {"min", {box.min.x(), box.min.y(), box.min.z()}},
                          {"max", {box.max.x(), box.max.y(), box.max.z()}}});
-    accessors.push_back({{"bufferView", 2 * index + 1},
-                         {"componentType", kInt},
-                         {"count", 3 * hull.triangles.size()},
-                         {"type", "SCALAR"}});
-    const Json primitive = {{"attributes", {{"POSITION", 2 * index}}},
-                            {"indices", 2 * index + 1},
-                            {"material", index % kColours.size()},
-                            {"mode", kTriangles}};
+    if (index_bytes > 0)
+      accessors.push_back({{"bufferView", first + 1},
+                           {"componentType", kInt},
+                           {"count", 3 * core.triangles.size()},
+                           {"type", "SCALAR"}});
+    Json primitive = {{"attributes", {{"POSITION", first}}}};
+    if (index_bytes > 0) primitive["indices"] = first + 1;
+    primitive["material"] = index % kColours.size();
+    primitive["mode"] = index_bytes > 0 ? kTriangles : core.vertices.size() == 2 ? kLines : kPoints;
     meshes.push_back({{"name", body.name}, {"primitives", Json::array({primitive})}});
     nodes.push_back({{"name", body.name}, {"mesh", index}});
     roots.push_back(index);
@@ -162,9 +185,9 @@ std::vector<char> write_glb_set(const geom::ConvexSet& set) {
     out.little(kBinaryChunk);
   }
   for (const geom::ConvexBody& body : set.bodies) {
-    for (const geom::Vec3& p : body.hull.vertices)
+    for (const geom::Vec3& p : body.core.vertices)
       for (const double x : p) out.little(static_cast<float>(x));
-    for (const geom::Triangle& t : body.hull.triangles)
+    for (const geom::Triangle& t : body.core.triangles)
       for (const std::uint32_t corner : t) out.little(corner);
   }
   return out.take();

@@ -34,11 +34,11 @@ std::vector<geom::ConvexBody> split_components(const geom::Mesh& mesh) {
   const std::vector<std::uint32_t> component = geom::components(mesh, true, &count);
   std::vector<geom::ConvexBody> bodies(count);
   for (std::size_t i = 0; i < component.size(); ++i)
-    bodies[component[i]].hull.triangles.push_back(mesh.triangles[i]);
+    bodies[component[i]].core.triangles.push_back(mesh.triangles[i]);
   std::vector<std::uint32_t> number(mesh.vertices.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].name = default_name(i);
-    geom::Mesh& hull = bodies[i].hull;
+    geom::Mesh& hull = bodies[i].core;
     std::vector<std::uint32_t> used;
     for (const geom::Triangle& t : hull.triangles) used.insert(used.end(), t.begin(), t.end());
     std::ranges::sort(used);
@@ -151,34 +151,49 @@ geom::ConvexSet parse(const Source& source, Format format, SetReadDetails& detai
   return set;
 }
 
+/// A segment or a point, and a radius.
+void require_rounded(const geom::ConvexBody& body, const std::string& name) {
+  const std::size_t points = body.core.vertices.size();
+  if (points < 1 || points > 2) throw Error(ErrorCode::InvalidArgument, name + "has no triangles");
+  if (body.radius == 0)
+    throw Error(ErrorCode::InvalidArgument,
+                name + "is a segment or a point without a radius: it holds nothing");
+  for (const geom::Vec3& p : body.core.vertices)
+    if (!p.allFinite())
+      throw Error(ErrorCode::InvalidArgument, name + "has a coordinate that is not finite");
+}
+
 /// Without unused vertices and −0. @throws Error{InvalidArgument} when a body is not valid.
 geom::ConvexSet cleaned(const geom::ConvexSet& set) {
-  if (!(set.margin >= 0) || !std::isfinite(set.margin))
-    throw Error(ErrorCode::InvalidArgument, "the margin of a convex set is negative or not finite");
-  geom::ConvexSet clean{set.bodies, set.margin, set.provenance};
+  geom::ConvexSet clean = set;
   for (std::size_t i = 0; i < clean.bodies.size(); ++i) {
     geom::ConvexBody& body = clean.bodies[i];
     if (body.name.empty()) body.name = default_name(i);
     const std::string name = "body " + std::to_string(i) + " of the set to be written ";
-    if (body.hull.triangles.empty())
-      throw Error(ErrorCode::InvalidArgument, name + "has no triangles");
-    for (const geom::Triangle& t : body.hull.triangles)
+    if (!(body.radius >= 0) || !std::isfinite(body.radius))
+      throw Error(ErrorCode::InvalidArgument, name + "has a radius that is negative or not finite");
+    if (body.core.triangles.empty()) {
+      require_rounded(body, name);
+      continue;
+    }
+    for (const geom::Triangle& t : body.core.triangles)
       for (const std::uint32_t corner : t)
-        if (corner >= body.hull.vertices.size() || !body.hull.vertices[corner].allFinite())
+        if (corner >= body.core.vertices.size() || !body.core.vertices[corner].allFinite())
           throw Error(ErrorCode::InvalidArgument,
                       name + "has an invalid index or a coordinate that is not finite");
-    body.hull = geom::weld(body.hull);
-    for (geom::Vec3& p : body.hull.vertices) p = p.array() + 0.0;  // −0 + 0 = +0
+    body.core = geom::weld(body.core);
+    for (geom::Vec3& p : body.core.vertices) p = p.array() + 0.0;  // −0 + 0 = +0
   }
   return clean;
 }
 
-void refuse_margin(const geom::ConvexSet& set, const char* format) {
-  if (set.margin > 0)
-    throw Error(ErrorCode::OutputFailed,
-                std::string(format) +
-                    " cannot state the set's margin, and without it the bodies are too small; "
-                    "write glb, or enlarge the bodies by the margin first");
+void refuse_radii(const geom::ConvexSet& set, const char* format) {
+  for (const geom::ConvexBody& body : set.bodies)
+    if (body.radius > 0)
+      throw Error(ErrorCode::OutputFailed,
+                  std::string(format) + " cannot state the radius of a body ('" + body.name +
+                      "'), and without it the body is too small; write glb, or enlarge the bodies "
+                      "by their radii first");
 }
 
 /// The stem of the files that the folder's record speaks of; nullopt without a record.
@@ -323,14 +338,14 @@ void write_convex_folder(const fs::path& path, const geom::ConvexSet& set, const
                          Format bodies) {
   if (bodies != Format::Stl && bodies != Format::Obj)
     throw Error(ErrorCode::InvalidArgument, "the bodies of a folder are STL or OBJ files");
-  refuse_margin(set, "STL");
+  refuse_radii(set, "STL");
   const geom::ConvexSet clean = cleaned(set);
   require_replaceable(path);
   const fs::path target = target_of(path);
   NewFolder fresh(target);
   for (std::size_t i = 0; i < clean.bodies.size(); ++i)
     write_file(fresh.path() / (default_name(i, stem) + (bodies == Format::Obj ? ".obj" : ".stl")),
-               serialise_mesh(clean.bodies[i].hull, bodies));
+               serialise_mesh(clean.bodies[i].core, bodies));
   Json record = record_of(clean);
   record[kStem] = stem;
   write_file(fresh.path() / kRecordFile,
@@ -349,9 +364,14 @@ std::string default_name(std::size_t index, std::string_view stem) {
 
 Json record_of(const geom::ConvexSet& set) {
   const geom::Provenance& p = set.provenance;
-  return {{"version", 1},
+  const std::optional<double> margin = geom::margin_of(set);
+  Json radii = Json::array();
+  if (!margin)
+    for (const geom::ConvexBody& body : set.bodies) radii.push_back(body.radius);
+  return {{"version", margin ? 1 : 2},  // readers of the first one know no radii
           {"bodies", set.bodies.size()},
-          {"margin", set.margin},
+          margin ? Json::object_t::value_type{"margin", *margin}
+                 : Json::object_t::value_type{"radii", std::move(radii)},
           {"unit", p.unit},
           {"frame", p.frame},
           {"direction", p.direction},
@@ -364,12 +384,35 @@ Json record_of(const geom::ConvexSet& set) {
           {"parameters", p.parameters}};
 }
 
+/// One for all bodies, or one of each.
+static void take_radii(const Json& record, const Source& source, geom::ConvexSet& set) {
+  const auto refuse_bad = [&](double radius) {
+    if (!(radius >= 0) || !std::isfinite(radius))
+      fail(source, "the record states a margin or radius that is negative or not finite");
+  };
+  if (record.at("version") == 1) {
+    const auto margin = record.at("margin").get<double>();
+    refuse_bad(margin);
+    geom::set_margin(set, margin);
+  } else {
+    const Json& radii = record.at("radii");
+    if (!radii.is_array() || radii.size() != set.bodies.size())
+      fail(source, "the record does not state one radius for each body; write the set again");
+    for (std::size_t i = 0; i < set.bodies.size(); ++i) radii.at(i).get_to(set.bodies[i].radius);
+  }
+  for (const geom::ConvexBody& body : set.bodies) {
+    refuse_bad(body.radius);
+    if (body.core.triangles.empty() && body.radius == 0)
+      fail(source, "body '" + body.name +
+                       "' is a segment or a point without a radius; write the set again");
+  }
+}
+
 void take_record(const Json& record, const Source& source, geom::ConvexSet& set) {
   try {
-    if (record.at("version") != 1)
+    if (record.at("version") != 1 && record.at("version") != 2)
       fail(source, "the record is of a version that this program does not know; use a newer one");
     geom::Provenance& p = set.provenance;
-    record.at("margin").get_to(set.margin);
     record.at("unit").get_to(p.unit);
     record.at("frame").get_to(p.frame);
     record.at("direction").get_to(p.direction);
@@ -384,11 +427,10 @@ void take_record(const Json& record, const Source& source, geom::ConvexSet& set)
       fail(source, "the record speaks of " + record.at("bodies").dump() +
                        " bodies, but there are " + std::to_string(set.bodies.size()) +
                        "; the set is incomplete, write it again");
+    take_radii(record, source, set);
   } catch (const Json::exception& e) {
     fail(source, std::string("the record of the convex set is damaged: ") + e.what());
   }
-  if (!(set.margin >= 0) || !std::isfinite(set.margin))
-    fail(source, "the record states a margin that is negative or not finite");
 }
 
 std::optional<SetFormat> set_format_from_path(const fs::path& path) {
@@ -432,7 +474,7 @@ std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat for
     case SetFormat::Glb:
       return write_glb_set(cleaned(set));
     case SetFormat::Obj:
-      refuse_margin(set, "OBJ");
+      refuse_radii(set, "OBJ");
       if (set.bodies.empty())
         throw Error(ErrorCode::InvalidArgument, "OBJ cannot hold a set without bodies; write glb");
       return write_obj_set(cleaned(set));

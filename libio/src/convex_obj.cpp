@@ -128,7 +128,7 @@ std::vector<char> write_obj_set(const geom::ConvexSet& set) {
     for (char& c : name)
       if (c == ' ' || c == '#' || c == '\\') c = '_';
     out.text("o " + name + "\n");
-    for (const geom::Vec3& p : body.hull.vertices) {
+    for (const geom::Vec3& p : body.core.vertices) {
       out.text("v");
       for (const double x : p) {
         out.text(" ");
@@ -136,7 +136,7 @@ std::vector<char> write_obj_set(const geom::ConvexSet& set) {
       }
       out.text("\n");
     }
-    for (const geom::Triangle& t : body.hull.triangles) {
+    for (const geom::Triangle& t : body.core.triangles) {
       out.text("f");
       for (const std::uint32_t corner : t) {
         out.text(" ");
@@ -144,7 +144,7 @@ std::vector<char> write_obj_set(const geom::ConvexSet& set) {
       }
       out.text("\n");
     }
-    first += static_cast<std::uint32_t>(body.hull.vertices.size());
+    first += static_cast<std::uint32_t>(body.core.vertices.size());
   }
   return out.take();
 }

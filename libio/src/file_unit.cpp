@@ -132,7 +132,7 @@ double recorded_scale(const std::string& record, const std::string& file) {
   const char* const end = word->data() + word->size();
   const auto [at, error] = std::from_chars(word->data(), end, factor);
   if (error != std::errc() || at != end || !(factor > 0) || !std::isfinite(factor))
-    throw Error(ErrorCode::InvalidInput, file + ": its record says --scale " + in_quotes(*word) +
+    throw Error(ErrorCode::InvalidInput, file + ": its record says a scale of " + in_quotes(*word) +
                                              ", which is no factor; it is damaged, make it anew");
   return factor;
 }
@@ -143,8 +143,8 @@ void require_recorded_scale(const std::string& file, const std::string& record, 
   throw Error(
       ErrorCode::InvalidInput,
       file + ": it was made " +
-          (recorded == 1 ? "without --scale: leave that out"
-                         : "with --scale " + shortest_digits(recorded) + ": give that here, too"));
+          (recorded == 1 ? "without «scale»: leave that out"
+                         : "with «scale=" + shortest_digits(recorded) + "»: give that here, too"));
 }
 
 void require_same_unit(const std::string& file, const std::string& unit,
@@ -156,8 +156,8 @@ void require_same_unit(const std::string& file, const std::string& unit,
   throw Error(ErrorCode::InvalidInput,
               file + " is in " + unit + " and " + other_file + " in " + other_unit +
                   " as read (docs/formats.md): lengths of two units are not compared; bring the "
-                  "first into the other's unit with --scale " +
-                  factor + ", or export it in " + other_unit);
+                  "first into the other's unit with «scale=" +
+                  factor + "», or export it in " + other_unit);
 }
 
 }  // namespace kaboum::io

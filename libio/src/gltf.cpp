@@ -32,8 +32,9 @@ Eigen::Matrix3d rotation(const JsonItem& item, const double* q) {
 
 class GltfReader {
  public:
-  GltfReader(GltfFile& file, const std::function<MeshBuilder&(const std::string&)>& builder_for)
-      : file_(file), builder_for_(builder_for) {}
+  GltfReader(GltfFile& file, const std::function<MeshBuilder&(const std::string&)>& builder_for,
+             bool cores)
+      : file_(file), builder_for_(builder_for), cores_(cores) {}
 
   GltfFacts read() {
     visited_.resize(file_.count("nodes"));
@@ -204,7 +205,8 @@ class GltfReader {
       primitive.fail("mode " + std::to_string(mode) +
                      " is not one of glTF 2.0; export the mesh as triangles");
     file_.check_extensions(primitive, {kDraco});  // which repeats the accessors, if they have data
-    if (mode < Triangles) {
+    const bool core = cores_ && (mode == Points || mode == Lines);
+    if (mode < Triangles && !core) {
       ++lines_;
       return;
     }
@@ -228,6 +230,7 @@ class GltfReader {
                       " is moved out of the range of numbers; check the scene's transforms");
       builder.add_point(p, file_.source().begin());
     }
+    if (core) return;
     std::vector<std::uint32_t> corners;
     if (primitive.has("indices")) {
       corners = read_indices(file_, primitive.at("indices"), points.count);
@@ -289,26 +292,27 @@ class GltfReader {
   GltfFacts facts_;
   std::vector<bool> visited_, used_;  ///< nodes; meshes
   std::size_t lines_ = 0;
+  const bool cores_;
   bool morphs_ = false;
 };
 
-/// The triangles of a convex set with a margin are smaller than the set.
-void refuse_margin(const GltfFile& file) {
+/// The triangles of convex bodies with radii are smaller than the bodies.
+void refuse_radii(const GltfFile& file) {
   const JsonItem::Json* const record = gltf_set_record(file);
   if (record == nullptr) return;
   const JsonItem item(file.source(), *record, std::string("extras.") + kGltfSetRecord);
-  const double margin = item.at("margin").number();
-  if (margin != 0)
+  if (!item.has("margin") || item.at("margin").number() != 0)
     item.fail(
-        "a convex set with a margin, which a mesh would lose; use the file as a set of "
-        "bodies, or write it with the margin made explicit");
+        "a convex set whose bodies have a radius (a margin), which a mesh would lose; use the file "
+        "as a set of bodies, or write it with the margin made explicit");
 }
 
 }  // namespace
 
 GltfFacts read_gltf_scene(GltfFile& file,
-                          const std::function<MeshBuilder&(const std::string&)>& builder_for) {
-  return GltfReader(file, builder_for).read();
+                          const std::function<MeshBuilder&(const std::string&)>& builder_for,
+                          bool cores) {
+  return GltfReader(file, builder_for, cores).read();
 }
 
 void note_gltf_facts(const GltfFacts& facts, GltfFile& file) {
@@ -341,7 +345,7 @@ ReadResult read_gltf(const Source& source, Format format) {
   MeshBuilder builder(source);
   const GltfFacts facts =
       read_gltf_scene(file, [&](const std::string&) -> MeshBuilder& { return builder; });
-  refuse_margin(file);
+  refuse_radii(file);
   note_gltf_facts(facts, file);
   for (std::string& note : file.take_notes()) builder.note(std::move(note));
   ReadResult result = builder.finish(format, facts.floats);

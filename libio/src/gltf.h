@@ -20,11 +20,14 @@ struct GltfFacts {
 /// nodes, and adds the mesh's triangles, moved by the transforms of nodes and instances, to the
 /// builder that it returns. Files without scenes and nodes: all meshes as they are.
 ///
+/// @param cores  points and lines are the cores of convex bodies: their points are added as well
+///
 /// docs/formats.md lists what is read, refused and ignored. Internal to kaboum_io.
 ///
 /// @throws Error{InvalidInput} and Error{LimitReached}
 GltfFacts read_gltf_scene(GltfFile& file,
-                          const std::function<MeshBuilder&(const std::string&)>& builder_for);
+                          const std::function<MeshBuilder&(const std::string&)>& builder_for,
+                          bool cores = false);
 
 /// Adds a note for what `facts` say about coordinates.
 void note_gltf_facts(const GltfFacts& facts, GltfFile& file);

@@ -13,7 +13,7 @@ namespace {
 
 /// A feature in the world: a point, and the direction of a line or normal of a plane with two that
 /// are perpendicular to it and fixed to the same frame.
-struct Seen {
+struct PosedFeature {
   Vec3 origin, point, direction, side, other;  ///< origin: of the frame
 };
 
@@ -25,8 +25,8 @@ std::pair<Vec3, Vec3> perpendiculars(const Vec3& d) {
   return {a, d.cross(a)};
 }
 
-Seen see(const Feature& feature, const Transform& frame) {
-  Seen s;
+PosedFeature see(const Feature& feature, const Transform& frame) {
+  PosedFeature s;
   s.origin = frame.translation;
   const auto place = [&](const Vec3& position, const Vec3& direction) {
     s.point = frame * position;
@@ -49,7 +49,7 @@ Seen see(const Feature& feature, const Transform& frame) {
 /// Collects rows: values, and how they change with the twists of both frames.
 class Rows {
  public:
-  Rows(const Seen& a, const Seen& b, double length)
+  Rows(const PosedFeature& a, const PosedFeature& b, double length)
       : a_(a), b_(b), between_(a.point - b.point), length_(length) {}
 
   /// u · (p₁ − p₂), u fixed to the first frame, to the second, or to neither.
@@ -143,7 +143,7 @@ class Rows {
     second_.back().tail<3>() -= (b_.point - b_.origin).cross(g).transpose();
   }
 
-  const Seen &a_, &b_;
+  const PosedFeature &a_, &b_;
   Vec3 between_;
   double length_;
   Four<double> value_;
@@ -162,7 +162,7 @@ bool supported(Relation relation, std::size_t pair) {
   return relation == Relation::Distance ? with_point : !with_point;
 }
 
-void coincident(Rows& rows, const Seen& a, const Seen& b, std::size_t pair) {
+void coincident(Rows& rows, const PosedFeature& a, const PosedFeature& b, std::size_t pair) {
   switch (pair) {
     case kPointPoint:
       for (int i = 0; i < 3; ++i) rows.along(Vec3::Unit(i), 0);
@@ -189,7 +189,7 @@ void coincident(Rows& rows, const Seen& a, const Seen& b, std::size_t pair) {
 }
 
 /// @param aligned  the directions are to be the same or opposite; else at right angles.
-void directions(Rows& rows, const Seen& a, const Seen& b, bool aligned) {
+void directions(Rows& rows, const PosedFeature& a, const PosedFeature& b, bool aligned) {
   if (!aligned) return rows.dot(a.direction, b.direction);
   rows.dot(a.side, b.direction);
   rows.dot(a.other, b.direction);
@@ -216,7 +216,7 @@ Cost cost(const Constraint& c, const Transform& first, const Transform& second, 
     std::swap(out.first, out.second);
     return out;
   }
-  const Seen a = see(c.first.feature, first), b = see(c.second.feature, second);
+  const PosedFeature a = see(c.first.feature, first), b = see(c.second.feature, second);
   const std::size_t pair = kinds(i, k);
   Rows rows(a, b, length);
   switch (c.relation) {

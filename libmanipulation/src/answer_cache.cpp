@@ -10,19 +10,19 @@ namespace kaboum::manipulation {
 namespace answers {  // what a class with a name holds has one, too
 
 /// One thing that was read, and what it was.
-struct Read {
+struct Reading {
   bool truth = false;
   std::string name;
   std::vector<std::string> arguments;
   std::optional<std::string> value;  ///< of an atom "true" or "false"
 
-  [[nodiscard]] bool same_place(const Read& other) const {
+  [[nodiscard]] bool same_place(const Reading& other) const {
     return truth == other.truth && name == other.name && arguments == other.arguments;
   }
 };
 
 struct Entry {
-  std::vector<Read> reads;
+  std::vector<Reading> reads;
   plan::Answer answer;
 };
 
@@ -31,7 +31,7 @@ struct Entry {
 namespace {
 
 using answers::Entry;
-using answers::Read;
+using answers::Reading;
 using nlohmann::json;
 using plan::Answer;
 using plan::Question;
@@ -57,18 +57,18 @@ class Notes final : public plan::StateView {
           known ? std::optional<std::string>(*known ? "true" : "false") : std::nullopt});
     return known;
   }
-  std::vector<Read> reads;
+  std::vector<Reading> reads;
 
  private:
-  void note(Read read) {
-    for (const Read& r : reads)
+  void note(Reading read) {
+    for (const Reading& r : reads)
       if (r.same_place(read)) return;
     reads.push_back(std::move(read));
   }
   plan::StateView& view_;
 };
 
-std::optional<std::string> read_again(const Read& read, plan::StateView& view) {
+std::optional<std::string> read_again(const Reading& read, plan::StateView& view) {
   if (!read.truth) return view.value(read.name, read.arguments);
   const auto known = view.truth(read.name, read.arguments);
   return known ? std::optional<std::string>(*known ? "true" : "false") : std::nullopt;
@@ -83,7 +83,7 @@ std::string place_of_question(const std::string& function, const Question& quest
 
 json to_json(const std::string& place, const Entry& entry) {
   json reads = json::array();
-  for (const Read& r : entry.reads)
+  for (const Reading& r : entry.reads)
     reads.push_back({r.truth, r.name, r.arguments, r.value ? json(*r.value) : json()});
   return {{"q", place},
           {"reads", reads},
@@ -115,7 +115,7 @@ Entry entry_of(const json& j) {
 
 }  // namespace
 
-struct AnswerCache::Kept {
+struct AnswerCache::Entries {
   std::map<std::string, std::vector<answers::Entry>> entries;
   std::size_t bytes = 0, reused = 0, fresh = 0;
 
@@ -144,7 +144,7 @@ struct AnswerCache::Kept {
         ++reused;
         return fitting.front()->answer;
       }
-      const Read& next = fitting.front()->reads[k];
+      const Reading& next = fitting.front()->reads[k];
       const auto now = read_again(next, question.state);
       std::erase_if(fitting, [&](const Entry* e) {
         return e->reads.size() <= k || !e->reads[k].same_place(next) || e->reads[k].value != now;
@@ -165,7 +165,7 @@ struct AnswerCache::Kept {
   }
 };
 
-AnswerCache::AnswerCache(const std::string& content) : kept_(std::make_unique<Kept>()) {
+AnswerCache::AnswerCache(const std::string& content) : kept_(std::make_unique<Entries>()) {
   kept_->load(content);
 }
 

@@ -136,7 +136,7 @@ std::string beyond_limits(const Variable& joint, double value) {
   };
   return "joint '" + joint.name + "' at " + text(value) + " is outside its limits, " +
          limit(joint.lower, "-inf") + " to " + limit(joint.upper, "inf") +
-         " (radians, or metres where it slides; --degrees if it is in degrees)";
+         " (radians, or metres where it slides; «degrees» if it is in degrees)";
 }
 
 /// @param times  the columns
@@ -324,9 +324,9 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (it == path.joints.end())
         fail(name, std::string("no column for joint '")
                        .append(joint)
-                       .append("'; where it does not move, give its value instead (--joint ")
+                       .append("'; where it does not move, give its value instead («joint=")
                        .append(joint)
-                       .append("=0)"));
+                       .append("=0»)"));
       column[i] = static_cast<std::size_t>(it - path.joints.begin());
     }
   }

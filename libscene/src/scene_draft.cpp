@@ -1,7 +1,7 @@
 // Scenes put together in process: entries are made when it is known where the scene is to be.
 
 #include <kaboum/base/error.h>
-#include <kaboum/certify/set_options.h>
+#include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/scene/scene_draft.h>
 
@@ -41,18 +41,12 @@ Json object_of(const std::string& text, const std::string& name,
   return out;
 }
 
-/// By its record, what a set's mesh was multiplied by.
-double scale_of(const geom::Provenance& record) {
-  certify::SetOptions stated;
-  static_cast<void>(read_record(certify::set_options(), record.parameters, stated));
-  return stated.request.scale;
-}
-
 /// An inner set of another scale is not in the object: contacts with it would be called certain.
 void require_one_scale(const std::string& name, const SceneSet& outer, const SceneSet& inner) {
   const geom::Provenance& out = outer.set.artefact().provenance;
   const geom::Provenance& in = inner.set.artefact().provenance;
-  if (out.source_sha256 == in.source_sha256 && scale_of(out) != scale_of(in))
+  if (out.source_sha256 == in.source_sha256 &&
+      io::recorded_scale(out.parameters, name) != io::recorded_scale(in.parameters, name))
     throw Error(ErrorCode::InvalidArgument,
                 "object '" + name +
                     "': its inner set is of another scale than the outer one, and not inside it");

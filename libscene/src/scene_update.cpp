@@ -1,6 +1,7 @@
 // Scenes brought up to date: what has changed is looked for by hashes and made anew.
 
 #include <kaboum/base/error.h>
+#include <kaboum/certify/set_options.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/scene/scene_update.h>
 #include <kaboum/world/scene.h>
@@ -112,12 +113,17 @@ class Update {
         }))
       refuse("would lose its inner one: nothing lies within the shapes any more");
     if (!fs::exists(path_of(link.at("inner")))) return;
-    std::string inner = record_of(link.at("inner")).parameters;
-    constexpr std::string_view kDirection = " --direction inner";
-    if (const auto at = inner.find(kDirection); at != std::string::npos)
-      inner.erase(at, kDirection.size());
-    if (inner != parameters)
+    const std::string inner = record_of(link.at("inner")).parameters;
+    if (without_direction(inner) != without_direction(parameters))
       refuse("and its inner one were made with different options (" + inner + ")");
+  }
+
+  /// A record as that of an outer set; as it is where not all of it is understood.
+  static std::string without_direction(const std::string& record) {
+    certify::RobotSetOptions options;
+    if (!read_record(certify::robot_set_options(), record, options).empty()) return record;
+    options.set.request.direction = certify::SetRequest::Direction::Outer;
+    return kaboum::record_of(certify::robot_set_options(), options);
   }
 
   /// How a set was made, by the record in its container.
@@ -134,9 +140,9 @@ class Update {
       fail(path.string()
                .append(" is out of date and was made with '")
                .append(*unknown)
-               .append("', which this command does not know: make it anew with bcd-decompose ")
-               .append(parameters)
-               .append(", and put its SHA-256 into the scene"));
+               .append("', which is not known here: make it anew with bcd-decompose, and put its "
+                       "SHA-256 into the scene; it was made with ")
+               .append(parameters));
     if (parameters.empty())
       fail(path.string() + " is out of date, and does not say how it was made: make it anew");
     return out;

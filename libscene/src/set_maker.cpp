@@ -222,7 +222,7 @@ void SetMaker::say_size(const std::string& name, const geom::ConvexSet& set,
                         const std::string& unit) {
   geom::Box3 box;
   for (const geom::ConvexBody& body : set.bodies)
-    for (const geom::Vec3& p : body.hull.vertices) box.extend(p);
+    for (const geom::Vec3& p : body.core.vertices) box.extend(p);
   const geom::Vec3 size = box.max - box.min;
   char text[96];
   std::snprintf(text, sizeof text, "%.3g x %.3g x %.3g %s", size.x(), size.y(), size.z(),

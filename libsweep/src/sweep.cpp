@@ -214,9 +214,11 @@ SweepResult swept_volume(const Robot& robot, std::span<const LinkBody> bodies, c
   }
   if (!options.explicit_margin) {
     ensure(margin <= options.epsilon || !result.certified, "the margin exceeds epsilon");
-    result.set.margin = margin;
+    geom::set_margin(result.set, margin);
+    result.excess = (far + margin) * kUp;
+  } else {
+    result.excess = far * kUp;
   }
-  result.excess = (far + result.set.margin) * kUp;
   return result;
 }
 

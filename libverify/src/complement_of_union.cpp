@@ -20,11 +20,11 @@ ComplementOfUnion::ComplementOfUnion(const MeshPair& meshes, const geom::ConvexS
   std::vector<Bounds> boxes;
   std::vector<std::uint32_t> items;
   for (const geom::ConvexBody& body : set.bodies) {
-    if (body.hull.triangles.empty() || !MeshPair(geom::Mesh{}, body.hull).closed(kOutside))
+    if (body.core.triangles.empty() || !MeshPair(geom::Mesh{}, body.core).closed(kOutside))
       continue;
-    Body planes = body_of(body.hull, meshes);
+    Body planes = body_of(body.core, meshes);
     if (planes.planes.empty()) continue;
-    const geom::Box3 box = geom::bounding_box(body.hull);
+    const geom::Box3 box = geom::bounding_box(body.core);
     Bounds bounds;
     for (int k = 0; k < 3; ++k) {
       bounds.low[k] = box.min[k] * meshes.scale();
@@ -79,11 +79,11 @@ std::optional<ComplementOfUnion::Crossing> ComplementOfUnion::crossing_planes(co
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   Crossing result;
-  struct Met {
+  struct FacetCrossing {
     const Plane* plane;
     double at;  ///< height of the box's middle above it
   };
-  std::vector<Met> met;
+  std::vector<FacetCrossing> met;
   for (const Plane& plane : body.planes) {
     const double at = plane.normal.dot(middle) - plane.height;
     const double extent = plane.normal.cwiseAbs().dot(half);
@@ -92,8 +92,9 @@ std::optional<ComplementOfUnion::Crossing> ComplementOfUnion::crossing_planes(co
     if (at > -extent) met.push_back({&plane, at});
   }
   // The lowest ones first: what is above them in all of the box takes nothing from them.
-  std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.at > b.at; });
-  for (const Met& m : met) {
+  std::stable_sort(met.begin(), met.end(),
+                   [](const FacetCrossing& a, const FacetCrossing& b) { return a.at > b.at; });
+  for (const FacetCrossing& m : met) {
     const Plane* const plane = m.plane;
     const auto alike = std::find_if(
         result.planes.begin(), result.planes.end(),

@@ -1,14 +1,17 @@
 // Claims about sets of convex bodies: convexity, cover, and the distance of the bodies from the
 // original. docs/algorithms/exact-inclusion.md.
+#include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <numeric>
 #include <optional>
 #include <sstream>
 
+#include "body_bounds.h"
 #include "cell_sample.h"
 #include "margin.h"
 #include "mesh_pair.h"
@@ -49,9 +52,8 @@ struct Highest {
   }
 };
 
-/// Why a body is not convex; empty when it is.
+/// Why a polytope is not convex; empty when it is.
 std::string fault_of(const geom::Mesh& body) {
-  if (body.triangles.empty()) return "it has no triangles";
   const MeshPair meshes(geom::Mesh{}, body);
   if (!meshes.closed(kOutside)) return "it is not closed";
   if (meshes.tree(kOutside).empty()) return "it has no triangle with area";
@@ -72,6 +74,18 @@ std::string fault_of(const geom::Mesh& body) {
   }
   if (highest.face) return highest.text(meshes);
   return deep ? "" : "it has no volume";
+}
+
+/// Why a body is not convex; empty when it is.
+std::string fault_of(const geom::ConvexBody& body) {
+  if (!(body.radius >= 0) || !std::isfinite(body.radius))
+    return "its radius is negative or not finite";
+  const std::vector<Vec3>& points = body.core.vertices;
+  if (!body.core.triangles.empty()) return fault_of(body.core);
+  if (points.empty() || points.size() > 2) return "it has no triangles";
+  if (body.radius == 0) return "it is a segment or a point without a radius";
+  if (points.size() == 2 && points[0] == points[1]) return "its segment is a point";
+  return "";
 }
 
 std::vector<std::uint32_t> all_of(const geom::Mesh& mesh) {
@@ -97,17 +111,51 @@ std::vector<std::uint32_t> not_within(const geom::Mesh& mesh, const Inclusion& i
   return out;
 }
 
+constexpr const char* kNoBounds =
+    "the bodies are not convex, or too many, to be bounded by polytopes";
+
+/// Refutes the surface claim where a corner of the original is in no body, exactly: polytopes leave
+/// open what is that near to the bodies.
+void look_at_corners(const geom::Mesh& original, const geom::ConvexSet& set, Claim& surface) {
+  for (const geom::Triangle& t : original.triangles)
+    for (const std::uint32_t v : t) {
+      const Vec3& p = original.vertices[v];
+      const auto holds = [&](const geom::ConvexBody& body) { return contains(body, p); };
+      if (std::ranges::any_of(set.bodies, holds)) continue;
+      surface = {};
+      surface.answer = Answer::Refuted;
+      surface.reason = "a corner of a triangle is in no body";
+      surface.witness = Witness{p, distance_to_bodies(set, p), true};
+      surface.inner_triangles = {static_cast<std::uint32_t>(&t - original.triangles.data())};
+      return;
+    }
+}
+
+/// Where there are no polytopes to decide by.
+Inclusion open_inclusion(const Claim& convex) {
+  Inclusion out;
+  for (Claim* claim : {&out.solid, &out.surface}) {
+    claim->answer = Answer::Undecided;
+    claim->reason = convex.answer == Answer::Verified ? kNoBounds : "not all bodies are convex";
+  }
+  return out;
+}
+
 }  // namespace
 
 geom::Mesh sum_of(const geom::ConvexSet& set) {
   geom::Mesh sum;
-  for (const geom::ConvexBody& body : set.bodies) {
+  const auto add = [&](const geom::Mesh& polytope) {
     const auto offset = static_cast<std::uint32_t>(sum.vertices.size());
-    sum.vertices.insert(sum.vertices.end(), body.hull.vertices.begin(), body.hull.vertices.end());
-    for (const geom::Triangle& t : body.hull.triangles) {
+    sum.vertices.insert(sum.vertices.end(), polytope.vertices.begin(), polytope.vertices.end());
+    for (const geom::Triangle& t : polytope.triangles) {
       sum.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
     }
-  }
+  };
+  const bool cores = geom::margin_of(set).has_value();
+  const geom::SpherePoints sphere = geom::sphere_points(cores ? 0 : kFirstBoundsLevel);
+  for (const geom::ConvexBody& body : set.bodies)
+    add(cores ? body.core : geom::inscribed_polytope(body, sphere));
   return sum;
 }
 
@@ -115,8 +163,8 @@ Convexity verify_convexity(const geom::ConvexSet& set) {
   Convexity result;
   result.convex.answer = Answer::Verified;
   for (std::size_t i = 0; i < set.bodies.size(); ++i) {
-    geom::require_valid(set.bodies[i].hull);
-    std::string fault = fault_of(set.bodies[i].hull);
+    geom::require_valid(set.bodies[i].core);
+    std::string fault = fault_of(set.bodies[i]);
     if (!fault.empty()) result.not_convex.emplace_back(i, std::move(fault));
   }
   if (!result.not_convex.empty()) {
@@ -132,16 +180,56 @@ Convexity verify_convexity(const geom::ConvexSet& set) {
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options) {
   Cover cover{verify_convexity(set), {}};
+  const std::optional<double> margin = geom::margin_of(set);
+  if (!margin) {
+    const auto with = [&](const geom::ConvexSet& polytopes) {
+      return verify_inclusion(original, sum_of(polytopes), options);
+    };
+    cover.inclusion = decide_between(
+        set, original.vertices, open_inclusion(cover.convex),
+        [&](const BodyBounds& bounds) { return with(bounds.inside); },
+        [&](const BodyBounds& bounds) { return with(bounds.outside); });
+    if (cover.convex.answer == Answer::Verified && is_open(cover.inclusion.surface))
+      look_at_corners(original, set, cover.inclusion.surface);
+    return cover;
+  }
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
-  if (set.margin > 0)
+  if (*margin > 0)
     allow_margin(original, sum, set, cover.convex.answer == Answer::Verified, options.max_cells,
                  cover.inclusion);
   return cover;
 }
 
+Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
+                        const InclusionOptions& options) {
+  const auto of = [&](const geom::ConvexSet& polytopes) {
+    return verify_inclusion(sum_of(polytopes), original, options);
+  };
+  if (geom::margin_of(set) == 0.0) return of(set);
+  Inclusion out = decide_between(
+      set, {}, open_inclusion(verify_convexity(set).convex),
+      [&](const BodyBounds& bounds) { return of(bounds.outside); },
+      [&](const BodyBounds& bounds) { return of(bounds.inside); });
+  for (Claim* claim : {&out.solid, &out.surface}) claim->inner_triangles.clear();  // polytopes'
+  return out;
+}
+
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits) {
+  const std::optional<double> one_radius = geom::margin_of(set);
+  if (!one_radius) {
+    const auto of = [&](const geom::ConvexSet& polytopes) {
+      return verify_excess(polytopes, original, epsilon, to_solid, limits);
+    };
+    DistanceClaim open;
+    open.answer = Answer::Undecided;
+    open.reason = kNoBounds;
+    return decide_between(
+        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.outside); },
+        [&](const BodyBounds& bounds) { return of(bounds.inside); });
+  }
+  const double margin = *one_radius;
   DistanceClaimOptions options;
   options.to_solid = to_solid;
   const geom::Mesh sum = sum_of(set);
@@ -152,26 +240,26 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
   if (!open.empty()) {
     geom::Mesh part{sum.vertices, {}};
     for (const std::uint32_t t : open) part.triangles.push_back(sum.triangles[t]);
-    claim = verify_distance(part, original, epsilon - set.margin, options);
+    claim = verify_distance(part, original, epsilon - margin, options);
     claim.triangle = open[claim.triangle];
   }
   if (to_solid && claim.answer == Answer::Verified) {
     // Cavities that the bodies fill are farther away inside the bodies than on their surfaces.
-    const Claim inside = excess_inside(sum, original, inclusion, epsilon - set.margin, limits);
+    const Claim inside = excess_inside(sum, original, inclusion, epsilon - margin, limits);
     if (inside.answer == Answer::Verified) return claim;
     claim.answer = inside.answer;
     claim.reason = inside.reason;
     if (inside.answer != Answer::Refuted) return claim;
     claim.at = inside.witness->point;
-    claim.largest = inside.witness->depth + (epsilon - set.margin);
+    claim.largest = inside.witness->depth + (epsilon - margin);
     claim.reason = "a point inside the bodies is farther away";
-    if (claim.largest > epsilon || !(set.margin > 0)) return claim;
+    if (claim.largest > epsilon || !(margin > 0)) return claim;
   }
-  if (claim.answer != Answer::Refuted || !(set.margin > 0)) return claim;
+  if (claim.answer != Answer::Refuted || !(margin > 0)) return claim;
 
   // Pushed away from the original by the margin less what `at` errs by, it is a point of the union.
   const MeshPair meshes(sum, original);
-  const double push = set.margin * (1 - 0x1p-40) -
+  const double push = margin * (1 - 0x1p-40) -
                       meshes.length_outside(rounding_of_distances(meshes.largest_coordinate()));
   const Vec3 at = claim.at * meshes.scale();
   const std::uint32_t f = NearestTriangle(meshes, kOutside).nearest(at).face;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "body_bounds.h"
 #include "nearest.h"
 #include "uncovered_region.h"
 
@@ -29,6 +30,17 @@ void name_nearest(const MeshPair& meshes, Claim& claim) {
 
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options) {
+  if (geom::margin_of(set) != 0.0) {
+    const auto of = [&](const geom::ConvexSet& polytopes) {
+      return verify_depth(original, polytopes, epsilon, options);
+    };
+    Claim open;
+    open.answer = Answer::Undecided;
+    open.reason = "the bodies are too many to be bounded by polytopes";
+    return decide_between(
+        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.inside); },
+        [&](const BodyBounds& bounds) { return of(bounds.outside); });
+  }
   const geom::Mesh sum = sum_of(set);
   const MeshPair meshes(original, sum);
   Pieces bounding;

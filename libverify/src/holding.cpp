@@ -62,7 +62,7 @@ Claim verify_holding(const geom::ConvexSet& set, std::span<const RoundedHull> he
                      [](const Vec3& p) { return p.allFinite(); }))
       throw Error(ErrorCode::InvalidInput,
                   "body " + std::to_string(i) + ": what it is to hold is not finite");
-    if (!holds(set.bodies[i].hull, held[i]))
+    if (!holds(set.bodies[i].core, held[i]))
       return refute("body " + std::to_string(i) + " (" + set.bodies[i].name +
                     ") does not hold what it is to");
   }

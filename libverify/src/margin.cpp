@@ -9,12 +9,12 @@
 namespace kaboum::verify {
 namespace {
 
-Claim solid_claim(const MeshPair& meshes, const geom::ConvexSet& set, bool convex,
+Claim solid_claim(const MeshPair& meshes, const geom::ConvexSet& set, double margin, bool convex,
                   std::size_t max_cells, bool inside_only, const Claim& without) {
   const BoxTree& faces = meshes.tree(kOutside);
   const ComplementOfUnion bodies(meshes, set);
   Claim claim = search_uncovered(meshes, offending_faces(meshes, without),
-                                 {meshes, faces, faces, set.margin * meshes.scale(), max_cells,
+                                 {meshes, faces, faces, margin * meshes.scale(), max_cells,
                                   inside_only, false, convex ? &bodies : nullptr});
   if (claim.answer == Answer::Refuted) {
     claim.reason = "a part of the inner solid is farther from the outer one than the margin";
@@ -45,6 +45,7 @@ Claim surface_claim(const geom::Mesh& inner, const geom::Mesh& outer, double mar
 
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   bool convex, std::size_t max_cells, Inclusion& inclusion) {
+  const double margin = geom::margin_of(set).value();
   const MeshPair meshes(inner, sum);
   if (meshes.tree(kOutside).empty()) return;  // nothing to be near
   const auto decide = [&](Claim& claim, const auto& anew) {
@@ -64,13 +65,12 @@ void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::Co
     }
     claim = std::move(with);
   };
-  decide(inclusion.surface,
-         [&](const Claim& c) { return surface_claim(inner, sum, set.margin, c); });
+  decide(inclusion.surface, [&](const Claim& c) { return surface_claim(inner, sum, margin, c); });
   if (inclusion.relative) return;
   // The boundary of what is left out lies on the bodies and on triangles of the surface claim.
   const bool inside_only = inclusion.surface.answer == Answer::Verified;
   decide(inclusion.solid, [&](const Claim& c) {
-    return solid_claim(meshes, set, convex, max_cells, inside_only, c);
+    return solid_claim(meshes, set, margin, convex, max_cells, inside_only, c);
   });
 }
 

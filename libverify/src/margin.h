@@ -18,7 +18,7 @@ namespace kaboum::verify {
 /// @param convex     whether the bodies are, exactly: boxes are then cut along their facets, too
 /// @param max_cells  boxes looked at before giving up
 /// @param inclusion  verify_inclusion(inner, sum)
-/// @pre set.margin > 0; `sum` is a closed chain
+/// @pre geom::margin_of(set) > 0; `sum` is a closed chain
 void allow_margin(const geom::Mesh& inner, const geom::Mesh& sum, const geom::ConvexSet& set,
                   bool convex, std::size_t max_cells, Inclusion& inclusion);
 

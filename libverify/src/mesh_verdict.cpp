@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "body_bounds.h"
 #include "inside_out.h"
 
 namespace kaboum::verify {
@@ -17,23 +18,43 @@ const geom::Mesh& solid_of(const MeshQuestion& q, const MeshVerdict& verdict) {
   return verdict.solid_part ? *verdict.solid_part : q.inner();
 }
 
-void measure_depths(const MeshQuestion& q, MeshVerdict& out) {
-  const double margin = q.relation == Relation::Cover ? q.set->margin : 0;
+/// What encloses: a mesh whose solid, enlarged by the margin, is no smaller than the true one, and
+/// no larger than that enlarged by `gap`.
+struct Enclosing {
+  geom::Mesh mesh;
+  double margin = 0, gap = 0;
+};
+
+/// Of bodies with radii of their own the polytopes round them; nullopt where there are none.
+std::optional<Enclosing> enclosing_of(const MeshQuestion& q) {
+  // Triangles of the bodies' polytopes are not those of the approximation.
+  if (q.relation == Relation::Inner && q.set != nullptr && geom::margin_of(*q.set) != 0.0)
+    return std::nullopt;
+  if (q.relation != Relation::Cover) return Enclosing{q.outer()};
+  if (const auto margin = geom::margin_of(*q.set)) return Enclosing{q.outer(), *margin};
+  std::optional<BodyBounds> bounds = bounds_of(*q.set, kFirstBoundsLevel + 1);
+  if (!bounds) return std::nullopt;
+  return Enclosing{sum_of(bounds->outside), 0, bounds->gap};
+}
+
+void measure_depths(const MeshQuestion& q, const Enclosing& outer, MeshVerdict& out) {
+  const double margin = outer.margin;
   const auto beyond_margin = [&](Bracket b) {
     b.lower = std::max(0.0, b.lower - margin * (1 + 0x1p-50));
     b.upper -= margin * (1 - 0x1p-50);
+    if (outer.gap > 0) b.upper = (b.upper + outer.gap) * (1 + 0x1p-50);
     return b;
   };
   const Inclusion& in = out.inclusion;
   if (in.solid.answer == Answer::Refuted && !in.relative && !in.limited)
-    out.solid_depth = beyond_margin(bracket_solid(solid_of(q, out), q.outer(), in.solid));
+    out.solid_depth = beyond_margin(bracket_solid(solid_of(q, out), outer.mesh, in.solid));
   if (in.surface.answer != Answer::Refuted) return;
   BracketEffort effort;
   if (in.limited)  // its target is as hard to find
     effort.max_work = q.max_work.value_or(
         usual_work(q.original.triangles.size() + q.approximation.triangles.size()));
   out.surface_depth = beyond_margin(
-      bracket_distance(surface_of(q, out), in.surface.inner_triangles, q.outer(), true, effort));
+      bracket_distance(surface_of(q, out), in.surface.inner_triangles, outer.mesh, true, effort));
   // What was left out may stick out farther.
   if (in.limited) out.surface_depth->upper = std::numeric_limits<double>::infinity();
 }
@@ -103,8 +124,10 @@ void decide_distances(const MeshQuestion& q, const InclusionOptions& options, Me
 
 Inclusion inclusion_of(const MeshQuestion& q, const geom::Mesh& inner,
                        const InclusionOptions& options) {
-  return q.relation == Relation::Cover ? verify_cover(inner, *q.set, options).inclusion
-                                       : verify_inclusion(inner, q.outer(), options);
+  if (q.relation == Relation::Cover) return verify_cover(inner, *q.set, options).inclusion;
+  if (q.set != nullptr && geom::margin_of(*q.set) != 0.0)
+    return verify_within(*q.set, q.original, options);
+  return verify_inclusion(inner, q.outer(), options);
 }
 
 /// What is to be said of a subject beside its mesh as it is oriented.
@@ -175,11 +198,16 @@ MeshVerdict decide(const MeshQuestion& q,
   const bool both_ways = has_subject && q.subject->both_ways;
   out.vacuous = q.claims == Claims::Solid && !both_ways && is_inside_out(q.inner());
   show("measuring what sticks out");
-  measure_depths(q, out);
+  const std::optional<Enclosing> outer = enclosing_of(q);
+  if (outer) measure_depths(q, *outer, out);
   if (q.exact_points && q.relation != Relation::Inner) {
     show("deciding: points of exact faces");
-    out.exact_points =
-        verify_points(*q.exact_points, q.outer(), q.set != nullptr ? q.set->margin : 0);
+    if (outer) {
+      out.exact_points = verify_points(*q.exact_points, outer->mesh, outer->margin);
+    } else {
+      out.exact_points.emplace();
+      out.exact_points->reason = "the bodies are too many to be bounded by polytopes";
+    }
   }
   if (enclosure) enclosure(out);
   if (q.bound) decide_distances(q, options, out);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body_bounds.h"
 #include "outside.h"
 
 namespace kaboum::verify {
@@ -71,7 +72,16 @@ std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoint
   std::size_t count = 0;
   for (const MovingPoints& shape : shapes) count += shape.exact.points.size();
   if (count == 0 || path.empty()) return std::nullopt;
-  const Outside outside(sum_of(set));
+  const std::optional<double> margin = geom::margin_of(set);
+  const std::optional<BodyBounds> bounds =
+      margin ? std::nullopt : bounds_of(set, kFirstBoundsLevel + 1);
+  if (!margin && !bounds) {
+    MovingPointClaim out;
+    out.points.reason = "the bodies are too many to be bounded by polytopes";
+    return out;
+  }
+  // Points refute: what polytopes round the bodies do not hold.
+  const Outside outside(sum_of(bounds ? bounds->outside : set));
   const std::size_t segments = std::max<std::size_t>(1, path.size() - 1);
   Density density = density_of(count, segments);
   if (path.size() == 1) density.stops = 1;
@@ -83,7 +93,8 @@ std::optional<MovingPointClaim> verify_moving_points(std::span<const MovingPoint
           &to = path[std::min(segment + 1, path.size() - 1)];
     const std::vector<double> q = between(from, to, s);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const PointClaim found = look(shapes[i], q, first, density.every, outside, set.margin);
+      const PointClaim found =
+          look(shapes[i], q, first, density.every, outside, margin.value_or(0));
       if (found.answer == Answer::Undefined && found.points > 0 && out.points.outside == 0) {
         out.points.answer = Answer::Undefined;
         out.points.reason = found.reason;

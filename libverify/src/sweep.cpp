@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "body_bounds.h"
 #include "inside_out.h"
 #include "parallel.h"
 #include "rounding.h"
@@ -549,12 +550,33 @@ void solid_claim(std::span<const MovingShape> shapes, const Waypoints& path,
   }
 }
 
+/// Of bodies with radii of their own: what polytopes within them hold is held, and what polytopes
+/// round them do not hold is not.
+SweepClaims verify_sweep_between(std::span<const MovingShape> shapes, const Waypoints& path,
+                                 const geom::ConvexSet& set, const SweepOptions& options,
+                                 SweepClaims open) {
+  for (Claim* claim : {&open.surface, &open.solid}) {
+    claim->answer = Answer::Undecided;
+    claim->reason = "the bodies are too many to be bounded by polytopes";
+  }
+  const auto with = [&](const geom::ConvexSet& polytopes) {
+    return verify_sweep(shapes, path, polytopes, options);
+  };
+  return decide_between(
+      set, {}, std::move(open), [&](const BodyBounds& bounds) { return with(bounds.inside); },
+      [&](const BodyBounds& bounds) { return with(bounds.outside); });
+}
+
 }  // namespace
 
 double default_gap(const geom::ConvexSet& set) {
   geom::Box3 box;
-  for (const geom::ConvexBody& b : set.bodies) box.extend(geom::bounding_box(b.hull));
-  return std::max({1e-6 * set.margin, box.empty() ? 0 : 1e-9 * box.diagonal(), 1e-12});
+  double radius = 0;
+  for (const geom::ConvexBody& b : set.bodies) {
+    for (const Vec3& p : b.core.vertices) box.extend(p);
+    radius = std::max(radius, b.radius);
+  }
+  return std::max({1e-6 * radius, box.empty() ? 0 : 1e-9 * box.diagonal(), 1e-12});
 }
 
 SweepClaims verify_sweep(std::span<const MovingShape> shapes, const Waypoints& path,
@@ -569,9 +591,11 @@ SweepClaims verify_sweep(std::span<const MovingShape> shapes, const Waypoints& p
     }
     return claims;
   }
+  const std::optional<double> margin = geom::margin_of(set);
+  if (!margin) return verify_sweep_between(shapes, path, set, options, std::move(claims));
   std::vector<SweptBody> bodies;
-  for (const geom::ConvexBody& b : set.bodies) bodies.emplace_back(b.hull);
-  surface_claim(shapes, path, bodies, set.margin, options, claims);
+  for (const geom::ConvexBody& b : set.bodies) bodies.emplace_back(b.core);
+  surface_claim(shapes, path, bodies, *margin, options, claims);
   if (options.solids) solid_claim(shapes, path, set, bodies, options, claims);
   return claims;
 }

@@ -104,7 +104,6 @@ std::vector<std::uint32_t> near(const geom::Box3& box, const std::vector<SweptBo
 
 geom::ConvexSet part_of(const geom::ConvexSet& set, const std::vector<std::uint32_t>& chosen) {
   geom::ConvexSet out;
-  out.margin = set.margin;
   for (const std::uint32_t b : chosen) out.bodies.push_back(set.bodies[b]);
   return out;
 }
@@ -118,19 +117,20 @@ bool is_closed(const geom::Mesh& mesh) {
 Claim verify_inside(const MovingShape& shape, const std::vector<std::vector<double>>& path,
                     const geom::ConvexSet& set, const std::vector<SweptBody>& bodies,
                     const SweepOptions& options) {
-  const geom::Mesh mesh = place_with_room(shape, path, bodies, set.margin);
-  const std::vector<std::uint32_t> some = holders(mesh, bodies, set.margin);
+  const double margin = geom::margin_of(set).value();
+  const geom::Mesh mesh = place_with_room(shape, path, bodies, margin);
+  const std::vector<std::uint32_t> some = holders(mesh, bodies, margin);
   Claim claim;
   claim.answer = Answer::Verified;
   // One body that holds all corners holds their hull.
   for (const std::uint32_t b : some)
     if (std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
-                    [&](const Vec3& v) { return bodies[b].holds(v, set.margin); }))
+                    [&](const Vec3& v) { return bodies[b].holds(v, margin); }))
       return claim;
   // Few bodies are quicker; when they are not enough, all that are near.
   claim = verify_cover(mesh, part_of(set, some), options.inclusion).inclusion.solid;
   if (claim.answer != Answer::Verified)
-    claim = verify_cover(mesh, part_of(set, near(geom::bounding_box(mesh), bodies, set.margin)),
+    claim = verify_cover(mesh, part_of(set, near(geom::bounding_box(mesh), bodies, margin)),
                          options.inclusion)
                 .inclusion.solid;
   if (claim.answer != Answer::Verified) claim.reason = shape.name + ": " + claim.reason;

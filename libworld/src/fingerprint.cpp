@@ -42,8 +42,8 @@ std::string fingerprint_of(const RobotModel& robot) {
   for (const LinkShape& shape : robot.shapes) {
     text += robot.kinematics.links[shape.link].name + "\n";
     for (std::size_t i = 0; i < shape.outer.size(); ++i) {
-      append(text, shape.outer.body(i).margin);
-      for (const Vec3& p : shape.outer.body(i).hull.vertices)
+      append(text, shape.outer.body(i).radius);
+      for (const Vec3& p : shape.outer.body(i).core.vertices)
         for (int k = 0; k < 3; ++k) append(text, p[k]);
       text += "\n";
     }

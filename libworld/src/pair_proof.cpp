@@ -40,7 +40,7 @@ double radical_inverse(std::size_t i, std::uint32_t base) {
 
 /// An outer set lies in itself.
 BoundingSet inner_of(const BoundingSet& outer) {
-  std::vector<BoundingSet::Body> bodies;
+  std::vector<geom::ConvexBody> bodies;
   for (std::size_t i = 0; i < outer.size(); ++i) bodies.push_back(outer.body(i));
   return {std::move(bodies), collide::Direction::Inner, 0};
 }

@@ -26,8 +26,8 @@ double attachment_error(const Transform& pose, double radius) {
 double radius_of(const BoundingSet& set) {
   double most = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
-    for (const Vec3& p : set.body(i).hull.vertices)
-      most = std::max(most, p.norm() + set.body(i).margin);
+    for (const Vec3& p : set.body(i).core.vertices)
+      most = std::max(most, p.norm() + set.body(i).radius);
   }
   return most * (1 + 0x1p-40);
 }
@@ -35,7 +35,7 @@ double radius_of(const BoundingSet& set) {
 std::vector<Vec3> hull_points(const BoundingSet& set) {
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < set.size(); ++i)
-    points.insert(points.end(), set.body(i).hull.vertices.begin(), set.body(i).hull.vertices.end());
+    points.insert(points.end(), set.body(i).core.vertices.begin(), set.body(i).core.vertices.end());
   if (const auto hull = geom::convex_hull(points)) return hull->vertices;
   return points;
 }

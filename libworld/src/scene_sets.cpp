@@ -150,13 +150,10 @@ std::pair<BoundingSet, std::optional<BoundingSet>> SceneSets::sets_of(const Loca
 void SceneSets::require_within(const Loaded& inner, const Loaded& outer, const Located& at) const {
   if (!outer.set.provenance.covers_solid) return;  // what holes leave open is filled in each anew
   geom::Box3 box;
-  for (const geom::ConvexBody& body : outer.set.bodies)
-    for (const Vec3& p : body.hull.vertices) box.extend(p);
-  const Vec3 margin = Vec3::Constant(outer.set.margin * (1 + 0x1p-50));
-  const Vec3 low = box.min - margin, high = box.max + margin;
+  for (const geom::ConvexBody& body : outer.set.bodies) box.extend(geom::bounding_box(body));
   for (const geom::ConvexBody& body : inner.set.bodies)
-    for (const Vec3& p : body.hull.vertices)
-      if (!((p.array() >= low.array()).all() && (p.array() <= high.array()).all()))
+    for (const Vec3& p : body.core.vertices)
+      if (!((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all()))
         fail(need(at, "file"), inner.file.name + " reaches out of " + outer.file.name +
                                    ": an inner set lies in its outer one, so they are not of one "
                                    "solid; make both of the same mesh");

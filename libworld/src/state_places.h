@@ -40,13 +40,13 @@ struct Scratch::Impl {
   std::vector<std::vector<Transform>> links;  ///< of all robots, to their roots
 
   std::vector<std::optional<Transform>> resting;  ///< where objects that rest were put last time
-  struct Held {
+  struct HeldPlace {
     std::size_t robot = 0;
     std::uint32_t link = 0;
     Transform pose;
     double error = 0;
   };
-  std::vector<std::optional<Held>> held;  ///< by objects, errors for the usual joint values
+  std::vector<std::optional<HeldPlace>> held;  ///< by objects, errors for the usual joint values
 
   /// Says that an item is where its pose is; its set is placed when it is asked for.
   void put(std::size_t i, double error) {

@@ -8,6 +8,7 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/file_unit.h>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -19,28 +20,77 @@
 namespace kaboum::python {
 namespace {
 
+/// The ends of a segment, or a point; nullopt for what is no array of them.
+std::optional<std::vector<geom::Vec3>> points_of_core(const py::object& value) {
+  if (!py::isinstance<py::array>(value)) return std::nullopt;
+  const auto array = value.cast<py::array>();
+  const bool point = array.ndim() == 1 && array.shape(0) == 3;
+  const bool rows = array.ndim() == 2 && array.shape(0) <= 2 && array.shape(1) == 3;
+  if (!point && !rows) return std::nullopt;
+  return points_of(array.attr("reshape")(-1, 3), "bodies");
+}
+
+void take_radii(const py::object& value, geom::ConvexSet& set) {
+  const py::array given = py::array::ensure(value);
+  if (!given || given.ndim() > 1) {
+    PyErr_Clear();
+    throw Error(ErrorCode::InvalidArgument, "radii must be a number or a list of numbers");
+  }
+  require_doubles(given.attr("reshape")(1, -1), "radii");
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  const std::vector<double> radii(array.data(), array.data() + array.size());
+  if (radii.size() != 1 && radii.size() != set.bodies.size())
+    throw Error(ErrorCode::InvalidArgument,
+                "radii must be one number, or one for each of the bodies (" +
+                    std::to_string(set.bodies.size()) + ")");
+  for (std::size_t i = 0; i < set.bodies.size(); ++i) {
+    const double radius = radii[radii.size() == 1 ? 0 : i];
+    if (!(radius >= 0) || !std::isfinite(radius))
+      throw Error(ErrorCode::InvalidArgument, "radii must be at least 0, and finite");
+    if (set.bodies[i].core.triangles.empty() && radius == 0)
+      throw Error(ErrorCode::InvalidArgument, "body " + std::to_string(i) +
+                                                  " is a segment or a point: its radius must be "
+                                                  "above 0");
+    set.bodies[i].radius = radius;
+  }
+}
+
+py::array_t<double> radii_of(const geom::ConvexSet& set) {
+  py::array_t<double> out(static_cast<py::ssize_t>(set.bodies.size()));
+  auto at = out.mutable_unchecked<1>();
+  for (std::size_t i = 0; i < set.bodies.size(); ++i)
+    at(static_cast<py::ssize_t>(i)) = set.bodies[i].radius;
+  return out;
+}
+
 py::object parsed(const std::string& json) {
   return py::module_::import("json").attr("loads")(json);
 }
 
 void bind_plain(py::module_& module) {
-  py::class_<SetValue>(
-      module, "ConvexSet",
-      R"(Convex bodies, each enlarged by a ball of radius `margin`: their union. It never changes.)")
-      .def(py::init([](const py::list& bodies, double margin) {
+  py::class_<SetValue>(module, "ConvexSet",
+                       R"(Convex bodies: their union. It never changes.
+
+A body is all points within a radius of its core: a polytope, a segment or a point.)")
+      .def(py::init([](const py::list& bodies, const py::object& radii) {
              geom::ConvexSet set = *set_of(bodies);
-             if (!(margin >= 0))
-               throw Error(ErrorCode::InvalidArgument, "margin must be at least 0");
-             set.margin = margin;
+             take_radii(radii, set);
              return SetValue{std::make_shared<geom::ConvexSet>(std::move(set))};
            }),
-           py::arg("bodies"), py::kw_only(), py::arg("margin") = 0.0,
-           "A list of meshes, which need not be convex: `verify_cover` tells.")
+           py::arg("bodies"), py::kw_only(), py::arg("radii") = 0.0,
+           R"(Parameters
+----------
+bodies : list
+    The cores: meshes, which need not be convex (`verify_cover` tells), and arrays (2, 3), the ends
+    of a segment, or (1, 3) or (3,), a point. [length]
+radii : float or array (n,)
+    One for all bodies, or one for each; at least 0. [length])")
       .def_property_readonly(
           "bodies", [](const SetValue& s) { return bodies_of(s.set); },
           "A list of `Mesh`; nothing is copied.")
       .def_property_readonly(
-          "margin", [](const SetValue& s) { return s.set->margin; }, "[length]")
+          "radii", [](const SetValue& s) { return radii_of(*s.set); },
+          "Of each body, (n,) float64. [length]")
       .def_property_readonly(
           "record", [](const SetValue& s) { return record_of(s.set->provenance); },
           "What the container says of itself: source, parameters, claims.")
@@ -65,7 +115,8 @@ It may be given wherever a ConvexSet is expected.)")
           "bodies", [](const Value& s) { return bodies_of(s.set()); },
           "A list of `Mesh`; nothing is copied.")
       .def_property_readonly(
-          "margin", [](const Value& s) { return s.made.artefact().margin; }, "0. [length]")
+          "radii", [](const Value& s) { return radii_of(s.made.artefact()); },
+          "Of each body, (n,) float64: zeros. [length]")
       .def_property_readonly(
           "record", [](const Value& s) { return record_of(s.made.artefact().provenance); },
           "What the container says of itself: source, parameters, claims.")
@@ -188,9 +239,13 @@ std::shared_ptr<const geom::ConvexSet> set_of(const py::object& value) {
     return std::make_shared<geom::ConvexSet>(io::read_convex_set(*path));
   if (!py::isinstance<py::list>(value)) return nullptr;
   auto set = std::make_shared<geom::ConvexSet>();
-  for (const py::handle body : value) {
-    const MeshValue mesh = mesh_of(py::reinterpret_borrow<py::object>(body), "bodies");
-    set->bodies.push_back({io::default_name(set->bodies.size()), *mesh.mesh});
+  for (const py::handle item : value) {
+    const auto body = py::reinterpret_borrow<py::object>(item);
+    const std::string name = io::default_name(set->bodies.size());
+    if (auto points = points_of_core(body))
+      set->bodies.push_back({name, {*std::move(points), {}}});
+    else
+      set->bodies.push_back({name, *mesh_of(body, "bodies").mesh});
   }
   return set;
 }
@@ -198,7 +253,7 @@ std::shared_ptr<const geom::ConvexSet> set_of(const py::object& value) {
 py::list bodies_of(const std::shared_ptr<const geom::ConvexSet>& set) {
   py::list out;
   for (const geom::ConvexBody& body : set->bodies)
-    out.append(MeshValue{.mesh = {set, &body.hull}, .source = body.name});
+    out.append(MeshValue{.mesh = {set, &body.core}, .source = body.name});
   return out;
 }
 

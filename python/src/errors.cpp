@@ -1,6 +1,7 @@
 // kaboum.Error: what the libraries throw, with its code.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/option.h>
 
 #include <array>
 #include <filesystem>
@@ -50,7 +51,7 @@ void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const Error& error) {
-    raise(error.code(), error.what());
+    raise(error.code(), remedy_of_python(error.what()).c_str());
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string text = error.path1().string() + ": " + error.code().message();
     raise(ErrorCode::OutputFailed, text.c_str());  // inputs are opened, not looked at

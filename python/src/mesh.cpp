@@ -32,28 +32,6 @@ std::size_t rows_of(const py::array& array, const char* argument, const char* wh
                        (quads ? "; split quadrilaterals into triangles" : ""));
 }
 
-std::vector<geom::Vec3> copy_vertices(const py::object& value, const char* argument) {
-  const py::array given = py::array::ensure(value);
-  if (!given) {
-    PyErr_Clear();
-    refuse(argument, "vertices must be numbers");
-  }
-  const std::size_t rows = rows_of(given, argument, "vertices");
-  require_doubles(given, std::string(argument) + ": vertices");
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
-  if (!array) {
-    PyErr_Clear();
-    refuse(argument, "vertices must be numbers");
-  }
-  std::vector<geom::Vec3> out(rows);
-  const double* p = array.data();
-  for (geom::Vec3& v : out) {
-    v = Eigen::Map<const geom::Vec3>(p);
-    p += 3;
-  }
-  return out;
-}
-
 template <class Index>
 std::vector<geom::Triangle> copy_faces(const py::array& value, const char* argument,
                                        std::size_t vertices) {
@@ -75,7 +53,7 @@ std::vector<geom::Triangle> copy_faces(const py::array& value, const char* argum
 
 geom::Mesh mesh_from(const py::object& vertices, const py::object& faces, const char* argument) {
   geom::Mesh mesh;
-  mesh.vertices = copy_vertices(vertices, argument);
+  mesh.vertices = points_of(vertices, argument);
   if (mesh.vertices.size() >= 0xFFFFFFFE) refuse(argument, "it has too many vertices");
   const py::array indices = py::array::ensure(faces);
   if (!indices) {
@@ -186,6 +164,28 @@ Error
 }
 
 }  // namespace
+
+std::vector<geom::Vec3> points_of(const py::object& value, const char* argument) {
+  const py::array given = py::array::ensure(value);
+  if (!given) {
+    PyErr_Clear();
+    refuse(argument, "vertices must be numbers");
+  }
+  const std::size_t rows = rows_of(given, argument, "vertices");
+  require_doubles(given, std::string(argument) + ": vertices");
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!array) {
+    PyErr_Clear();
+    refuse(argument, "vertices must be numbers");
+  }
+  std::vector<geom::Vec3> out(rows);
+  const double* p = array.data();
+  for (geom::Vec3& v : out) {
+    v = Eigen::Map<const geom::Vec3>(p);
+    p += 3;
+  }
+  return out;
+}
 
 MeshValue mesh_of(const py::object& value, const char* argument) {
   if (py::isinstance<MeshValue>(value)) return value.cast<MeshValue>();

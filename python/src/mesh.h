@@ -42,6 +42,11 @@ struct PreparedValue {
 ///   as io::read_mesh.
 MeshValue mesh_of(const py::object& value, const char* argument);
 
+/// The rows of an array of n x 3 numbers, which must be doubles all the same where they are of
+/// another type.
+/// @throws Error{InvalidArgument} naming the argument
+std::vector<geom::Vec3> points_of(const py::object& value, const char* argument);
+
 /// A view of values that `owner` keeps, which cannot be written: nothing is copied.
 template <class Scalar>
 py::array_t<Scalar> view_of(const Scalar* data, std::vector<py::ssize_t> shape,

@@ -66,12 +66,12 @@ void bind_class(py::module_& module) {
       R"(Convex bodies that, enlarged by `margin`, hold a robot at every instant of a path.)")
       .def_property_readonly(
           "set", [](const SweptSet& s) { return SetValue{s.set()}; },
-          "The ConvexSet, with its margin.")
+          "The ConvexSet; the radius of each body is `margin`.")
       .def_property_readonly(
           "bodies", [](const SweptSet& s) { return bodies_of(s.set()); },
           "A list of `Mesh`; nothing is copied.")
       .def_property_readonly(
-          "margin", [](const SweptSet& s) { return s.made.artefact().margin; },
+          "margin", [](const SweptSet& s) { return s.made.certificate().margin; },
           "By which the bodies have to be enlarged. [length]")
       .def_property_readonly(
           "claim", [](const SweptSet& s) { return claim_of(s.made.certificate()); },

@@ -15,7 +15,7 @@
 namespace kaboum::python {
 namespace {
 
-struct Asked {
+struct Question {
   verify::Relation relation = verify::Relation::Outer;
   verify::Claims claims = verify::Claims::All;
   std::optional<Length> epsilon;
@@ -27,7 +27,7 @@ struct Asked {
 };
 
 /// The original as it is, or as the tools prepare it.
-std::optional<verify::Subject> subject_of(const MeshValue& original, const Asked& asked,
+std::optional<verify::Subject> subject_of(const MeshValue& original, const Question& asked,
                                           std::vector<std::string>& notes) {
   notes = original.notes;
   if (!asked.prepare) return std::nullopt;
@@ -47,7 +47,8 @@ std::optional<verify::Subject> subject_of(const MeshValue& original, const Asked
 }
 
 /// Of a mesh that was read from a file with exact faces, unless it is to enclose.
-std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original, const Asked& asked) {
+std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original,
+                                                   const Question& asked) {
   if (!original.format || asked.exact_points == 0 || asked.relation == verify::Relation::Inner)
     return std::nullopt;
   const std::vector<char> bytes = io::read_file(original.source);
@@ -88,16 +89,14 @@ py::dict claims_of(const verify::MeshVerdict& found) {
 }
 
 Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
-               const geom::ConvexSet* set, const Asked& asked, const py::object& progress) {
+               const geom::ConvexSet* set, const Question& asked, const py::object& progress) {
   Watch watch(progress);
   Verdict out;
   const verify::MeshVerdict found = run(asked.threads, [&] {
     const auto subject = subject_of(original, asked, out.notes);
     const geom::Mesh& mesh = subject ? subject->mesh : *original.mesh;
-    const double margin = set != nullptr ? set->margin : 0;
-    if (asked.relation == verify::Relation::Inner && margin > 0)
-      throw Error(ErrorCode::InvalidInput,
-                  "the set's margin enlarges the bodies; an inner set must have none");
+    const bool cover = asked.relation == verify::Relation::Cover && set != nullptr;
+    const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
     std::optional<double> bound;
     if (asked.epsilon) {
       bound = asked.epsilon->of(geom::bounding_box(mesh).diagonal());
@@ -134,15 +133,15 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
                     std::size_t exact_points, int threads, const py::object& progress) {
   static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
       {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
-  const Asked asked{value_of(kRelations, relation, "relation"),
-                    value_of(kClaims, claims, "claims"),
-                    length_of(epsilon, "epsilon"),
-                    prepare,
-                    drop_sheets,
-                    max_contacts,
-                    max_work,
-                    threads,
-                    exact_points};
+  const Question asked{value_of(kRelations, relation, "relation"),
+                       value_of(kClaims, claims, "claims"),
+                       length_of(epsilon, "epsilon"),
+                       prepare,
+                       drop_sheets,
+                       max_contacts,
+                       max_work,
+                       threads,
+                       exact_points};
   const MeshValue first = mesh_of(original, "original");
   const bool is_set =
       py::isinstance<SetValue>(approximation) || py::isinstance<CertifiedSetValue>(approximation);
@@ -161,15 +160,15 @@ Verdict verify_cover(const py::object& original, const py::object& set, const st
                      const py::object& epsilon, bool prepare, bool drop_sheets,
                      std::size_t max_contacts, const std::optional<double>& max_work,
                      std::size_t exact_points, int threads, const py::object& progress) {
-  const Asked asked{verify::Relation::Cover,
-                    value_of(kClaims, claims, "claims"),
-                    length_of(epsilon, "epsilon"),
-                    prepare,
-                    drop_sheets,
-                    max_contacts,
-                    max_work,
-                    threads,
-                    exact_points};
+  const Question asked{verify::Relation::Cover,
+                       value_of(kClaims, claims, "claims"),
+                       length_of(epsilon, "epsilon"),
+                       prepare,
+                       drop_sheets,
+                       max_contacts,
+                       max_work,
+                       threads,
+                       exact_points};
   const auto bodies = set_of(set);
   if (!bodies)
     throw Error(ErrorCode::InvalidArgument,

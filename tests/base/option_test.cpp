@@ -110,5 +110,19 @@ TEST(Options, RecordsThatAreNotUnderstoodAreNamed) {
   EXPECT_EQ(read_record(all, "", r), "");
 }
 
+// Options in remedies are spelled as each front end names them; all else stays.
+TEST(Remedy, IsSpelledByTheFrontEnd) {
+  const std::string text =
+      "sheets; have them dropped («drop-sheets»), «prepare=wrap» or «scale=1e3»";
+  EXPECT_EQ(remedy_of_program(text),
+            "sheets; have them dropped (--drop-sheets), --prepare wrap or --scale 1e3");
+  EXPECT_EQ(remedy_of_python(text),
+            "sheets; have them dropped (drop_sheets), prepare='wrap' or scale=1e3");
+  for (const char* other : {"", "{part}.stl: no", "a « alone", "a » alone"}) {
+    EXPECT_EQ(remedy_of_program(other), other);
+    EXPECT_EQ(remedy_of_python(other), other);
+  }
+}
+
 }  // namespace
 }  // namespace kaboum

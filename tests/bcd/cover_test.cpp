@@ -92,8 +92,8 @@ TEST(Cover, MutantsAreRefuted) {
     mutant.bodies.erase(mutant.bodies.begin() + static_cast<std::ptrdiff_t>(i));
     EXPECT_EQ(cover_of(mesh, mutant), verify::Answer::Refuted);
     mutant = good;  // a body shrunk by a millionth
-    const Vec3 center = geom::bounding_box(mutant.bodies[i].hull).center();
-    for (Vec3& p : mutant.bodies[i].hull.vertices) p = center + (1 - 1e-6) * (p - center);
+    const Vec3 center = geom::bounding_box(mutant.bodies[i].core).center();
+    for (Vec3& p : mutant.bodies[i].core.vertices) p = center + (1 - 1e-6) * (p - center);
     EXPECT_EQ(cover_of(mesh, mutant), verify::Answer::Refuted);
   }
 }
@@ -185,7 +185,7 @@ TEST(Cover, PreStepKeepsCoverAndEpsilon) {
     const SolidField solid(closed, 2000, 0);
     double farthest = 0;
     for (const geom::ConvexBody& body : result.bodies)
-      for (const Vec3& p : body.hull.vertices)
+      for (const Vec3& p : body.core.vertices)
         if (!solid.contains(p)) farthest = std::max(farthest, solid.surface().nearest(p).lower);
     EXPECT_LE(farthest, result.excess_upper);
     EXPECT_GT(farthest, 0);
@@ -232,7 +232,7 @@ TEST(Cover, LessSimplifiedBodiesAreNearerOnTheWhole) {
     const CoverCandidate result = find_cover(geom::prepare(torus).solid, options);
     expect_cover(torus, result, 64);
     double volume = 0;
-    for (const geom::ConvexBody& body : result.bodies) volume += geom::signed_volume(body.hull);
+    for (const geom::ConvexBody& body : result.bodies) volume += geom::signed_volume(body.core);
     EXPECT_LT(volume, last_volume);
     EXPECT_GT(result.statistics.vertices, last_vertices);
     last_volume = volume;

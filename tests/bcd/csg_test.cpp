@@ -21,7 +21,7 @@ using geom::Vec3;
 using verify::Answer;
 
 /// A solid and convex bodies whose union it is.
-struct Known {
+struct KnownUnion {
   Mesh mesh;
   std::vector<ConvexBody> parts;
 };
@@ -31,7 +31,7 @@ Mesh box_between(const Vec3& low, const Vec3& high) {
 }
 
 /// The boundary of a union of boxes of a lattice, all coordinates multiples of 1/8.
-Known union_of_boxes(std::mt19937& random, int count) {
+KnownUnion union_of_boxes(std::mt19937& random, int count) {
   constexpr int kCells = 5;
   std::uniform_int_distribution<int> place(0, kCells), step(1, 4);
   std::array<std::vector<double>, 3> planes;
@@ -43,7 +43,7 @@ Known union_of_boxes(std::mt19937& random, int count) {
     std::array<int, 3> low, high;
   };
   std::vector<Box> boxes;
-  Known out;
+  KnownUnion out;
   while (boxes.size() < static_cast<std::size_t>(count)) {
     Box box{};
     Vec3 low, high;
@@ -73,9 +73,9 @@ Known union_of_boxes(std::mt19937& random, int count) {
 
 /// Convex prisms with corners on a lattice, across random axes, put into each other as they are:
 /// the solid is where the winding number is at least one.
-Known union_of_prisms(std::mt19937& random, int count) {
+KnownUnion union_of_prisms(std::mt19937& random, int count) {
   std::uniform_int_distribution<int> coordinate(-8, 8), axis(0, 2);
-  Known out;
+  KnownUnion out;
   std::vector<Mesh> all;
   while (all.size() < static_cast<std::size_t>(count)) {
     const int k = axis(random);
@@ -103,7 +103,7 @@ Known union_of_prisms(std::mt19937& random, int count) {
 bool truly_covered(const Mesh& mesh, const std::vector<ConvexBody>& bodies) {
   std::vector<Mesh> hulls;
   hulls.reserve(bodies.size());
-  for (const ConvexBody& body : bodies) hulls.push_back(body.hull);
+  for (const ConvexBody& body : bodies) hulls.push_back(body.core);
   const auto verdict = kaboum::test::arrangement_verdict(mesh, kaboum::test::merged(hulls));
   return *verdict.solid && *verdict.surface;
 }
@@ -126,8 +126,8 @@ int expect_points_covered(const Mesh& mesh, const std::vector<ConvexBody>& bodie
 }
 
 ConvexBody shrunk(ConvexBody body) {
-  const Vec3 center = geom::bounding_box(body.hull).center();
-  for (Vec3& p : body.hull.vertices) p = center + (1 - 1e-6) * (p - center);
+  const Vec3 center = geom::bounding_box(body.core).center();
+  for (Vec3& p : body.core.vertices) p = center + (1 - 1e-6) * (p - center);
   return body;
 }
 
@@ -148,7 +148,8 @@ TEST(Csg, UnionsAreCoveredByTheirPartsAndRefuteMutants) {
   int refuted_missing = 0, refuted_shrunk = 0;
   for (int trial = 0; trial < 6; ++trial) {
     SCOPED_TRACE(trial);
-    const Known known = trial % 2 == 0 ? union_of_boxes(random, 3) : union_of_prisms(random, 3);
+    const KnownUnion known =
+        trial % 2 == 0 ? union_of_boxes(random, 3) : union_of_prisms(random, 3);
     EXPECT_TRUE(agreed_cover(known.mesh, known.parts));
     for (std::size_t i = 0; i < known.parts.size(); ++i) {
       if (!agreed_cover(known.mesh, without(known.parts, i))) ++refuted_missing;
@@ -167,7 +168,8 @@ TEST(Csg, UnionsAreDecomposedIntoAboutTheirParts) {
   int refuted = 0, mutants = 0;
   for (int trial = 0; trial < 4; ++trial) {
     SCOPED_TRACE(trial);
-    const Known known = trial % 2 == 0 ? union_of_boxes(random, 3) : union_of_prisms(random, 3);
+    const KnownUnion known =
+        trial % 2 == 0 ? union_of_boxes(random, 3) : union_of_prisms(random, 3);
     const geom::Prepared input = geom::prepare(known.mesh);
     const CoverCandidate result = find_cover(input.solid, test::quick(known.mesh, 1));
     EXPECT_EQ(result.stop, Stop::Done);
@@ -198,16 +200,16 @@ TEST(Csg, ACornerInsideTheSolidCannotBeLeftOut) {
     for (std::size_t i = 0; i < octants.size(); ++i) {
       std::vector<ConvexBody> mutant = octants;
       std::vector<Vec3> points;
-      for (const Vec3& p : octants[i].hull.vertices) {
+      for (const Vec3& p : octants[i].core.vertices) {
         if (p != corner) {
           points.push_back(p);
           continue;
         }
-        const Vec3 inward = geom::bounding_box(octants[i].hull).center() - corner;
+        const Vec3 inward = geom::bounding_box(octants[i].core).center() - corner;
         for (int k = 0; k < 3; ++k)
           points.emplace_back(corner + 2 * depth * inward[k] * Vec3::Unit(k));
       }
-      mutant[i].hull = *geom::convex_hull(points);
+      mutant[i].core = *geom::convex_hull(points);
       EXPECT_FALSE(truly_covered(cube, mutant));
       const verify::Cover cover = verify::verify_cover(cube, test::set_of(mutant));
       EXPECT_EQ(cover.convex.answer, Answer::Verified);

@@ -139,8 +139,8 @@ TEST(Inner, MutantsAreRefuted) {
   const InnerCandidate result = run(l, 0.5);
   for (std::size_t i = 0; i < result.bodies.size(); ++i) {
     std::vector<geom::ConvexBody> mutant = result.bodies;  // grown by a hundred thousandth
-    const Vec3 center = geom::bounding_box(mutant[i].hull).center();
-    for (Vec3& p : mutant[i].hull.vertices) p = center + (1 + 1e-5) * (p - center);
+    const Vec3 center = geom::bounding_box(mutant[i].core).center();
+    for (Vec3& p : mutant[i].core.vertices) p = center + (1 + 1e-5) * (p - center);
     EXPECT_EQ(inside(l, mutant), verify::Answer::Refuted);
   }
 }

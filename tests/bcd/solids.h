@@ -59,7 +59,7 @@ inline void for_each_solid(
 /// Whether p lies in one of the bodies, by the slow oracle, which shares nothing with the library.
 inline bool covered(const std::vector<geom::ConvexBody>& bodies, const geom::Vec3& p) {
   return std::any_of(bodies.begin(), bodies.end(), [&](const geom::ConvexBody& body) {
-    const auto w = kaboum::test::winding_number_slow(body.hull, p);
+    const auto w = kaboum::test::winding_number_slow(body.core, p);
     return !w || *w == 1;
   });
 }
@@ -82,8 +82,8 @@ inline verify::Answer cover_of(const geom::Mesh& mesh, const geom::ConvexSet& se
 inline void expect_bodies(const std::vector<geom::ConvexBody>& bodies, std::size_t max_vertices) {
   EXPECT_FALSE(geom::find_not_convex(set_of(bodies)).has_value());
   for (const geom::ConvexBody& body : bodies) {
-    EXPECT_LE(body.hull.vertices.size(), max_vertices);
-    for (const geom::Vec3& p : body.hull.vertices) EXPECT_TRUE(geom::is_float32(p));
+    EXPECT_LE(body.core.vertices.size(), max_vertices);
+    for (const geom::Vec3& p : body.core.vertices) EXPECT_TRUE(geom::is_float32(p));
   }
 }
 

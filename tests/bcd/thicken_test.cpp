@@ -80,7 +80,7 @@ TEST(Thicken, DecompositionsKeepTheirClaims) {
     options.min_thickness = thickness;
     const CoverCandidate result = find_cover(input.solid, options);
     test::expect_cover(input.solid.mesh(), result, 64);
-    for (const geom::ConvexBody& body : result.bodies) expect_thick(body.hull, thickness);
+    for (const geom::ConvexBody& body : result.bodies) expect_thick(body.core, thickness);
     EXPECT_EQ(result.statistics.thickened, thickness > 0.1 ? result.bodies.size() : 0U);
     EXPECT_EQ(result.stop, thickness > 0.2 ? Stop::Stuck : Stop::Done);
     EXPECT_EQ(result.stop == Stop::Done, result.excess_upper <= *options.epsilon);
@@ -94,8 +94,8 @@ TEST(Thicken, SheetsAndOptions) {
   options.min_thickness = 0.1;
   const CoverCandidate result = find_cover(input.solid, options);
   ASSERT_EQ(result.bodies.size(), 1U);
-  expect_thick(result.bodies[0].hull, 0.1);
-  EXPECT_LE(result.bodies[0].hull.vertices.size(), 16U);
+  expect_thick(result.bodies[0].core, 0.1);
+  EXPECT_LE(result.bodies[0].core.vertices.size(), 16U);
   options.min_thickness = -1;
   EXPECT_THROW(find_cover(input.solid, options), Error);
 }

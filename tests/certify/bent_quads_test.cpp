@@ -80,7 +80,7 @@ TEST(BentQuads, ASetOfAMeshDoesNotStandForThatOfItsFile) {
   for (int again = 0; again < 2; ++again) {
     const CertifiedFile file = certify_file(folder / "cube.obj", {}, request, &cache);
     ASSERT_EQ(file.found.set.artefact().bodies.size(), 1U);
-    EXPECT_TRUE(holds(file.found.set.artefact().bodies.front().hull, read(cube(true)).mesh));
+    EXPECT_TRUE(holds(file.found.set.artefact().bodies.front().core, read(cube(true)).mesh));
     // As a program would that knows nothing of quads.
     SetRequest plain = request;
     plain.source = "cube.obj";

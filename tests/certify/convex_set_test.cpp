@@ -40,8 +40,8 @@ geom::Mesh torus() { return test::torus(1, 0.3, 24, 12); }
 bool same_bodies(const geom::ConvexSet& a, const geom::ConvexSet& b) {
   if (a.bodies.size() != b.bodies.size()) return false;
   for (std::size_t i = 0; i < a.bodies.size(); ++i)
-    if (a.bodies[i].hull.vertices != b.bodies[i].hull.vertices ||
-        a.bodies[i].hull.triangles != b.bodies[i].hull.triangles)
+    if (a.bodies[i].core.vertices != b.bodies[i].core.vertices ||
+        a.bodies[i].core.triangles != b.bodies[i].core.triangles)
       return false;
   return true;
 }
@@ -90,9 +90,9 @@ double height_above(const geom::ConvexSet& set, const geom::Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const geom::ConvexBody& body : set.bodies) {
     double highest = -nearest;
-    for (const auto& [i, j, k] : body.hull.triangles) {
-      const geom::Vec3& a = body.hull.vertices[i];
-      const geom::Vec3 n = (body.hull.vertices[j] - a).cross(body.hull.vertices[k] - a);
+    for (const auto& [i, j, k] : body.core.triangles) {
+      const geom::Vec3& a = body.core.vertices[i];
+      const geom::Vec3 n = (body.core.vertices[j] - a).cross(body.core.vertices[k] - a);
       if (n.norm() > 0) highest = std::max(highest, n.dot(p - a) / n.norm());
     }
     nearest = std::min(nearest, highest);
@@ -130,7 +130,7 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
   // Corners are no farther than it says.
   const geom::DistanceQuery query(input);
   for (const geom::ConvexBody& body : made->artefact().bodies)
-    for (const geom::Vec3& p : body.hull.vertices)
+    for (const geom::Vec3& p : body.core.vertices)
       EXPECT_LE(query.nearest(p).lower, c.distance_upper);
 }
 

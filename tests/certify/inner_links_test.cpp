@@ -98,7 +98,7 @@ class InnerLinksTest : public ::testing::Test {
 
 /// Whether a convex body lies in the solid of a closed mesh.
 bool lies_in(const geom::ConvexBody& body, const geom::Mesh& solid) {
-  return verify::verify_inclusion(body.hull, solid).solid.answer == verify::Answer::Verified;
+  return verify::verify_inclusion(body.core, solid).solid.answer == verify::Answer::Verified;
 }
 
 TEST_F(InnerLinksTest, LieInTheShapesMirroredAndTurned) {
@@ -108,7 +108,7 @@ TEST_F(InnerLinksTest, LieInTheShapesMirroredAndTurned) {
     EXPECT_EQ(p.direction, "inner");
     EXPECT_EQ(p.source_sha256, robot_.sha256);
     EXPECT_EQ(p.epsilon, l.certificate().depth);
-    EXPECT_EQ(l.artefact().margin, 0);
+    EXPECT_EQ(margin_of(l.artefact()), 0);
     const geom::ConvexSet back = io::parse_convex_set(l.bytes(), io::Format::Glb, "it");
     EXPECT_EQ(verify::verify_convexity(back).convex.answer, verify::Answer::Verified);
   }
@@ -136,7 +136,7 @@ TEST_F(InnerLinksTest, OfBoxesCylindersAndSpheresAreInscribed) {
   const auto& shapes = robot_.robot.links[2].collision;
   for (std::size_t i = 0; i < 3; ++i) {
     double nearest = 1e9;
-    for (const geom::Vec3& v : set.bodies[i].hull.vertices) {
+    for (const geom::Vec3& v : set.bodies[i].core.vertices) {
       const geom::Vec3 p = shapes[i].origin.linear.transpose() * (v - shapes[i].origin.translation);
       const geom::Vec3& size = shapes[i].size;
       double inside = 0;
@@ -167,18 +167,18 @@ TEST_F(InnerLinksTest, PolytopesThatReachOutAreRefused) {
   EXPECT_FALSE(made->is_exact);
   EXPECT_EQ(inner_objection(made->set, {body}), "");
   geom::ConvexSet bad = made->set;
-  bad.margin = 1e-12;
+  set_margin(bad, 1e-12);
   EXPECT_NE(inner_objection(bad, {body}), "");
   // The body itself: within the margin of its own planes.
   bad = made->set;
-  bad.bodies[0].hull = cube;
+  bad.bodies[0].core = cube;
   EXPECT_NE(inner_objection(bad, {body}), "");
   EXPECT_EQ(inner_objection(bad, {{"body", 0, cube.vertices, 0}}), "");
   // Nearer to the planes than the margin by a tenth of it, and farther.
   const auto shrunk = [&](double by) {
     geom::ConvexSet out = made->set;
-    out.bodies[0].hull = cube;
-    for (geom::Vec3& v : out.bodies[0].hull.vertices)
+    out.bodies[0].core = cube;
+    for (geom::Vec3& v : out.bodies[0].core.vertices)
       v = geom::Vec3::Constant(0.5) + (1 - 2 * by) * (v - geom::Vec3::Constant(0.5));
     return out;
   };

@@ -152,9 +152,9 @@ TEST_F(RobotTest, LinksAreKeptBetweenRuns) {
       ASSERT_EQ(one.artefact().bodies.size(), other.artefact().bodies.size());
       for (std::size_t b = 0; b < one.artefact().bodies.size(); ++b) {
         EXPECT_EQ(one.artefact().bodies[b].name, other.artefact().bodies[b].name);
-        EXPECT_EQ(one.artefact().bodies[b].hull.vertices, other.artefact().bodies[b].hull.vertices);
-        EXPECT_EQ(one.artefact().bodies[b].hull.triangles,
-                  other.artefact().bodies[b].hull.triangles);
+        EXPECT_EQ(one.artefact().bodies[b].core.vertices, other.artefact().bodies[b].core.vertices);
+        EXPECT_EQ(one.artefact().bodies[b].core.triangles,
+                  other.artefact().bodies[b].core.triangles);
       }
     }
   };
@@ -193,7 +193,7 @@ TEST_F(RobotTest, PolytopesThatDoNotHoldTheBodiesAreRefused) {
   bad.bodies.pop_back();
   EXPECT_NE(objection(bad, bodies), "");
   bad = good;
-  bad.margin = 0.1;  // whoever reads the file may pass it over
+  set_margin(bad, 0.1);  // whoever reads the file may pass it over
   EXPECT_NE(objection(bad, bodies), "");
   bad = good;
   std::swap(bad.bodies.front(), bad.bodies.back());
@@ -202,9 +202,9 @@ TEST_F(RobotTest, PolytopesThatDoNotHoldTheBodiesAreRefused) {
     // Each vertex of the bodies is within the margin of rounding of a facet's plane.
     bad = good;
     geom::Vec3 middle = geom::Vec3::Zero();
-    for (const geom::Vec3& v : good.bodies[i].hull.vertices) middle += v;
-    middle /= static_cast<double>(good.bodies[i].hull.vertices.size());
-    for (geom::Vec3& v : bad.bodies[i].hull.vertices) v = middle + (1 - 1e-4) * (v - middle);
+    for (const geom::Vec3& v : good.bodies[i].core.vertices) middle += v;
+    middle /= static_cast<double>(good.bodies[i].core.vertices.size());
+    for (geom::Vec3& v : bad.bodies[i].core.vertices) v = middle + (1 - 1e-4) * (v - middle);
     EXPECT_NE(objection(bad, bodies), "") << i;
   }
 }
@@ -215,7 +215,7 @@ TEST_F(RobotTest, SweptSetsAreDecidedOnTheBytes) {
   const auto made = certify_sweep(file, bodies, quarter_, coarse());
   ASSERT_TRUE(made);
   EXPECT_EQ(made->certificate().motion, MotionClaim::Decided) << made->certificate().undecided;
-  EXPECT_EQ(made->certificate().margin, made->artefact().margin);
+  EXPECT_EQ(made->certificate().margin, margin_of(made->artefact()));
   EXPECT_GT(made->certificate().margin, 0);
   EXPECT_EQ(made->certificate().sources.size(), made->artefact().bodies.size());
   const auto decided = [&](const geom::ConvexSet& set) {
@@ -223,14 +223,14 @@ TEST_F(RobotTest, SweptSetsAreDecidedOnTheBytes) {
   };
   EXPECT_EQ(decided(made->artefact()), verify::Answer::Verified);
   geom::ConvexSet bad = made->artefact();
-  bad.margin = 0;  // the steps' hulls alone
+  set_margin(bad, 0);  // the steps' hulls alone
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
   bad = made->artefact();
   bad.bodies.pop_back();
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
   bad = made->artefact();
   for (geom::ConvexBody& body : bad.bodies)
-    for (geom::Vec3& v : body.hull.vertices) v.z() += 2 * made->artefact().margin;
+    for (geom::Vec3& v : body.core.vertices) v.z() += 2 * made->certificate().margin;
   EXPECT_EQ(decided(bad), verify::Answer::Refuted);
 }
 
@@ -338,6 +338,29 @@ class MixedRobotTest : public RobotTest {
   }
   geom::Mesh mesh_of(const std::string& name) const { return io::read_mesh(folder_ / name).mesh; }
 };
+
+// What a hook throws ends the work, and is no flaw of the mesh that is being looked at.
+TEST_F(MixedRobotTest, WhatAHookThrowsIsNoFlawOfAMesh) {
+  const robot::RobotFile robot = mixed();
+  const auto stop = [](const std::string&) {
+    throw Error(ErrorCode::InvalidInput, "the user's own");
+  };
+  const auto message_of = [](const auto& work) -> std::string {
+    try {
+      work();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing thrown";
+  };
+  RobotHooks hooks;
+  hooks.progress = stop;
+  const std::string of_sets = message_of([&] { certify_robot(robot, tolerant(), nullptr, hooks); }),
+                    of_meshes =
+                        message_of([&] { enclose_links(robot, enclosures(), nullptr, stop); });
+  EXPECT_TRUE(of_sets.ends_with("the user's own")) << of_sets;
+  EXPECT_TRUE(of_meshes.ends_with("the user's own")) << of_meshes;
+}
 
 TEST_F(MixedRobotTest, OneBadMeshIsNamedAndTheRestHeld) {
   const robot::RobotFile robot = mixed();

@@ -126,6 +126,13 @@ shows 0 '^free$' "$BIN/kaboum-check" a.json
 sed 's/12 0 0/13 0 0/' mm.x3d >moved.x3d
 mv moved.x3d mm.x3d
 expect 0 'a: 0.013 x 0.012 x 0.012 m' "$S" update a.json --no-cache
+# A container of a program that had another option is read, with its scale; what is not known is named.
+LC_ALL=C sed 's/--max-vertices-per-body 64/--method voxels           /' a/a.glb >voxels.glb
+grep -aq -- '--method voxels' voxels.glb || fail "no such option in the record"
+shows 0 'verified' "$V" cover mm.x3d voxels.glb --scale 0.001
+expect 3 'give that here' "$V" cover mm.x3d voxels.glb
+cp voxels.glb a/a.glb
+expect 3 'was made with .--method., which is not known here.* --method voxels .*--scale 0.001' "$S" update a.json --no-cache
 expect 2 "scale: there is nothing of the name 'b'" "$S" make none.json --object a=mm.x3d --scale b=0.001
 expect 2 "scale: NAME=FACTOR is expected, not '0.001'" "$S" make none.json --object a=mm.x3d --scale 0.001
 expect 2 "scale: 'a' is scaled twice" "$S" make none.json --object a=mm.x3d --scale a=1 --scale a=2

@@ -5,8 +5,10 @@
 #include <kaboum/base/error.h>
 #include <kaboum/collide/inclusion.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <thread>
 
 #include "pairs.h"
@@ -26,8 +28,8 @@ geom::Mesh box(const Vec3& low, const Vec3& high) {
 
 BoundingSet set_of(const std::vector<geom::Mesh>& hulls, Direction direction, double epsilon = 0,
                    double margin = 0) {
-  std::vector<BoundingSet::Body> bodies;
-  for (const geom::Mesh& hull : hulls) bodies.push_back({hull, margin});
+  std::vector<geom::ConvexBody> bodies;
+  for (const geom::Mesh& hull : hulls) bodies.push_back({"", hull, margin});
   return {bodies, direction, epsilon};
 }
 
@@ -75,8 +77,8 @@ TEST(FindCollision, IsTrueForAllCollisionsAndFalseBeyondEpsilon) {
     // Such a hull holds a ball of the radius only if its facets are far enough: measured.
     double held = 10;
     for (const BoundingSet* s : {&a, &b})
-      for (const auto& [p, q, r] : s->body(0).hull.triangles) {
-        const auto& v = s->body(0).hull.vertices;
+      for (const auto& [p, q, r] : s->body(0).core.triangles) {
+        const auto& v = s->body(0).core.vertices;
         held = std::min(held, (v[q] - v[p]).cross(v[r] - v[p]).normalized().dot(v[p]));
       }
     const bool found =
@@ -156,21 +158,75 @@ TEST(FindCollision, BoxesLeaveOutNoneThatNearlyTouch) {
   EXPECT_GT(apart, 500);
 }
 
+// Balls and capsules: their distance is that of points and segments, less the radii.
+TEST(FindCollision, OfPointsAndSegmentsIsExact) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto any = [&] {
+    const double x = unit(random), y = unit(random), z = unit(random);
+    return geom::Vec3(x, y, z);
+  };
+  for (int i = 0; i < 300; ++i) {
+    const geom::Vec3 a = any(), b = any(), c = any();
+    const geom::Vec3 along = b - a;
+    const double share = std::clamp((c - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const double distance = (a + share * along - c).norm(), first = 0.3 * distance;
+    for (const double by : {-1e-12, 1e-12}) {
+      const double second = distance - first + by;
+      const BoundingSet capsule({{"", {{a, b}, {}}, first}}, Direction::Outer, 0.1),
+          ball({{"", {{c}, {}}, second}}, Direction::Outer, 0.1),
+          inner_capsule({{"", {{a, b}, {}}, first}}, Direction::Inner, 0.1),
+          inner_ball({{"", {{c}, {}}, second}}, Direction::Inner, 0.1);
+      const PosedSet p(capsule), q(ball);
+      EXPECT_EQ(find_collision(p, q).has_value(), by > 0) << i;
+      EXPECT_EQ(certainly_collide(PosedSet(inner_capsule), PosedSet(inner_ball)), by > 0) << i;
+      const auto gap = clearance(p, q);
+      ASSERT_TRUE(gap);
+      EXPECT_LE(gap->lower, std::max(0.0, -by) + 1e-13);
+      EXPECT_NEAR(gap->upper, std::max(0.0, -by), 1e-13);
+      // Where it is may be wrong by more than the overlap: nothing is certain.
+      EXPECT_FALSE(certainly_collide(PosedSet(inner_capsule, {}, 1e-9), PosedSet(inner_ball)));
+    }
+    // An overlap of more than the error is certain.
+    const BoundingSet wide({{"", {{a, b}, {}}, distance + 0.1}}, Direction::Inner, 0.1),
+        ball({{"", {{c}, {}}, 0.1}}, Direction::Inner, 0.1);
+    EXPECT_TRUE(certainly_collide(PosedSet(wide, {}, 0.05), PosedSet(ball, {}, 0.05)));
+    EXPECT_FALSE(certainly_collide(PosedSet(wide, {}, 0.15), PosedSet(ball, {}, 0.06)));
+  }
+}
+
+TEST(FindInclusion, OfAndInBodiesWithARadius) {
+  const BoundingSet room({{"", {{{-1, 0, 0}, {1, 0, 0}}, {}}, 1}, {"", {{{3, 0, 0}}, {}}, 1.5}},
+                         Direction::Inner, 0);
+  const auto in = [&](const geom::ConvexBody& body) {
+    const BoundingSet outer({body}, Direction::Outer, 0);
+    return find_inclusion(PosedSet(outer), PosedSet(room));
+  };
+  EXPECT_EQ(in({"", box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})}), Inclusion::Included);
+  EXPECT_EQ(in({"", box({-0.5, -0.8, -0.8}, {0.5, 0.8, 0.8})}), Inclusion::NotIncluded);
+  EXPECT_EQ(in({"", {{{0, 0, 0}}, {}}, 0.5}), Inclusion::Included);
+  EXPECT_EQ(in({"", {{{0, 0, 0}}, {}}, 1.1}), Inclusion::NotIncluded);
+  EXPECT_EQ(in({"", {{{-1, 0, 0}, {2, 0, 0}}, {}}, 0.3}), Inclusion::Included);
+  EXPECT_EQ(in({"", {{{9, 0, 0}}, {}}, 0.1}), Inclusion::NotIncluded);  // far from all bodies
+  const BoundingSet outer({{"", {{{0, 0, 0}}, {}}, 0.5}}, Direction::Outer, 0);
+  EXPECT_LT(tolerance_of_inclusion(PosedSet(outer), PosedSet(room)), 1);
+}
+
 TEST(FindCollision, SweptAndOtherSetsAreReadAsTheirContainersSay) {
-  geom::ConvexSet set{{{"body", kUnit}}, 0.5, {}};
+  geom::ConvexSet set{{{"body", kUnit, 0.5}}, {}};
   EXPECT_THROW(BoundingSet{set}, Error);
   set.provenance.direction = "outer";
   EXPECT_THROW(BoundingSet{set}, Error);
   set.provenance.epsilon = 0.75;
   const BoundingSet read(set);
   EXPECT_EQ(read.epsilon(), 0.75);
-  EXPECT_EQ(read.body(0).margin, 0.5);
+  EXPECT_EQ(read.body(0).radius, 0.5);
   EXPECT_TRUE(find_collision(PosedSet(read), PosedSet(read, at(2))));
   EXPECT_FALSE(find_collision(PosedSet(read), PosedSet(read, at(2.000001))));
   set.provenance.direction = "inner";
   const BoundingSet inner(set);
   EXPECT_THROW(find_collision(PosedSet(inner), PosedSet(read)), Error);
-  set.bodies[0].hull.vertices[0] = {0.5, 0.5, 0.5};
+  set.bodies[0].core.vertices[0] = {0.5, 0.5, 0.5};
   EXPECT_THROW(BoundingSet{set}, Error);
 }
 

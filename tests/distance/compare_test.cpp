@@ -26,7 +26,7 @@ Shape mesh(const Mesh& m) { return {"m", m, {}}; }
 Shape set(const std::vector<Mesh>& hulls, double margin = 0) {
   kaboum::geom::ConvexSet s;
   for (const Mesh& hull : hulls) s.bodies.push_back({"body", hull});
-  s.margin = margin;
+  set_margin(s, margin);
   return {"s", {}, s};
 }
 

@@ -60,8 +60,8 @@ TEST(ExactPolygon, WhatOnlyTouchesIsNotCut) {
 TEST(Inflated, IsWithinItsDefectOfTheBodyWithItsMargin) {
   geom::ConvexSet set;
   set.bodies.push_back({"box", geom::convex_hull(test::box({1, 2, 3}, 1).vertices).value()});
-  set.margin = 0.25;
-  const geom::DistanceQuery body(set.bodies[0].hull);
+  set_margin(set, 0.25);
+  const geom::DistanceQuery body(set.bodies[0].core);
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   double before = 1;
@@ -69,14 +69,14 @@ TEST(Inflated, IsWithinItsDefectOfTheBodyWithItsMargin) {
     const Inflated inflated = inflate(set, level);
     EXPECT_LT(inflated.defect, before);
     before = 0.5 * inflated.defect;
-    for (const Vec3& v : inflated.mesh.vertices)
-      EXPECT_LE(body.nearest(v).lower, set.margin + inflated.excess);
-    const geom::DistanceQuery polytope(inflated.mesh);
+    for (const Vec3& v : inflated.polytopes.bodies[0].core.vertices)
+      EXPECT_LE(body.nearest(v).lower, margin_of(set).value() + inflated.excess);
+    const geom::DistanceQuery polytope(inflated.polytopes.bodies[0].core);
     for (int i = 0; i < 200; ++i) {
       const Vec3 u = Vec3(normal(random), normal(random), normal(random)).normalized();
       Vec3 corner;  // farthest along u
       for (int k = 0; k < 3; ++k) corner[k] = u[k] > 0 ? k + 1 : 0;
-      EXPECT_LE(polytope.nearest(corner + set.margin * u).lower, inflated.defect);
+      EXPECT_LE(polytope.nearest(corner + margin_of(set).value() * u).lower, inflated.defect);
     }
   }
 }

@@ -51,7 +51,7 @@ ConvexSet set_of(const std::vector<Mesh>& bodies, double margin = 0) {
   ConvexSet set;
   for (const Mesh& body : bodies)
     set.bodies.push_back({"body " + std::to_string(set.bodies.size()), body});
-  set.margin = margin;
+  set_margin(set, margin);
   return set;
 }
 
@@ -432,6 +432,34 @@ TEST(UnionBoundary, TrianglesWithoutArea) {
     return kaboum::geom::area(kaboum::distance::union_boundary(set_of({mesh, second})).mesh);
   };
   EXPECT_DOUBLE_EQ(boundary(with), boundary(without));
+}
+
+// Bodies with radii of their own: brackets hold what is known, and are as narrow as a ball's
+// polytope lets them.
+TEST(SolidDistance, OfBallsAndCapsules) {
+  const auto set = [](std::vector<kaboum::geom::ConvexBody> bodies) {
+    ConvexSet out;
+    out.bodies = std::move(bodies);
+    return Solid(out);
+  };
+  const auto expect = [](double lower, double upper, double truth, double width) {
+    EXPECT_LE(lower, truth + 1e-14);
+    EXPECT_GE(upper, truth - 1e-14);
+    EXPECT_LE(upper - lower, width);
+  };
+  const Solid cube(block({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const Solid ball = set({{"ball", {{{0, 0, 0}}, {}}, 1}});
+  const SolidDistance out = distance(ball, cube), back = distance(cube, ball);
+  expect(out.max_lower, out.max_upper, 0.5, 0.006);
+  expect(back.max_lower, back.max_upper, 0, 0.002);
+  const Solid far = set(
+      {{"capsule", {{{0, 0, 3}, {0, 1, 3}}, {}}, 0.25},
+       {"box", kaboum::geom::convex_hull(block({4, 4, 4}, {5, 5, 5}).vertices).value(), 0.125}});
+  const kaboum::distance::Minimum least = solid_minimum(ball, far);
+  expect(least.lower, least.upper, 1.75, 0.006);
+  const SolidDistance reach = distance(far, ball);  // the box's corner, enlarged
+  expect(reach.max_lower, reach.max_upper, std::sqrt(75) + 0.125 - 1, 0.03);
+  EXPECT_EQ(solid_minimum(ball, cube).upper, 0);
 }
 
 }  // namespace

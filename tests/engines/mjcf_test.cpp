@@ -39,7 +39,7 @@ Matrix matrix(const mjtNum* m) { return Eigen::Map<const Matrix>(m); }
 Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 
 TEST(Mjcf, LinksAreWhereOurKinematicsPutsThem) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;
@@ -67,7 +67,7 @@ TEST(Mjcf, LinksAreWhereOurKinematicsPutsThem) {
 }
 
 TEST(Mjcf, JointsHaveTheirLimits) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;
@@ -93,7 +93,7 @@ TEST(Mjcf, JointsHaveTheirLimits) {
 
 TEST(Mjcf, JointsMimicThoseThatTheyFollow) {
   int all = 0;
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;
@@ -118,7 +118,7 @@ TEST(Mjcf, JointsMimicThoseThatTheyFollow) {
 
 TEST(Mjcf, LinksHaveTheirMasses) {
   std::size_t compared = 0;
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;
@@ -169,7 +169,7 @@ Measure measured(const mjModel& m, const mjData& d, int geom) {
 }
 
 TEST(Mjcf, HasTheBodiesThatWereWritten) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;
@@ -189,7 +189,7 @@ TEST(Mjcf, HasTheBodiesThatWereWritten) {
 }
 
 TEST(Mjcf, NeighboursDoNotCollide) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     const Loaded loaded = load(w.urdf);
     if (!loaded.model) continue;
     const mjModel& m = *loaded.model;

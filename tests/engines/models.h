@@ -15,17 +15,17 @@
 /// Robots that outputs.sh has written in several formats, and what our library says of them.
 namespace engines {
 
-struct Written {
+struct WrittenRobot {
   std::filesystem::path urdf;
   std::string prefix;  ///< of names of meshes in URDF and SDF
   kaboum::robot::Robot robot;
   kaboum::robot::Dynamics dynamics;
 };
 
-inline std::vector<Written> written() {
+inline std::vector<WrittenRobot> written() {
   const std::filesystem::path folder = KABOUM_ENGINE_OUTPUTS;
   std::ifstream list(folder / "formats.txt");
-  std::vector<Written> out;
+  std::vector<WrittenRobot> out;
   for (std::string line; std::getline(list, line);) {
     const std::string urdf = (folder / line).string();
     const std::vector<char> text = kaboum::io::read_file(urdf);

@@ -31,7 +31,7 @@ std::string name_in_sdf(const kaboum::robot::Link& link) {
   return link.name == "world" && !link.collision.empty() ? "world-2" : link.name;
 }
 
-void load(const Written& w, Loaded& out) {
+void load(const WrittenRobot& w, Loaded& out) {
   const std::string file = std::filesystem::path(w.urdf).replace_extension(".sdf").string();
   for (const sdf::Error& error : out.root.Load(file)) ADD_FAILURE() << file << ": " << error;
   out.model = out.root.Model();
@@ -42,7 +42,7 @@ void load(const Written& w, Loaded& out) {
 }
 
 /// Poses from what libsdformat says of frames and axes.
-std::vector<Transform> forward(const Written& w, const Loaded& loaded,
+std::vector<Transform> forward(const WrittenRobot& w, const Loaded& loaded,
                                const std::vector<double>& q) {
   std::vector<Transform> poses(w.robot.links.size());
   for (std::size_t j = 0; j < w.robot.joints.size(); ++j) {
@@ -77,7 +77,7 @@ std::vector<Transform> forward(const Written& w, const Loaded& loaded,
 }
 
 TEST(Sdf, LinksAreWhereOurKinematicsPutsThem) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     Loaded loaded;
     load(w, loaded);
     if (loaded.model == nullptr) continue;
@@ -92,7 +92,7 @@ TEST(Sdf, LinksAreWhereOurKinematicsPutsThem) {
 }
 
 TEST(Sdf, JointsHaveTheirLimits) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     Loaded loaded;
     load(w, loaded);
     if (loaded.model == nullptr) continue;
@@ -120,7 +120,7 @@ TEST(Sdf, JointsHaveTheirLimits) {
 }
 
 TEST(Sdf, HasTheBodiesThatWereWritten) {
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     Loaded loaded;
     load(w, loaded);
     if (loaded.model == nullptr) continue;
@@ -144,7 +144,7 @@ TEST(Sdf, HasTheBodiesThatWereWritten) {
 
 TEST(Sdf, LinksHaveTheirMasses) {
   std::size_t masses = 0;
-  for (const Written& w : written()) {
+  for (const WrittenRobot& w : written()) {
     Loaded loaded;
     load(w, loaded);
     if (loaded.model == nullptr) continue;

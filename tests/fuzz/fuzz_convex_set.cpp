@@ -13,23 +13,24 @@ using namespace kaboum;
 using io::Format;
 
 void require_valid(const geom::ConvexSet& set) {
-  if (!(set.margin >= 0)) fuzz::broken("margin", std::to_string(set.margin));
   for (const geom::ConvexBody& body : set.bodies) {
-    if (body.hull.empty()) fuzz::broken("empty body", body.name);
-    for (const geom::Triangle& t : body.hull.triangles)
+    if (!(body.radius >= 0)) fuzz::broken("radius", std::to_string(body.radius));
+    const bool is_rounded = body.radius > 0 && !body.core.vertices.empty();
+    if (body.core.empty() && !is_rounded) fuzz::broken("empty body", body.name);
+    for (const geom::Triangle& t : body.core.triangles)
       for (const std::uint32_t corner : t)
-        if (corner >= body.hull.vertices.size()) fuzz::broken("index", body.name);
-    for (const geom::Vec3& v : body.hull.vertices)
+        if (corner >= body.core.vertices.size()) fuzz::broken("index", body.name);
+    for (const geom::Vec3& v : body.core.vertices)
       if (!v.allFinite()) fuzz::broken("coordinate", body.name);
   }
 }
 
 void require_same(const geom::ConvexSet& a, const geom::ConvexSet& b) {
-  if (a.bodies.size() != b.bodies.size() || a.margin != b.margin)
-    fuzz::broken("read back", "another set");
+  if (a.bodies.size() != b.bodies.size()) fuzz::broken("read back", "another set");
   for (std::size_t i = 0; i < a.bodies.size(); ++i)
-    if (a.bodies[i].hull.vertices != b.bodies[i].hull.vertices ||
-        a.bodies[i].hull.triangles != b.bodies[i].hull.triangles)
+    if (a.bodies[i].core.vertices != b.bodies[i].core.vertices ||
+        a.bodies[i].core.triangles != b.bodies[i].core.triangles ||
+        a.bodies[i].radius != b.bodies[i].radius)
       fuzz::broken("read back", "body " + a.bodies[i].name);
 }
 

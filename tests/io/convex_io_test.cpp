@@ -52,7 +52,7 @@ ConvexSet sample_set(int bodies, unsigned seed) {
             static_cast<float>(std::ldexp(x + 0.1 * unit(random), i % 40 - 20)));
     set.bodies.push_back({"part " + std::to_string(i), hull});
   }
-  set.margin = 0.1;  // no float32 number
+  set_margin(set, 0.1);  // no float32 number
   set.provenance = {"a \"quoted\" name.stl",
                     std::string(64, 'a'),
                     "tool 1.0",
@@ -69,8 +69,8 @@ ConvexSet sample_set(int bodies, unsigned seed) {
 void expect_same(const ConvexSet& a, const ConvexSet& b) {
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
-    EXPECT_EQ(a.bodies[i].hull.triangles.size(), b.bodies[i].hull.triangles.size());
-    EXPECT_EQ(soup(a.bodies[i].hull), soup(b.bodies[i].hull)) << i;
+    EXPECT_EQ(a.bodies[i].core.triangles.size(), b.bodies[i].core.triangles.size());
+    EXPECT_EQ(soup(a.bodies[i].core), soup(b.bodies[i].core)) << i;
   }
 }
 
@@ -98,6 +98,71 @@ void expect_set_error(const std::string& bytes, Format format, const std::string
   }
 }
 
+/// A polytope, an enlarged one, a capsule's core and a ball's.
+ConvexSet rounded_set() {
+  ConvexSet set = sample_set(2, 3);
+  set_margin(set, 0);
+  set.bodies[1].radius = 0.1;  // no float32 number
+  set.bodies.push_back({"capsule", {{{0, 0, 0.5}, {1, 0, 0.25}}, {}}, 1.0 / 3});
+  set.bodies.push_back({"ball", {{{0.125, 2, -3}}, {}}, 1e-3});
+  return set;
+}
+
+TEST_F(ConvexIo, RadiiAndCoresRoundTrip) {
+  const ConvexSet set = rounded_set();
+  const std::string bytes = written(set, SetFormat::Glb);
+  SetReadDetails details;
+  const ConvexSet back = parse_set(bytes, Format::Glb, &details);
+  expect_same(back, set);
+  for (std::size_t i = 0; i < set.bodies.size(); ++i) {
+    EXPECT_EQ(back.bodies[i].name, set.bodies[i].name);
+    EXPECT_EQ(back.bodies[i].radius, set.bodies[i].radius);
+  }
+  for (const std::size_t i : {2U, 3U}) {
+    EXPECT_EQ(back.bodies[i].core.vertices, set.bodies[i].core.vertices);
+    EXPECT_TRUE(back.bodies[i].core.triangles.empty());
+  }
+  EXPECT_EQ(back.provenance, set.provenance);
+  EXPECT_TRUE(details.notes.empty());
+  EXPECT_EQ(written(back, SetFormat::Glb), bytes);
+  // One radius is a margin, and the record is the one that older programs read.
+  ConvexSet one = sample_set(2, 3);
+  EXPECT_NE(written(one, SetFormat::Glb).find("\"version\":1,\"bodies\":2,\"margin\":0.1"),
+            std::string::npos);
+  EXPECT_NE(bytes.find("\"version\":2,\"bodies\":4,\"radii\":[0.0,0.1,"), std::string::npos);
+}
+
+TEST_F(ConvexIo, DamagedRadiiAreRefused) {
+  const std::string bytes = written(rounded_set(), SetFormat::Glb);
+  const auto with = [&](const std::string& from, std::string to) {
+    std::string out = bytes;
+    const std::size_t at = out.find(from);
+    EXPECT_NE(at, std::string::npos);
+    to.resize(from.size(), ' ');
+    return out.replace(at, from.size(), to);
+  };
+  expect_set_error(with("\"radii\":[0.0,0.1,", "\"radii\":[0.0,"), Format::Glb, "one radius");
+  expect_set_error(with("\"radii\":[0.0,0.1,", "\"radii\":[0,-0.1,"), Format::Glb, "negative");
+  expect_set_error(with("\"radii\"", "\"radix\""), Format::Glb, "damaged");
+  expect_set_error(with("0.001]", "0]"), Format::Glb, "without a radius");
+  expect_set_error(with("\"version\":2", "\"version\":3"), Format::Glb, "version");
+  // Without their radii, points are not bodies.
+  expect_set_error(with("\"version\":2", "\"version\":1"), Format::Glb, "");
+}
+
+TEST_F(ConvexIo, RadiiAreNotLostInOtherFormats) {
+  const ConvexSet set = rounded_set();
+  EXPECT_THROW(written(set, SetFormat::Obj), Error);
+  EXPECT_THROW(write_convex_set(directory_ / "set", set), Error);
+  EXPECT_THROW(parse_mesh(serialise_convex_set(set, SetFormat::Glb), Format::Glb, "sample"), Error);
+  ConvexSet bad = set;
+  bad.bodies[3].radius = 0;
+  EXPECT_THROW(written(bad, SetFormat::Glb), Error);
+  bad = set;
+  bad.bodies[2].core.vertices.emplace_back(1, 2, 3);
+  EXPECT_THROW(written(bad, SetFormat::Glb), Error);
+}
+
 TEST_F(ConvexIo, ContainerRoundTrip) {
   for (const int bodies : {0, 1, 2, 57}) {
     const ConvexSet set = sample_set(bodies, 7);
@@ -106,7 +171,7 @@ TEST_F(ConvexIo, ContainerRoundTrip) {
     const ConvexSet back = parse_set(bytes, Format::Glb, &details);
     expect_same(back, set);
     for (int i = 0; i < bodies; ++i) EXPECT_EQ(back.bodies[i].name, set.bodies[i].name);
-    EXPECT_EQ(back.margin, set.margin);
+    EXPECT_EQ(margin_of(back).value(), margin_of(set).value());
     EXPECT_EQ(back.provenance, set.provenance);
     EXPECT_TRUE(details.has_record);
     EXPECT_TRUE(details.notes.empty());
@@ -116,20 +181,20 @@ TEST_F(ConvexIo, ContainerRoundTrip) {
 
 TEST_F(ConvexIo, ContainerIsAValidMeshFileForOthers) {
   ConvexSet set = sample_set(5, 3);
-  set.margin = 0;
+  set_margin(set, 0);
   const std::vector<char> bytes = serialise_convex_set(set, SetFormat::Glb);
   ASSERT_EQ(bytes.size() % 4, 0U);
   const ReadResult mesh = parse_mesh(bytes, Format::Glb, "container");
   std::vector<Vec3> all;
   for (const geom::ConvexBody& body : set.bodies)
-    for (const Vec3& p : soup(body.hull)) all.push_back(p);
+    for (const Vec3& p : soup(body.core)) all.push_back(p);
   EXPECT_EQ(soup(mesh.mesh), all);
 }
 
 TEST_F(ConvexIo, ObjRoundTripKeepsDoubles) {
   ConvexSet set = sample_set(4, 5);
-  set.margin = 0;
-  set.bodies[1].hull.vertices[0].x() = 1.0 / 3;
+  set_margin(set, 0);
+  set.bodies[1].core.vertices[0].x() = 1.0 / 3;
   set.bodies[2].name = "with # and \\";
   const std::string bytes = written(set, SetFormat::Obj);
   const ConvexSet back = parse_set(bytes, Format::Obj);
@@ -142,7 +207,7 @@ TEST_F(ConvexIo, ObjRoundTripKeepsDoubles) {
 
 TEST_F(ConvexIo, FolderRoundTrip) {
   ConvexSet set = sample_set(12, 9);
-  set.margin = 0;
+  set_margin(set, 0);
   const fs::path path = directory_ / "set";
   write_convex_set(path, set);
   SetReadDetails details;
@@ -172,7 +237,7 @@ TEST_F(ConvexIo, FolderOfManyWritersIsOneOfTheirs) {
   for (int w = 0; w < 4; ++w)
     writers.emplace_back([&, w] {
       ConvexSet set = sample_set(2 + 3 * w, static_cast<unsigned>(w));
-      set.margin = 0;
+      set_margin(set, 0);
       for (int round = 0; round < 25; ++round) write_convex_folder(place, set, "part", Format::Stl);
     });
   for (std::thread& t : writers) t.join();
@@ -184,7 +249,7 @@ TEST_F(ConvexIo, FolderOfManyWritersIsOneOfTheirs) {
 TEST_F(ConvexIo, RecordOfAFolderThatIsNestedTooDeepIsRefused) {
   const fs::path place = directory_ / "set";
   ConvexSet set = sample_set(2, 1);
-  set.margin = 0;
+  set_margin(set, 0);
   write_convex_folder(place, set, "part", Format::Stl);
   const std::string name = (place / "convex-set.json").string();
   std::vector<char> bytes = read_file(name);
@@ -227,7 +292,7 @@ TEST_F(ConvexIo, FolderIsReplacedInTwoSteps) {
   constexpr int kUnarranged = 77, kNames = 500;
   const fs::path place = directory_ / "set";
   ConvexSet set = sample_set(5, 1);
-  set.margin = 0;
+  set_margin(set, 0);
   write_convex_set(place, set);
   const int result = in_child([&] {
     if (!forbid_exchange()) return kUnarranged;
@@ -251,7 +316,7 @@ TEST_F(ConvexIo, FolderIsReplacedInTwoSteps) {
 
 TEST_F(ConvexIo, FolderBehindALink) {
   ConvexSet set = sample_set(5, 1);
-  set.margin = 0;
+  set_margin(set, 0);
   const fs::path place = directory_ / "set", link = directory_ / "link",
                  astray = directory_ / "astray";
   write_convex_set(place, set);
@@ -278,7 +343,7 @@ TEST_F(ConvexIo, FolderInNaturalOrder) {
   EXPECT_EQ(set.bodies[0].name, "hull1");
   EXPECT_EQ(set.bodies[1].name, "hull9");
   EXPECT_EQ(set.bodies[2].name, "hull10");
-  EXPECT_EQ(geom::bounding_box(set.bodies[2].hull).max.z(), 10);
+  EXPECT_EQ(geom::bounding_box(set.bodies[2].core).max.z(), 10);
 }
 
 TEST_F(ConvexIo, PlainMeshesFallIntoComponents) {
@@ -286,8 +351,8 @@ TEST_F(ConvexIo, PlainMeshesFallIntoComponents) {
   Mesh all;
   for (const geom::ConvexBody& body : set.bodies) {
     const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), body.hull.vertices.begin(), body.hull.vertices.end());
-    for (const Triangle& t : body.hull.triangles)
+    all.vertices.insert(all.vertices.end(), body.core.vertices.begin(), body.core.vertices.end());
+    for (const Triangle& t : body.core.triangles)
       all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   for (const Format format : {Format::Stl, Format::Ply, Format::Off, Format::Obj, Format::Glb}) {
@@ -300,7 +365,7 @@ TEST_F(ConvexIo, PlainMeshesFallIntoComponents) {
       expect_same(back, set);
     }
     EXPECT_FALSE(details.has_record);
-    EXPECT_EQ(back.margin, 0);
+    EXPECT_EQ(margin_of(back).value(), 0);
   }
 }
 
@@ -310,7 +375,7 @@ TEST_F(ConvexIo, ObjGroups) {
       parse_set(vertices + "g a\ng b\nf 1 2 3\ng b\nf -1 -2 -3\no c\n", Format::Obj);
   ASSERT_EQ(set.bodies.size(), 2U);  // every statement begins a body; empty ones do not count
   EXPECT_EQ(set.bodies[0].name, "b");
-  EXPECT_EQ(soup(set.bodies[1].hull),
+  EXPECT_EQ(soup(set.bodies[1].core),
             (std::vector<Vec3>{Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0)}));
   EXPECT_TRUE(geom::find_not_convex(set).has_value());  // read nevertheless
   expect_set_error(vertices + "o a\nf 1 2 3\no b\nf 1 1 2\n", Format::Obj, "equal corners");
@@ -331,12 +396,12 @@ TEST_F(ConvexIo, WhatCannotBeWritten) {
   EXPECT_THROW(write_convex_set(directory_ / "set", set), Error);
   EXPECT_EQ(entries(), 0U);
   EXPECT_THROW(write_convex_set(directory_ / "set.step", set), Error);
-  set.margin = -1;
+  set_margin(set, -1);
   EXPECT_EQ(code_of(set, SetFormat::Glb), ErrorCode::InvalidArgument);
-  set.margin = 0;
-  set.bodies[1].hull.vertices[2].y() = 0.1;  // no float32 number
+  set_margin(set, 0);
+  set.bodies[1].core.vertices[2].y() = 0.1;  // no float32 number
   EXPECT_EQ(code_of(set, SetFormat::Glb), ErrorCode::OutputFailed);
-  set.bodies[1].hull.triangles[0][1] = 99;
+  set.bodies[1].core.triangles[0][1] = 99;
   EXPECT_EQ(code_of(set, SetFormat::Obj), ErrorCode::InvalidArgument);
   set.bodies.clear();
   EXPECT_EQ(code_of(set, SetFormat::Obj), ErrorCode::InvalidArgument);
@@ -367,7 +432,7 @@ TEST_F(ConvexIo, DamagedContainers) {
   bad("margin", [](auto& j) { j["extras"]["kaboum_convex_set"]["margin"] = -1; });
   bad("record", [](auto& j) { j["extras"]["kaboum_convex_set"].erase("epsilon"); });
   bad("1e+300 bodies", [](auto& j) { j["extras"]["kaboum_convex_set"]["bodies"] = 1e300; });
-  bad("version", [](auto& j) { j["extras"]["kaboum_convex_set"]["version"] = 2; });
+  bad("version", [](auto& j) { j["extras"]["kaboum_convex_set"]["version"] = 3; });
   bad("accessors[0]: its 1000000", [](auto& j) { j["accessors"][0]["count"] = 1000000; });
   bad("accessors[0].count", [](auto& j) { j["accessors"][0]["count"] = -1; });
   bad("bufferViews[0]", [](auto& j) { j["bufferViews"][0]["byteOffset"] = 1U << 31U; });
@@ -403,17 +468,17 @@ TEST_F(ConvexIo, DamagedContainers) {
 TEST_F(ConvexIo, HostileContainers) {
   ConvexSet set = sample_set(2, 4);
   const std::string glb = written(set, SetFormat::Glb);
-  set.margin = 0;
+  set_margin(set, 0);
   const std::string obj = written(set, SetFormat::Obj);
   const auto attempt = [](const std::string& bytes, Format format) {
     const std::vector<char> exact(bytes.begin(), bytes.end());
     try {
       const ConvexSet read = parse_convex_set(exact, format, "sample");
       for (const geom::ConvexBody& body : read.bodies) {
-        ASSERT_FALSE(body.hull.empty());
-        for (const Triangle& t : body.hull.triangles)
-          for (const std::uint32_t c : t) ASSERT_LT(c, body.hull.vertices.size());
-        for (const Vec3& p : body.hull.vertices) ASSERT_TRUE(p.allFinite());
+        ASSERT_FALSE(body.core.empty());
+        for (const Triangle& t : body.core.triangles)
+          for (const std::uint32_t c : t) ASSERT_LT(c, body.core.vertices.size());
+        for (const Vec3& p : body.core.vertices) ASSERT_TRUE(p.allFinite());
       }
     } catch (const Error& e) {
       EXPECT_NE(e.code(), ErrorCode::Internal) << e.what();

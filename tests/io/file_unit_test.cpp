@@ -178,7 +178,7 @@ TEST(FileUnit, RecordsOfScales) {
       ADD_FAILURE() << bad;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
-      EXPECT_NE(std::string(e.what()).find("a.glb: its record says --scale"), std::string::npos)
+      EXPECT_NE(std::string(e.what()).find("a.glb: its record says a scale of"), std::string::npos)
           << e.what();
     }
   }
@@ -192,7 +192,7 @@ TEST(FileUnit, TwoUnitsAreNotCompared) {
     require_same_unit("a.3mf", "mm", "b.glb", "m");
     ADD_FAILURE();
   } catch (const Error& e) {
-    for (const char* part : {"a.3mf is in mm", "b.glb in m", "--scale 0.001"})
+    for (const char* part : {"a.3mf is in mm", "b.glb in m", "«scale=0.001»"})
       EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
   }
   // Two roundings of one unit are one.
@@ -210,8 +210,8 @@ TEST(FileUnit, TheFactorThatIsNamedMakesUnitsAlike) {
         ADD_FAILURE() << r.unit;
       } catch (const Error& e) {
         const std::string text = e.what();
-        const std::size_t at = text.find("--scale ") + 8;
-        const double factor = std::stod(text.substr(at, text.find(',', at) - at));
+        const std::size_t at = text.find("«scale=") + std::string("«scale=").size();
+        const double factor = std::stod(text.substr(at, text.find("»", at) - at));
         scale(r, factor, "a");
         EXPECT_NO_THROW(require_same_unit("a", r.unit, "b", other)) << text;
       }

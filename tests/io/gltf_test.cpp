@@ -544,7 +544,7 @@ TEST(Gltf, Chunks) {
 TEST(Gltf, ARecordIsNeverLost) {
   geom::ConvexSet set;
   set.bodies = {{"a", tetrahedron()}, {"b", tetrahedron()}};
-  set.margin = 0.5;
+  set_margin(set, 0.5);
   const std::vector<char> bytes = serialise_convex_set(set, SetFormat::Glb);
   const std::string glb(bytes.begin(), bytes.end());
   expect_error(glb, Format::Glb, {"margin"});  // as a mesh
@@ -559,17 +559,17 @@ TEST(Gltf, ARecordIsNeverLost) {
   const auto read_set = [&](const std::string& b) {
     return parse_convex_set(b, Format::Glb, "sample", &details);
   };
-  EXPECT_EQ(read_set(glb).margin, 0.5);
+  EXPECT_EQ(margin_of(read_set(glb)), 0.5);
   // The identity says nothing; the record holds.
-  EXPECT_EQ(read_set(changed(Json::json_pointer("/nodes/0/matrix"),
-                             {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}))
-                .margin,
+  EXPECT_EQ(margin_of(read_set(changed(Json::json_pointer("/nodes/0/matrix"),
+                                       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}))),
             0.5);
-  EXPECT_EQ(read_set(changed(Json::json_pointer("/nodes/0/translation"), {0, 0, 0})).margin, 0.5);
+  EXPECT_EQ(margin_of(read_set(changed(Json::json_pointer("/nodes/0/translation"), {0, 0, 0}))),
+            0.5);
   EXPECT_THROW(read_set(changed(Json::json_pointer("/nodes/0/translation"), {0, 0, 1})), Error);
   EXPECT_THROW(read_set(changed(Json::json_pointer("/nodes/1/scale"), {2, 2, 2})), Error);
   // Without a margin a set is a mesh, too.
-  set.margin = 0;
+  set_margin(set, 0);
   const std::vector<char> plain = serialise_convex_set(set, SetFormat::Glb);
   EXPECT_EQ(parse_mesh(plain, Format::Glb, "sample").mesh.triangles.size(), 8U);
 }
@@ -584,7 +584,7 @@ TEST(Gltf, SetsOfOtherPrograms) {
   ASSERT_EQ(set.bodies.size(), 2U);
   EXPECT_EQ(set.bodies[0].name, "x");
   EXPECT_EQ(set.bodies[1].name, "body-0001");
-  EXPECT_EQ(soup(set.bodies[1].hull)[0], Vec3(5, 0, 0));
+  EXPECT_EQ(soup(set.bodies[1].core)[0], Vec3(5, 0, 0));
   EXPECT_FALSE(details.has_record);
 }
 

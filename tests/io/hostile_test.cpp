@@ -24,7 +24,7 @@ void expect_mesh_or_error(std::string_view bytes, Format format) {
     // Sets have a reader of their own, which may refuse more.
     if (format == Format::Glb || format == Format::Gltf) {
       for (const geom::ConvexBody& body : parse_convex_set(bytes, format, "sample").bodies)
-        ASSERT_FALSE(body.hull.empty());
+        ASSERT_FALSE(body.core.empty());
     }
   } catch (const Error& e) {
     EXPECT_NE(e.code(), ErrorCode::Internal);

@@ -122,6 +122,49 @@ def test_same_container_as_the_tool(bracket, tmp_path):
     assert kaboum.verify_cover(bracket, without_one).answer == "refuted"
 
 
+def test_balls_and_capsules_are_bodies(tmp_path):
+    """A cube of side 1 about the origin, in bodies with radii."""
+    solid = (cube()[0] - 0.5, cube()[1])
+    ends, centre = np.array([[0, 0, -0.5], [0, 0, 0.5]]), np.zeros(3)
+    corner = np.sqrt(0.75)
+    for bodies, radii, covers in (([centre], 0.87, True), ([centre], 0.86, False),
+                                  ([ends], np.sqrt(0.5) + 1e-9, True), ([ends], [0.7], False),
+                                  ([ends, centre], [0.6, 0.87], True),
+                                  ([solid, centre], [0, 0.1], True)):
+        made = kaboum.ConvexSet(bodies, radii=radii)
+        verdict = kaboum.verify_cover(solid, made)
+        assert bool(verdict) == covers and verdict.answer == ("verified" if covers else "refuted")
+        path = tmp_path / "set.glb"
+        made.write(path)
+        back = kaboum.read_set(path)
+        assert (back.radii == np.broadcast_to(radii, len(bodies))).all() and len(back) == len(bodies)
+        done = subprocess.run([f"{BIN}/bound-verify", "cover", write_cube(tmp_path, solid), path], check=False,
+                              capture_output=True, text=True)
+        assert done.returncode == (0 if covers else 1), done.stdout + done.stderr
+    ball = kaboum.ConvexSet([centre], radii=1)
+    assert kaboum.verify_cover(solid, ball, epsilon=0.51) and not kaboum.verify_cover(solid, ball, epsilon=0.49)
+    assert ball.bodies[0].vertices.shape == (1, 3) and ball.bodies[0].faces.shape == (0, 3)
+    found = kaboum.hausdorff(solid, ball, solid=True, samples=1000)
+    assert found.lower <= 0.5 <= found.upper <= 0.51
+    inner = kaboum.ConvexSet([centre, ends * 0.4], radii=[0.49, 0.25])
+    assert kaboum.verify_mesh(solid, inner, relation="inner", epsilon=0.3)
+    assert kaboum.verify_mesh(solid, ball, relation="inner").answer == "refuted"
+    with pytest.raises(kaboum.Error, match="radius must be above 0"):
+        kaboum.ConvexSet([centre])
+    with pytest.raises(kaboum.Error, match="one for each"):
+        kaboum.ConvexSet([ends, centre], radii=[1, 2, 3])
+    with pytest.raises(kaboum.Error, match="at least 0"):
+        kaboum.ConvexSet([ends], radii=-corner)
+    with pytest.raises(kaboum.Error, match="cannot state the radius"):
+        ball.write(tmp_path / "set.obj")
+
+
+def write_cube(folder, mesh):
+    path = folder / "cube.stl"
+    kaboum.write(mesh, path)
+    return path
+
+
 def test_inner_set(ring):
     inner = kaboum.decompose(ring, direction="inner", epsilon="6%")
     assert kaboum.verify_mesh(ring, inner, relation="inner")

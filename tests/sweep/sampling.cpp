@@ -30,7 +30,7 @@ Missed sample_points(const TestRobot& robot, const Path& path, const SweepResult
     for (std::size_t i = 0; i < result.pieces.size(); ++i) {
       if (result.sources[i] != b) continue;
       const PathInterval& piece = result.pieces[i];
-      const geom::Mesh& hull = result.set.bodies[i].hull;
+      const geom::Mesh& hull = result.set.bodies[i].core;
       if (anywhere) {
         nearest = std::min(nearest, distance_to(hull, p));
         continue;
@@ -42,17 +42,18 @@ Missed sample_points(const TestRobot& robot, const Path& path, const SweepResult
       // Quicker, and enough when it is small: the hull contains this segment (find_bad_hull).
       nearest = std::min(nearest, segment_distance(geom::to_float32(piece.start * local),
                                                    geom::to_float32(piece.finish * local), p));
-      if (nearest > result.set.margin) nearest = std::min(nearest, distance_to(hull, p));
+      if (nearest > margin_of(result.set).value())
+        nearest = std::min(nearest, distance_to(hull, p));
     }
     out.largest = std::max(out.largest, nearest);
-    if (nearest > result.set.margin) ++out.missed;
+    if (nearest > margin_of(result.set).value()) ++out.missed;
   }
   return out;
 }
 
 std::optional<std::size_t> find_bad_hull(const TestRobot& robot, const SweepResult& result) {
   for (std::size_t i = 0; i < result.pieces.size(); ++i) {
-    const geom::Mesh& hull = result.set.bodies[i].hull;
+    const geom::Mesh& hull = result.set.bodies[i].core;
     if (!geom::is_convex(hull)) return i;
     for (const Vec3& v : hull.vertices)
       if (!geom::is_float32(v)) return i;

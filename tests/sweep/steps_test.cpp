@@ -156,7 +156,7 @@ TEST(Steps, ManyWaypointsOnAStraightLineCostNothing) {
   const SweepResult result = swept_volume(r.robot, r.bodies, many, options);
   const Missed missed = sample_points(r, many, result, random, 5000);
   EXPECT_EQ(missed.missed, 0U);
-  EXPECT_GT(missed.largest, 0.5 * result.set.margin);
+  EXPECT_GT(missed.largest, 0.5 * margin_of(result.set).value());
 }
 
 TEST(Steps, RestingLinksNeedOneBody) {

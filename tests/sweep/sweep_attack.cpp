@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
           sample_points(r, path, result, random, static_cast<std::size_t>(samples / motions));
       sum.tested += one.tested;
       sum.missed += one.missed;
-      closest = std::max(closest, one.largest / result.set.margin);
+      closest = std::max(closest, one.largest / margin_of(result.set).value());
     }
     std::printf("%s: %zu points, %zu missed; largest distance %.4f of the margin; %zu bodies\n",
                 r.name.c_str(), sum.tested, sum.missed, closest, bodies);

@@ -24,7 +24,7 @@ TEST(Sweep, NoSampledPointIsMissed) {
       const Path path = random_path(r.robot, random, 2 + motion % 3, 2, motion % 2 == 0);
       const StepRule rule = motion % 4 == 3 ? StepRule::Adaptive : StepRule::Balanced;
       const SweepResult result = make(r, path, motion % 3 == 0 ? 0.02 : 0.003, rule);
-      EXPECT_LE(result.set.margin, motion % 3 == 0 ? 0.02 : 0.003);
+      EXPECT_LE(margin_of(result.set).value(), motion % 3 == 0 ? 0.02 : 0.003);
       const Missed missed = sample_points(r, path, result, random, 1500);
       EXPECT_EQ(missed.missed, 0U) << r.name << ", motion " << motion;
       tested += missed.tested;
@@ -44,7 +44,7 @@ TEST(Sweep, ASetWhoseMarginIsCutMissesPoints) {
       SweepResult result = make(r, path, 0.005, rule);
       const Missed first = sample_points(r, path, result, random, 3000, true);
       EXPECT_EQ(first.missed, 0U);
-      result.set.margin = 0.9 * first.largest;
+      set_margin(result.set, 0.9 * first.largest);
       EXPECT_GT(sample_points(r, path, result, random, 3000, true).missed, 0U) << r.name;
     }
   }
@@ -61,7 +61,7 @@ TEST(Sweep, AWrongStepIsFoundBySampling) {
     result.pieces[i].finish = result.pieces[i].start;
     for (const Vec3& p : r.bodies[result.sources[i]].points)
       points.emplace_back(result.pieces[i].start * p);
-    result.set.bodies[i].hull = *geom::convex_hull(points);
+    result.set.bodies[i].core = *geom::convex_hull(points);
   }
   EXPECT_GT(sample_points(r, path, result, random, 2000).missed, 0U);
 }
@@ -75,17 +75,17 @@ TEST(Sweep, ExplicitMarginContainsTheSum) {
     const SweepResult implicit = swept_volume(r.robot, r.bodies, path, options);
     options.explicit_margin = true;
     const SweepResult result = swept_volume(r.robot, r.bodies, path, options);
-    EXPECT_EQ(result.set.margin, 0);
+    EXPECT_EQ(margin_of(result.set).value(), 0);
     ASSERT_EQ(result.pieces.size(), implicit.pieces.size());
     EXPECT_EQ(geom::find_not_convex(result.set), std::nullopt);
     std::normal_distribution<double> normal;
     for (std::size_t i = 0; i < result.pieces.size(); ++i) {
       const double radius = implicit.pieces[i].deviation;
       for (int k = 0; k < 40; ++k) {
-        const auto& vertices = implicit.set.bodies[i].hull.vertices;
+        const auto& vertices = implicit.set.bodies[i].core.vertices;
         const Vec3 d = Vec3(normal(random), normal(random), normal(random)).normalized();
         const Vec3 p = vertices[random() % vertices.size()] + radius * d;
-        EXPECT_EQ(distance_to(result.set.bodies[i].hull, p), 0);
+        EXPECT_EQ(distance_to(result.set.bodies[i].core, p), 0);
       }
     }
     EXPECT_EQ(sample_points(r, path, result, random, 3000, true).missed, 0U);
@@ -107,7 +107,7 @@ TEST(Sweep, SimplifiedHullsHaveFewerVerticesAndMissNothing) {
     const auto vertices = [](const SweepResult& result) {  // of a body, on average
       double sum = 0;
       for (const auto& body : result.set.bodies)
-        sum += static_cast<double>(body.hull.vertices.size());
+        sum += static_cast<double>(body.core.vertices.size());
       return sum / static_cast<double>(result.set.bodies.size());
     };
     for (const bool explicit_margin : {false, true}) {
@@ -119,7 +119,7 @@ TEST(Sweep, SimplifiedHullsHaveFewerVerticesAndMissNothing) {
       options.simplify = 0.4;
       const SweepResult result = swept_volume(r.robot, r.bodies, path, options);
       EXPECT_LT(vertices(result), 0.8 * vertices(plain)) << r.name;
-      EXPECT_LE(result.set.margin, options.epsilon);
+      EXPECT_LE(margin_of(result.set).value(), options.epsilon);
       EXPECT_GT(result.left_out, 0.1 * options.epsilon);
       EXPECT_LE(result.left_out, 0.4 * options.epsilon);
       EXPECT_EQ(geom::find_not_convex(result.set), std::nullopt);
@@ -142,10 +142,10 @@ TEST(Sweep, WhatSimplifyingLeavesOutIsAsFarAwayAsTheMarginSays) {
   double farthest = 0;
   for (const Vec3& p : r.bodies[0].points)
     farthest = std::max(
-        farthest, distance_to(result.set.bodies[0].hull, reference_pose(r.robot, 3, rest) * p));
+        farthest, distance_to(result.set.bodies[0].core, reference_pose(r.robot, 3, rest) * p));
   EXPECT_NEAR(farthest, result.left_out, 1e-6);
   EXPECT_GT(result.left_out, 0.002);
-  EXPECT_GE(result.set.margin, farthest);
+  EXPECT_GE(margin_of(result.set).value(), farthest);
 }
 
 TEST(Sweep, ReachHoldsForPointsOfTheSet) {
@@ -160,7 +160,7 @@ TEST(Sweep, ReachHoldsForPointsOfTheSet) {
   for (int k = 0; k < 300; ++k) {
     const std::size_t i = random() % result.pieces.size();
     const LinkBody& body = r.bodies[result.sources[i]];
-    const auto& v = result.set.bodies[i].hull.vertices;
+    const auto& v = result.set.bodies[i].core.vertices;
     const Vec3 p = 0.5 * (v[random() % v.size()] + v[random() % v.size()]);
     double nearest = 1e9;
     for (int s = 0; s <= 400; ++s) {
@@ -172,7 +172,7 @@ TEST(Sweep, ReachHoldsForPointsOfTheSet) {
     most = std::max(most, nearest);
   }
   EXPECT_LE(most, result.excess);
-  EXPECT_GT(result.excess, result.set.margin);
+  EXPECT_GT(result.excess, margin_of(result.set).value());
 }
 
 TEST(Sweep, SameOnAnyNumberOfThreads) {
@@ -184,12 +184,12 @@ TEST(Sweep, SameOnAnyNumberOfThreads) {
     return make(r, path, 0.002);
   };
   const SweepResult a = with(1), b = with(4);
-  EXPECT_EQ(a.set.margin, b.set.margin);
+  EXPECT_EQ(margin_of(a.set).value(), margin_of(b.set).value());
   EXPECT_EQ(a.excess, b.excess);
   ASSERT_EQ(a.set.bodies.size(), b.set.bodies.size());
   for (std::size_t i = 0; i < a.set.bodies.size(); ++i) {
-    EXPECT_EQ(a.set.bodies[i].hull.vertices, b.set.bodies[i].hull.vertices);
-    EXPECT_EQ(a.set.bodies[i].hull.triangles, b.set.bodies[i].hull.triangles);
+    EXPECT_EQ(a.set.bodies[i].core.vertices, b.set.bodies[i].core.vertices);
+    EXPECT_EQ(a.set.bodies[i].core.triangles, b.set.bodies[i].core.triangles);
   }
 }
 
@@ -201,8 +201,8 @@ TEST(Sweep, FlatBodiesAndMargins) {
   const Path path{std::vector<double>(6, 0), {0.5, 0, 0, 0, 0, 0}};
   const SweepResult result = make(r, path, 0.005);
   EXPECT_EQ(geom::find_not_convex(result.set), std::nullopt);
-  EXPECT_GE(result.set.margin, 0.001);
-  EXPECT_LE(result.set.margin, 0.005);
+  EXPECT_GE(margin_of(result.set).value(), 0.001);
+  EXPECT_LE(margin_of(result.set).value(), 0.005);
   r.bodies[1].margin = 0.004;
   EXPECT_THROW(make(r, path, 0.005), Error);
 }

@@ -72,7 +72,7 @@ SweepResult sweep(const TestRobot& r, const Path& path, double epsilon,
 geom::ConvexSet set_of(const std::vector<geom::Mesh>& bodies, double margin) {
   geom::ConvexSet set;
   for (const geom::Mesh& body : bodies) set.bodies.push_back({"body", body});
-  set.margin = margin;
+  set_margin(set, margin);
   return set;
 }
 
@@ -86,7 +86,7 @@ TEST(VerifySweep, AcceptsWhatSweepApproxMakes) {
       const auto claims = judge(shapes_of(r), path, made.set);
       EXPECT_EQ(claims.surface.answer, Answer::Verified) << r.name << claims.surface.reason;
       EXPECT_EQ(claims.solid.answer, Answer::Verified) << r.name << claims.solid.reason;
-      EXPECT_LE(claims.farthest.distance, made.set.margin);
+      EXPECT_LE(claims.farthest.distance, margin_of(made.set).value());
     }
   }
 }
@@ -161,9 +161,9 @@ TEST(VerifySweep, RefutesACutMargin) {
     SweepResult made = sweep(r, path, 0.005);
     const auto shapes = shapes_of(r);
     const double largest = judge(shapes, path, made.set).farthest.distance;
-    EXPECT_GT(largest, 0.8 * made.set.margin) << "an idle check";
+    EXPECT_GT(largest, 0.8 * margin_of(made.set).value()) << "an idle check";
     for (const double factor : {1 - 1e-9, 0.99, 0.5}) {
-      made.set.margin = factor * largest;
+      set_margin(made.set, factor * largest);
       const auto claims = judge(shapes, path, made.set);
       EXPECT_EQ(claims.surface.answer, Answer::Refuted) << r.name << ' ' << factor;
       ASSERT_TRUE(claims.refuting);
@@ -176,8 +176,8 @@ TEST(VerifySweep, RefutesACutMargin) {
                 1e-12);
       double nearest = 1e9;
       for (const auto& body : made.set.bodies)
-        nearest = std::min(nearest, distance_to(body.hull, place.point));
-      EXPECT_GT(nearest, made.set.margin);
+        nearest = std::min(nearest, distance_to(body.core, place.point));
+      EXPECT_GT(nearest, margin_of(made.set).value());
       EXPECT_NEAR(nearest, place.distance, 1e-12);
     }
   }
@@ -416,7 +416,7 @@ TEST(VerifySweep, SameOnAnyNumberOfThreads) {
   const Path path = random_path(r.robot, random, 3, 1.5, false);
   SweepResult made = sweep(r, path, 0.005);
   for (const double factor : {1.0, 0.7}) {
-    made.set.margin *= factor;
+    set_margin(made.set, margin_of(made.set).value() * factor);
     const auto with = [&](std::size_t threads) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       return judge(shapes_of(r), path, made.set);
@@ -454,7 +454,7 @@ TEST(VerifySweep, LimitsAndBadSets) {
   options.gap = 0.1;  // coarser than the margin: nothing moving can be known
   EXPECT_EQ(verify::verify_sweep(shapes_of(r), path, made.set, options).surface.answer,
             Answer::Undecided);
-  std::swap(made.set.bodies[0].hull.triangles[0][0], made.set.bodies[0].hull.triangles[0][1]);
+  std::swap(made.set.bodies[0].core.triangles[0][0], made.set.bodies[0].core.triangles[0][1]);
   const auto bent = judge(shapes_of(r), path, made.set);
   EXPECT_EQ(bent.convex.answer, Answer::Refuted);
   EXPECT_NE(bent.surface.answer, Answer::Verified);

@@ -83,13 +83,13 @@ class Bodies {
   [[nodiscard]] bool outside(const Vec3& p) const {
     return std::all_of(bodies().begin(), bodies().end(), [&](const geom::ConvexBody& body) {
       const auto above = [&](const geom::Triangle& t) {
-        const Vec3 &a = body.hull.vertices[t[0]], &b = body.hull.vertices[t[1]],
-                   &c = body.hull.vertices[t[2]];
+        const Vec3 &a = body.core.vertices[t[0]], &b = body.core.vertices[t[1]],
+                   &c = body.core.vertices[t[2]];
         const Vec3 moved = p + 0.9 * rounding() * (b - a).cross(c - a).normalized();
         return geom::orient3d(a, b, c, p) == geom::Sign::Positive ||
                geom::orient3d(a, b, c, moved) == geom::Sign::Positive;
       };
-      return std::any_of(body.hull.triangles.begin(), body.hull.triangles.end(), above);
+      return std::any_of(body.core.triangles.begin(), body.core.triangles.end(), above);
     });
   }
 
@@ -339,9 +339,9 @@ TEST(ComplementOfUnion, SliversCount) {
       const Bodies bodies({edged_block({0, 0, 0}, {0.5, 1, 1}, turn, random),
                            edged_block({0.5 - overlap, 0, 0}, {1, 1, 1}, turn, random)});
       for (const geom::ConvexBody& body : bodies.bodies()) {
-        for (const auto& [u, v, w] : body.hull.triangles) {
-          const Vec3 a = body.hull.vertices[u], b = body.hull.vertices[v] - a,
-                     c = body.hull.vertices[w] - a;
+        for (const auto& [u, v, w] : body.core.triangles) {
+          const Vec3 a = body.core.vertices[u], b = body.core.vertices[v] - a,
+                     c = body.core.vertices[w] - a;
           slivers += b.cross(c).norm() < 1e-14 * b.norm() * c.norm() ? 1U : 0U;
         }
       }
@@ -357,7 +357,7 @@ TEST(ComplementOfUnion, SliversCount) {
 
 /// A box about a point of a facet, of any size down to 1e-8.
 Bounds box_at_a_facet(const Bodies& bodies, Random& random) {
-  const Mesh& hull = bodies.bodies()[random.below(bodies.bodies().size())].hull;
+  const Mesh& hull = bodies.bodies()[random.below(bodies.bodies().size())].core;
   const geom::Triangle& t = hull.triangles[random.below(hull.triangles.size())];
   const double u = random.part(), v = random.part() * (1 - u);
   const Vec3 middle =
@@ -374,7 +374,7 @@ Vec3 point_of(const Bounds& box, const Bodies& bodies, Random& random) {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 p = low + random.vector().cwiseAbs().cwiseProduct(high - low);
   if (random.below(2) == 0) return p;
-  const Mesh& hull = bodies.bodies()[random.below(bodies.bodies().size())].hull;
+  const Mesh& hull = bodies.bodies()[random.below(bodies.bodies().size())].core;
   const geom::Triangle& t = hull.triangles[random.below(hull.triangles.size())];
   const Vec3& a = hull.vertices[t[0]];
   const Vec3 normal = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a).normalized();

@@ -169,7 +169,7 @@ TEST(Cover, BodiesMustBeConvex) {
 /// nearly.
 void expect_margin(const Mesh& original, ConvexSet set, double margin, Answer expected,
                    double depth, const std::string& what) {
-  set.margin = margin;
+  set_margin(set, margin);
   const auto cover = verify::verify_cover(original, set);
   EXPECT_EQ(cover.inclusion.solid.answer, expected) << what << ' ' << margin;
   if (expected == Answer::Refuted) {
@@ -188,12 +188,12 @@ TEST(Cover, AMarginClosesGapsUpToHalfTheirWidth) {
   for (const double margin : {0.1251, 0.13, 0.5}) {
     expect_margin(ell(), set, margin, Answer::Verified, 0, "gap");
     ConvexSet with = set;
-    with.margin = margin;
+    set_margin(with, margin);
     EXPECT_EQ(verify::verify_cover(ell(), with).inclusion.surface.answer, Answer::Verified);
   }
   // The distance is the margin exactly: nothing may be said.
   ConvexSet equal = set;
-  equal.margin = 0.125;
+  set_margin(equal, 0.125);
   verify::InclusionOptions soon;
   soon.max_cells = 20'000;
   EXPECT_EQ(verify::verify_cover(ell(), equal, soon).inclusion.solid.answer, Answer::Undecided);
@@ -212,10 +212,10 @@ TEST(Cover, ThinLayersWithinAMargin) {
   for (const double out : {1e-3, 1e-6, 1e-9}) {
     const Mesh grown = translated(box(Vec3::Constant(2 + 2 * out), 3), Vec3::Constant(-out));
     ConvexSet set = set_of({block({0, 0, 0}, {2, 2, 2})});
-    set.margin = 2 * out;  // more than at the corners, √3
+    set_margin(set, 2 * out);  // more than at the corners, √3
     EXPECT_EQ(verify::verify_cover(grown, set, few).inclusion.solid.answer, Answer::Verified)
         << out;
-    set.margin = 1.7 * out;
+    set_margin(set, 1.7 * out);
     EXPECT_NE(verify::verify_cover(grown, set, few).inclusion.solid.answer, Answer::Verified)
         << out;
   }
@@ -236,7 +236,7 @@ TEST(Cover, AMarginFillsVoidsUpToTheirInnerRadius) {
   expect_margin(hollow, set, 0.09, Answer::Refuted, 0.01, "hollow");
   // Turned, so that no side of a cell is parallel to a face.
   std::vector<Mesh> turned;
-  for (const auto& body : set.bodies) turned.push_back(rotated(body.hull, 0.7));
+  for (const auto& body : set.bodies) turned.push_back(rotated(body.core, 0.7));
   expect_margin(rotated(solid, 0.7), set_of(turned), 0.505, Answer::Verified, 0, "turned");
   expect_margin(rotated(solid, 0.7), set_of(turned), 0.495, Answer::Refuted, 0.005 + 1e-9,
                 "turned");
@@ -269,7 +269,7 @@ TEST(Cover, MarginsAgainstSamples) {
       bodies.push_back(block(b.low, b.high));
     }
     ConvexSet set = set_of(bodies);
-    set.margin = 0.05 + 0.8 * uniform();
+    set_margin(set, 0.05 + 0.8 * uniform());
     const auto away = [&](const Vec3& p) {
       double least = std::numeric_limits<double>::infinity();
       for (const Block& b : blocks) least = std::min(least, b.distance(p));
@@ -282,8 +282,8 @@ TEST(Cover, MarginsAgainstSamples) {
     if (claim.answer == Answer::Refuted) {
       ASSERT_TRUE(claim.witness.has_value()) << seed;
       const Vec3& p = claim.witness->point;
-      EXPECT_NEAR(away(p) - set.margin, claim.witness->depth, 1e-9) << seed;
-      EXPECT_GT(away(p), set.margin) << seed;
+      EXPECT_NEAR(away(p) - margin_of(set).value(), claim.witness->depth, 1e-9) << seed;
+      EXPECT_GT(away(p), margin_of(set).value()) << seed;
       EXPECT_TRUE(std::any_of(cells.begin(), cells.end(), [&](const std::array<int, 3>& c) {
         const Vec3 low(c[0], c[1], c[2]);
         return Block{low, low + Vec3::Ones()}.distance(p) == 0;
@@ -292,7 +292,7 @@ TEST(Cover, MarginsAgainstSamples) {
       for (int i = 0; i < 20'000; ++i) {
         const std::array<int, 3>& c = cells[random() % cells.size()];
         const Vec3 p = Vec3(c[0], c[1], c[2]) + Vec3(uniform(), uniform(), uniform());
-        ASSERT_LE(away(p), set.margin) << seed;
+        ASSERT_LE(away(p), margin_of(set).value()) << seed;
       }
     }
   }
@@ -665,7 +665,7 @@ TEST(Cover, ReachAlongASlantedSeam) {
 TEST(Cover, ReachWithAMargin) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});
-  set.margin = 0.125;
+  set_margin(set, 0.125);
   EXPECT_EQ(verify::verify_excess(set, unit, 0.376, true).answer, Answer::Verified);
   const auto beyond = verify::verify_excess(set, unit, 0.374, true);
   EXPECT_EQ(beyond.answer, Answer::Refuted);
@@ -678,7 +678,7 @@ TEST(Cover, ReachWithAMargin) {
       verify::verify_excess(set_of({block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
   EXPECT_EQ(between.answer, Answer::Verified);
   set = set_of({block({0, 0, 0}, {1.125, 1, 1})});
-  set.margin = 0.125;
+  set_margin(set, 0.125);
   EXPECT_EQ(verify::verify_excess(set, two, 0.2, true).answer, Answer::Undecided);
 }
 

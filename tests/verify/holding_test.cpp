@@ -54,7 +54,7 @@ TEST(Holding, IsDecidedToTheLastBit) {
 TEST(Holding, NeedsConvexBodiesAndOneForEach) {
   geom::ConvexSet set = cube(1);
   EXPECT_EQ(verify_holding(set, {}).answer, Answer::Refuted);
-  set.bodies[0].hull.triangles.pop_back();
+  set.bodies[0].core.triangles.pop_back();
   EXPECT_EQ(decide(set, {{{0, 0, 0}}, 0.5}), Answer::Refuted);
   EXPECT_THROW(decide(cube(1), {{{0, 0, 0}}, -1}), Error);
   EXPECT_THROW(decide(cube(1), {{{0, 0, std::nan("")}}, 1}), Error);

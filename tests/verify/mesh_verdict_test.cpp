@@ -230,7 +230,7 @@ TEST(MeshVerdict, MarginOfACover) {
   geom::ConvexSet set;
   set.bodies.push_back({"body", cube(0.5, 1.5)});
   for (const double margin : {0.25, 1.0}) {
-    set.margin = margin;
+    set_margin(set, margin);
     const Mesh sum = verify::sum_of(set);
     const MeshVerdict verdict =
         verify::decide({original, sum, &set, Relation::Cover, Claims::All, 1.5});

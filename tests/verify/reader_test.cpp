@@ -35,16 +35,16 @@ void add(const Polygon& p, Edges& edges, long factor) {
   }
 }
 
-enum class Found { Same, SameBorders, Refused };
+enum class Comparison { Same, SameBorders, Refused };
 
 /// Compares both readings of a file: triangles one by one, files with polygons by the sum of their
 /// edges.
-Found compare(const std::string& path) {
+Comparison compare(const std::string& path) {
   io::ReadResult read;
   try {
     read = io::read_mesh(path);
   } catch (const Error&) {
-    return Found::Refused;
+    return Comparison::Refused;
   }
   std::vector<Polygon> plain = read_plainly(path);
   for (Polygon& p : plain) {
@@ -66,7 +66,7 @@ Found compare(const std::string& path) {
     EXPECT_TRUE(std::all_of(edges.begin(), edges.end(), [](const auto& e) {
       return e.second == 0;
     })) << path;
-    return Found::SameBorders;
+    return Comparison::SameBorders;
   }
   std::erase_if(plain,
                 [](const Polygon& p) { return p[0] == p[1] || p[1] == p[2] || p[2] == p[0]; });
@@ -76,7 +76,7 @@ Found compare(const std::string& path) {
     ADD_FAILURE() << path << ": triangle " << i;
     break;
   }
-  return Found::Same;
+  return Comparison::Same;
 }
 
 TEST(Reader, ReadsWhatTheWritersWroteLikeAPlainOne) {
@@ -99,7 +99,7 @@ TEST(Reader, ReadsWhatTheWritersWroteLikeAPlainOne) {
         const fs::path path = folder / ("mesh." + name.substr(0, 3));
         io::write_file(path, bytes);
         SCOPED_TRACE(list[i].name + " as " + name);
-        EXPECT_EQ(compare(path), Found::Same);
+        EXPECT_EQ(compare(path), Comparison::Same);
         // Both read what was handed over, not merely the same.
         const auto plain = read_plainly(path);
         ASSERT_EQ(plain.size(), list[i].mesh.triangles.size());
@@ -119,7 +119,7 @@ TEST(CorpusReader, ReadsLikeAPlainOne) {
     const std::string extension = entry.path().extension();
     if (extension != ".off" && extension != ".obj" && extension != ".stl" && extension != ".ply")
       continue;
-    if (compare(entry.path()) != Found::Refused) ++compared;
+    if (compare(entry.path()) != Comparison::Refused) ++compared;
   }
   EXPECT_GT(compared, 0);
 }

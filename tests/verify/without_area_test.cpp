@@ -39,7 +39,7 @@ TEST(WithoutArea, NothingIsEnclosedByNothing) {
       EXPECT_EQ(decided(*nothing, *nothing, claims).answer, Answer::Undefined);
       EXPECT_EQ(decided(box, *nothing, claims).answer, Answer::Refuted);
     }
-    const Cover cover = verify_cover(*nothing, {.bodies = {{"box", box}}});
+    const Cover cover = verify_cover(*nothing, {.bodies = {{"box", box}}, .provenance = {}});
     EXPECT_EQ(cover.inclusion.solid.answer, Answer::Undefined);
     EXPECT_EQ(cover.inclusion.surface.answer, Answer::Undefined);
     EXPECT_EQ(verify_distance(*nothing, box, 1).answer, Answer::Undefined);
@@ -106,11 +106,11 @@ TEST(WithoutArea, MarginsAndDistancesCountThem) {
   for (const Mesh& whisker :
        {segment({0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}), repeated({0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}, 0)}) {
     const Mesh both = test::merged({box, whisker});
-    geom::ConvexSet set{.bodies = {{"box", box}}};
+    geom::ConvexSet set{.bodies = {{"box", box}}, .provenance = {}};
     EXPECT_EQ(verify_cover(both, set).inclusion.surface.answer, Answer::Refuted);
-    set.margin = 0.49;
+    set_margin(set, 0.49);
     EXPECT_EQ(verify_cover(both, set).inclusion.surface.answer, Answer::Refuted);
-    set.margin = 0.51;
+    set_margin(set, 0.51);
     EXPECT_EQ(verify_cover(both, set).inclusion.surface.answer, Answer::Verified);
     EXPECT_EQ(verify_distance(both, box, 0.49).answer, Answer::Refuted);
     EXPECT_EQ(verify_distance(both, box, 0.51).answer, Answer::Verified);

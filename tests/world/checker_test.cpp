@@ -53,7 +53,7 @@ TEST(Checker, FindsTheContactsThatAllPairsInRationalNumbersFind) {
                           const Transform& at_b) {
       for (std::size_t x = 0; x < a.size(); ++x)
         for (std::size_t y = 0; y < b.size(); ++y)
-          if (test::rational_within(a.body(x).hull, at_a, b.body(y).hull, at_b, 0)) return true;
+          if (test::rational_within(a.body(x).core, at_a, b.body(y).core, at_b, 0)) return true;
       return false;
     };
     const auto& shapes = world.robots[0].shapes;

@@ -78,7 +78,7 @@ TEST(LinkInnerSets, AreOfTheLinkAndTheRobotAsTheyAre) {
   expect_message(files, with_inner(files, files.ref("mm.glb")), "mm.glb is in mm, the scene in m");
   // A wrong unit or mesh that no record tells.
   geom::ConvexSet large = inner_bar("l3");
-  for (Vec3& v : large.bodies[0].hull.vertices) v *= 1000;
+  for (Vec3& v : large.bodies[0].core.vertices) v *= 1000;
   files.put("large.glb", large);
   expect_message(files, with_inner(files, files.ref("large.glb")),
                  "large.glb reaches out of l3.glb");
@@ -113,7 +113,7 @@ TEST(LinkInnerSets, OfObjectsLieInTheOuterOnesToo) {
   expect_message(files, scene(), "wide.glb reaches out of box.glb");
   geom::ConvexSet with_margin =
       test::set_of({test::box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})}, "outer", 0.5);
-  with_margin.margin = 0.25;
+  set_margin(with_margin, 0.25);
   files.put("box.glb", with_margin);
   EXPECT_EQ(message_of(files, scene()), "accepted");
 }

@@ -61,7 +61,7 @@ class TipsTest : public ::testing::TestWithParam<double> {
   }
 
   static geom::ConvexSet with(geom::ConvexSet set) {
-    set.margin = GetParam();
+    set_margin(set, GetParam());
     return set;
   }
 

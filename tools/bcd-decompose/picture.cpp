@@ -2,6 +2,7 @@
 
 #include "picture.h"
 
+#include <kaboum/geom/body_polytopes.h>
 #include <cmath>
 
 #include "picture/png_file.h"
@@ -31,11 +32,11 @@ std::vector<char> picture_of(const geom::ConvexSet& set, double explode) {
   picture::Image image(panels * kPanel, kPanel, Colour{1, 1, 1});
   for (int panel = 0; panel < panels && !set.bodies.empty(); ++panel) {
     geom::Box3 whole;
-    for (const geom::ConvexBody& body : set.bodies) whole.extend(geom::bounding_box(body.hull));
+    for (const geom::ConvexBody& body : set.bodies) whole.extend(geom::bounding_box(body));
     geom::Mesh all;
     picture::Style style;
     for (std::size_t i = 0; i < set.bodies.size(); ++i) {
-      const geom::Mesh& hull = set.bodies[i].hull;
+      const geom::Mesh hull = geom::surface_of(set.bodies[i]);
       geom::Vec3 shift = geom::Vec3::Zero();
       if (panel == 1) shift = explode * (geom::bounding_box(hull).center() - whole.center());
       const auto first = static_cast<std::uint32_t>(all.vertices.size());

@@ -47,7 +47,7 @@ geom::Mesh original_of(const DecomposeOptions& o, bool wrapped) {
 /// The bodies, without distances.
 std::vector<page::Shape> shapes_of(const geom::ConvexSet& set) {
   std::vector<page::Shape> out;
-  for (const geom::ConvexBody& body : set.bodies) out.push_back({body.hull});
+  for (const geom::ConvexBody& body : set.bodies) out.push_back({body.core});
   return out;
 }
 
@@ -162,7 +162,7 @@ geom::ConvexSet at_rest(const robot::Robot& robot,
   geom::ConvexSet out;
   for (const certify::CertifiedLink& link : links)
     for (geom::ConvexBody body : link.artefact().bodies) {
-      for (geom::Vec3& v : body.hull.vertices) v = poses[link.certificate().link] * v;
+      for (geom::Vec3& v : body.core.vertices) v = poses[link.certificate().link] * v;
       out.bodies.push_back(std::move(body));
     }
   return out;

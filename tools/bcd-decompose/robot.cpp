@@ -154,7 +154,7 @@ RobotCounts counts_of(const Run& run) {
   for (const certify::CertifiedLink& link : run.made.links) {
     counts.bodies += link.artefact().bodies.size();
     for (const geom::ConvexBody& body : link.artefact().bodies)
-      counts.vertices += body.hull.vertices.size();
+      counts.vertices += body.core.vertices.size();
   }
   return counts;
 }
@@ -187,8 +187,8 @@ PageLink page_link(const Run& run, const certify::LinkVerdict& link) {
     out.reach = set->certificate().distance;
     out.bodies = set->artefact().bodies.size();
     for (const geom::ConvexBody& body : set->artefact().bodies) {
-      out.vertices += body.hull.vertices.size();
-      append_placed(out.result, body.hull, {});
+      out.vertices += body.core.vertices.size();
+      append_placed(out.result, body.core, {});
     }
   }
   for (const robot::LinkShape& shape : run.bodies().shapes) {

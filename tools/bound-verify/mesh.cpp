@@ -30,10 +30,6 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
       made.source_sha256 == run.original.sha256)
     io::require_recorded_scale(o.approximation, made.parameters, o.unit.scale);
   if (o.prepare) naming(o.original, [&] { prepare(run.original, o.relation, o.drop_sheets); });
-  const double margin = run.approximation.set.margin;
-  if (run.inner() && margin > 0)
-    throw Error(ErrorCode::InvalidInput, o.approximation + ": the set's margin, " + number(margin) +
-                                             ", enlarges the bodies; an inner set must have none");
   for (const std::string& note : run.original.notes) log(quiet, o.original + ": " + note);
   for (const std::string& note : run.approximation.notes) log(quiet, o.approximation + ": " + note);
   if (!o.prepare) run.inside_out = geom::find_inside_out(run.original.mesh);
@@ -42,9 +38,10 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
   return run;
 }
 
-/// @throws Error where the length is none of this mesh's, or below the margin.
+/// @throws Error where the length is none of this mesh's, or below a cover's margin.
 void set_bound(MeshCase& run, const Length& epsilon) {
-  const double bound = epsilon.of(run.diagonal), margin = run.approximation.set.margin;
+  const double bound = epsilon.of(run.diagonal),
+               margin = run.inner() ? 0 : geom::margin_of(run.approximation.set).value_or(0);
   if (!std::isfinite(bound))
     throw Error(
         ErrorCode::InvalidInput,

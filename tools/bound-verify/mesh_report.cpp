@@ -76,9 +76,8 @@ std::string inner_name(const MeshCase& run) {
 std::string outer_name(const MeshCase& run) {
   if (run.inner()) return "the original";
   if (run.asked.relation != Relation::Cover) return "the approximation";
-  const double margin = run.approximation.set.margin;
-  return std::string("the union of the bodies") +
-         (margin > 0 ? ", with the margin " + number(margin) + " included" : "");
+  const std::string radii = text_of_radii(run.approximation.set);
+  return "the union of the bodies" + (radii.empty() ? "" : ", " + radii);
 }
 
 /// What the points of exact faces tell, which the claims before are not about.
@@ -321,7 +320,7 @@ Json json_of_claims(const MeshCase& run) {
     json = to_json(distance.claim);
     json["bound"] = *run.bound;
     if (run.asked.relation != Relation::Cover) continue;
-    json["margin"] = run.approximation.set.margin;
+    json["margin"] = margin_json(run.approximation.set);
     json["to_solid"] = distance.between == Between::UnionToSolid;
   }
   if (v.exact_points) {
@@ -401,7 +400,7 @@ Json report_of(const MeshCase& run) {
       {"bbox_diagonal", run.diagonal}};
   if (run.approximation.is_set) {
     json["approximation"]["bodies"] = run.approximation.set.bodies.size();
-    json["approximation"]["margin"] = run.approximation.set.margin;
+    json["approximation"]["margin"] = margin_json(run.approximation.set);
   }
   json["original"]["scale"] = run.asked.unit.scale;
   if (!run.original.about_exact.empty()) json["original"]["deviation"] = run.original.deviation;

@@ -45,19 +45,17 @@ std::string line_of(const verify::MovingPointClaim& exact, const SweepCase& run)
 std::vector<std::string> lines_of(const SweepCase& run) {
   std::vector<std::string> lines;
   const verify::SweepClaims& claims = run.claims;
-  const double margin = run.swept.set.margin;
+  const std::string radii = text_of_radii(run.swept.set);
   lines.push_back(
       line("convexity", claims.convex,
            "all " + std::to_string(run.swept.set.bodies.size()) + " bodies are convex"));
-  lines.push_back(
-      line("surface claim", claims.surface,
-           "during the whole path " + std::to_string(run.shapes.shapes.size()) +
-               " shapes of the links stay within " +
-               (margin > 0 ? "the bodies, with the margin " + number(margin) + " included"
-                           : std::string("the bodies"))));
+  lines.push_back(line("surface claim", claims.surface,
+                       "during the whole path " + std::to_string(run.shapes.shapes.size()) +
+                           " shapes of the links stay within " + "the bodies" +
+                           (radii.empty() ? "" : ", " + radii)));
   if (claims.refuting)
     lines.push_back("  " + say(*claims.refuting, run) + ": " + number(claims.refuting->distance) +
-                    " from the nearest body, margin " + number(margin));
+                    " from the nearest body" + (radii.empty() ? ", margin 0" : ", " + radii));
   else if (claims.undecided)
     lines.push_back("  " + say(*claims.undecided, run));
   if (!claims.refuting && run.knows_farthest())
@@ -117,7 +115,7 @@ Json report_of(const SweepCase& run) {
        {{"file", o.files[2]},
         {"sha256", run.swept.sha256},
         {"bodies", run.swept.set.bodies.size()},
-        {"margin", run.swept.set.margin}}},
+        {"margin", margin_json(run.swept.set)}}},
       {"gap", run.gap},
       {"claims",
        {{"convex", to_json(claims.convex)},

@@ -2,6 +2,7 @@
 
 #include "cli.h"
 
+#include <kaboum/base/option.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -84,7 +85,7 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
     if (!std::cout.flush()) throw Error(ErrorCode::OutputFailed, "standard output: writing failed");
     return code;
   } catch (const Error& error) {
-    std::cerr << name << ": " << error.what() << '\n';
+    std::cerr << name << ": " << remedy_of_program(error.what()) << '\n';
     return exit_code(error.code());
   } catch (const std::bad_alloc&) {
     std::cerr << name << ": out of memory\n";
@@ -148,7 +149,7 @@ void Progress::show(const std::string& text) {
 }
 
 void log(bool quiet, const std::string& text) {
-  if (!quiet) std::cerr << text << '\n';
+  if (!quiet) std::cerr << remedy_of_program(text) << '\n';
 }
 
 }  // namespace kaboum::tools

@@ -2,6 +2,7 @@
 
 #include "verdict.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -24,6 +25,22 @@ std::string point(const geom::Vec3& p) {
   std::ostringstream text;
   text << std::setprecision(17) << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
   return text.str();
+}
+
+std::string text_of_radii(const geom::ConvexSet& set) {
+  const nlohmann::ordered_json margin = margin_json(set);
+  if (margin.is_array())
+    return "with their radii, " + number(margin[0].get<double>()) + " to " +
+           number(margin[1].get<double>()) + ", included";
+  return margin.get<double>() > 0 ? "with the margin " + number(margin.get<double>()) + " included"
+                                  : "";
+}
+
+nlohmann::ordered_json margin_json(const geom::ConvexSet& set) {
+  if (const auto margin = geom::margin_of(set)) return *margin;
+  const auto [least, largest] = std::ranges::minmax_element(
+      set.bodies, {}, [](const geom::ConvexBody& body) { return body.radius; });
+  return nlohmann::ordered_json::array({least->radius, largest->radius});
 }
 
 std::string except_sheets(const DroppedSheets& dropped) {

@@ -2,12 +2,13 @@
 
 #include <kaboum/base/length.h>
 #include <kaboum/base/number_text.h>
-#include <kaboum/geom/mesh.h>
+#include <kaboum/geom/convex_set.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,14 @@ inline constexpr const char* kOfTriangles =
 
 /// All digits.
 std::string point(const geom::Vec3& p);
+
+/// "with the margin 0.1 included", or "with their radii, 0.1 to 0.2, included"; empty where all are
+/// 0.
+std::string text_of_radii(const geom::ConvexSet& set);
+
+/// The margin in reports: a number; the least and the largest radius where they differ or cores are
+/// segments and points.
+nlohmann::ordered_json margin_json(const geom::ConvexSet& set);
 
 /// Triangles of sheets that were dropped on request, of each file.
 using DroppedSheets = std::map<std::string, std::size_t>;

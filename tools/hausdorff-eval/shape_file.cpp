@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/cli.h"
+#include "common/verdict.h"
 
 namespace kaboum::tools {
 namespace {
@@ -46,9 +47,14 @@ bool parse_without_margin(ShapeFile& out, const std::vector<char>& bytes, const 
   } catch (const Error&) {  // the mesh reader says what is wrong
     return false;
   }
-  if (!(set.margin > 0)) return false;
+  if (geom::margin_of(set) == 0.0) return false;
+  if (!geom::margin_of(set))
+    throw Error(ErrorCode::InvalidInput,
+                out.shape.name +
+                    ": its bodies have radii of their own, and are no mesh; measure solid to solid "
+                    "(--solid)");
   char margin[40];
-  std::snprintf(margin, sizeof margin, "%.6g", set.margin);
+  std::snprintf(margin, sizeof margin, "%.6g", *geom::margin_of(set));
   out.notes.push_back("read as a mesh: the set's margin of " + std::string(margin) +
                       " is left out");
   io::ReadResult bodies;
@@ -79,7 +85,7 @@ bool parse_set(ShapeFile& out, const std::vector<char>& bytes, std::optional<io:
   out.notes = details.notes;
   out.is_set = true;
   out.bodies = set.bodies.size();
-  out.margin = set.margin;
+  out.margin = margin_json(set);
   out.shape.set = std::move(set);
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <kaboum/distance/compare.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,9 @@ namespace kaboum::tools {
 struct ShapeFile {
   distance::Shape shape;
   bool is_set = false;
-  std::size_t bodies = 0;  ///< of a set
-  double margin = 0;       ///< of a set [length]
-  double deviation = 0;    ///< of exact faces from the triangles; 0: there are none [length]
+  std::size_t bodies = 0;         ///< of a set
+  nlohmann::ordered_json margin;  ///< of a set, as margin_json
+  double deviation = 0;           ///< of exact faces from the triangles; 0: there are none [length]
   std::string sha256;
   std::string unit;                ///< that it states, or that was said; empty: none
   std::vector<std::string> notes;  ///< things a user should know

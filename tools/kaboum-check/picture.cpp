@@ -2,6 +2,8 @@
 
 #include "picture.h"
 
+#include <kaboum/geom/body_polytopes.h>
+
 #include "picture/png_file.h"
 #include "picture/render.h"
 
@@ -37,9 +39,10 @@ std::vector<char> picture_of(const world::Checker& checker, const world::WorldSt
     const world::BoundingSet& set = placed.place.set();
     for (std::size_t i = 0; i < set.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(all.vertices.size());
-      for (const geom::Vec3& p : set.body(i).hull.vertices)
+      const geom::Mesh surface = geom::surface_of(set.body(i));
+      for (const geom::Vec3& p : surface.vertices)
         all.vertices.emplace_back(placed.place.pose() * p);
-      for (const geom::Triangle& t : set.body(i).hull.triangles) {
+      for (const geom::Triangle& t : surface.triangles) {
         all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
         style.of_triangle.push_back(colour_of(placed.item, i, contacts));
       }

@@ -5,6 +5,7 @@
 #include "render.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/io/convex_io.h>
@@ -82,14 +83,15 @@ Image background(int width, int height) {
   return image;
 }
 
-/// A mesh, or the bodies of a set, which are drawn without its margin.
+/// A mesh, or the bodies of a set.
 geom::Mesh read(const std::string& input, io::Format format) {
   if (format != io::Format::Glb) return io::read_mesh(input, format).mesh;
   geom::Mesh sum;
   for (const geom::ConvexBody& body : io::read_convex_set(input, format).bodies) {
     const auto first = static_cast<std::uint32_t>(sum.vertices.size());
-    sum.vertices.insert(sum.vertices.end(), body.hull.vertices.begin(), body.hull.vertices.end());
-    for (const geom::Triangle& t : body.hull.triangles)
+    const geom::Mesh surface = geom::surface_of(body);
+    sum.vertices.insert(sum.vertices.end(), surface.vertices.begin(), surface.vertices.end());
+    for (const geom::Triangle& t : surface.triangles)
       sum.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   return sum;

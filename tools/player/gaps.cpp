@@ -3,6 +3,7 @@
 #include "gaps.h"
 
 #include <kaboum/base/parallel.h>
+#include <kaboum/geom/body_polytopes.h>
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ using geom::Vec3;
 constexpr double kParts = 80;        ///< of the extent, along an edge
 constexpr double kMostCuts = 50000;  ///< triangles that come of cutting larger ones, in one layer
 
-/// A convex body as the planes of its facets, to ask whether points are within.
+/// A convex polytope as the planes of its facets, to ask whether points are within.
 struct Inside {
   geom::Box3 box;
   std::vector<std::pair<Vec3, double>> planes;
@@ -54,15 +55,17 @@ Shape measured(const geom::Mesh& mesh, double extent, const DistanceOf& distance
 
 std::vector<Shape> measured(std::span<const geom::ConvexBody> bodies, double extent,
                             std::span<const DistanceOf> distances) {
+  std::vector<geom::Mesh> surfaces;
   std::vector<Inside> insides;
   insides.reserve(bodies.size());
-  for (const geom::ConvexBody& body : bodies) insides.emplace_back(body.hull, 1e-7 * extent);
+  for (const geom::ConvexBody& body : bodies) surfaces.push_back(geom::surface_of(body));
+  for (const geom::Mesh& surface : surfaces) insides.emplace_back(surface, 1e-7 * extent);
   std::vector<Shape> out(bodies.size());
   const double most = kMostCuts / static_cast<double>(std::max<std::size_t>(1, bodies.size()));
   parallel_for(std::size_t{0}, bodies.size(),
                [&](std::size_t i) {
                  Shape& shape = out[i];
-                 shape.mesh = picture::refined(bodies[i].hull, extent / kParts, most);
+                 shape.mesh = picture::refined(surfaces[i], extent / kParts, most);
                  for (const Vec3& p : shape.mesh.vertices) {
                    bool within = false;
                    for (std::size_t j = 0; j < bodies.size() && !within; ++j)

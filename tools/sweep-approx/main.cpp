@@ -140,11 +140,11 @@ void write_set(const Run& run, io::SetFormat format) {
   } else {
     io::write_convex_set(o.output, run.swept.artefact(), format);
   }
-  if (run.swept.artefact().margin > 0) {
+  if (run.swept.certificate().margin > 0) {
     std::ostringstream warning;
     warning.precision(17);
     warning << "WARNING: " << o.output << ": its bodies alone do NOT contain the robot: add "
-            << run.swept.artefact().margin << " to every body (collision margin, padding)";
+            << run.swept.certificate().margin << " to every body (collision margin, padding)";
     log(false, warning.str());
   }
 }

@@ -2,6 +2,7 @@
 
 #include "picture.h"
 
+#include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/kinematics.h>
 
@@ -55,7 +56,7 @@ std::vector<char> picture_of_sweep(const robot::Robot& robot,
     }
   }
   for (std::size_t i = 0; i < result.artefact().bodies.size(); ++i)
-    swept.add(result.artefact().bodies[i].hull,
+    swept.add(geom::surface_of(result.artefact().bodies[i]),
               kLinks[bodies[result.certificate().sources[i]].link % kLinks.size()]);
   geom::Box3 box = geom::bounding_box(swept.mesh);
   box.extend(geom::bounding_box(ends.mesh));

@@ -61,7 +61,7 @@ std::string page_of_sweep(const SweepWords& words, const robot::RobotFile& robot
         [&link = found->second](const geom::Vec3& p) { return link.distance(p); });
   }
   geom::Box3 box;
-  for (const geom::ConvexBody& body : set.bodies) box.extend(geom::bounding_box(body.hull));
+  for (const geom::ConvexBody& body : set.bodies) box.extend(geom::bounding_box(body));
   result.shapes = page::measured(set.bodies, box.diagonal(), distances);
   preview.facts = {{"robot", file_name(words.robot)},
                    {"path", file_name(words.path) + ", " + std::to_string(path.size()) +
@@ -69,10 +69,6 @@ std::string page_of_sweep(const SweepWords& words, const robot::RobotFile& robot
                    {"options", set.provenance.parameters},
                    {"result", words.summary},
                    {"verdict", verdict_of(c.motion)}};
-  if (set.margin > 0)
-    preview.facts.emplace_back("margin",
-                               "the bodies are drawn without their margin, which is to be "
-                               "added to every one of them");
   preview.layers = {std::move(input), std::move(result)};
   preview.motion.emplace(page::Motion{robot.robot, path});
   return page::preview_page(preview);

@@ -14,7 +14,7 @@ namespace kaboum::tools {
 
 void write_swept_urdf(const std::filesystem::path& path, const geom::ConvexSet& set,
                       const std::string& prefix) {
-  ensure(set.margin == 0, "a margin cannot be stated in URDF");
+  ensure(geom::margin_of(set) == 0.0, "a margin cannot be stated in URDF");
   std::filesystem::path folder = path;
   folder.replace_extension();
   const std::string name = folder.filename().string(), stem = io::plain_file_name(name);

@@ -174,10 +174,10 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
   if (!search.found().empty())
     return fail("the package is " + listed(search.found()) + ", without a file " + rest);
   return fail("no folder called " + name + ", or with a package.xml of that <name>, is in or is " +
-              said("one of --package-path", given) + ", " + said("$ROS_PACKAGE_PATH", ros) + ", " +
+              said("one of «package-path»", given) + ", " + said("$ROS_PACKAGE_PATH", ros) + ", " +
               said("share/ of $AMENT_PREFIX_PATH", ament) + ", " +
               said("the robot's folder and those above", above) +
-              "; name it, or the folder that holds it, by --package-path");
+              "; name it, or the folder that holds it, by «package-path»");
 }
 
 fs::path resolve_mesh(const std::string& reference, const fs::path& robot,

@@ -127,7 +127,7 @@ Path read_path(const std::string& file, const Robot& robot, const PathOptions& o
             << robot.variables[found->variable].name << "' at "
             << result[found->waypoint][found->variable] << " radians is turned more than twice; "
             << (options.degrees ? "are the values degrees?"
-                                : "if these are degrees, give --degrees");
+                                : "if these are degrees, give «degrees»");
     notes.push_back(warning.str());
   }
   return result;

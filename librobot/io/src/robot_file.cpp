@@ -105,7 +105,7 @@ void require_links(const RobotFile& robot, const std::vector<std::string>& links
     std::string hint = kaboum::did_you_mean(name, known);
     if (hint.empty()) hint = "; it has " + names_of(known);
     std::string message = robot.path.string();
-    message.append(": --links: there is no link '").append(name).append("'").append(hint);
+    message.append(": «links»: there is no link '").append(name).append("'").append(hint);
     throw Error(ErrorCode::InvalidArgument, message);
   }
 }

@@ -116,7 +116,7 @@ class Sampler {
     }
     result_.of_face.push_back(static_cast<std::uint32_t>(result_.faces));
     if (result_.of_face.size() > kMostPoints)
-      refuse("more points are to be looked at than fit; ask for fewer (--exact-points)");
+      refuse("more points are to be looked at than fit; ask for fewer («exact-points»)");
   }
 
   /// @param ends  of intervals between knots

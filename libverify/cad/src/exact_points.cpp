@@ -89,14 +89,14 @@ std::string message_of(std::span<const char> bytes, io::Format format, const std
                 name + ": the module that evaluates exact faces (" + kPointsModule +
                     ") is not there or cannot be loaded; install it with the OpenCASCADE "
                     "libraries that it was built with, or judge the triangles alone "
-                    "(--exact-points 0)");
+                    "(«exact-points=0»)");
   const FileInMemory file(bytes);
   PointList list;
   list_points(file.path().c_str(), format == io::Format::Iges, density, list);
   if (!list.error.empty())
     throw Error(ErrorCode::InvalidInput,
                 name + ": its exact faces, read a second time: " + list.error +
-                    "; export it again, or judge the triangles alone (--exact-points 0)");
+                    "; export it again, or judge the triangles alone («exact-points=0»)");
   const std::array<std::uint64_t, 3> counts{list.of_face.size(), list.faces, list.edges};
   std::string out;
   put(out, counts.data(), counts.size());

@@ -86,7 +86,7 @@ class Judgement {
     out_.answer = held.answer;
     out_.text = held.reason;
     if (held.prepare_helps && q_.solid == Solid::AsFile)
-      out_.text += "; --prepare judges it as bcd-decompose takes it";
+      out_.text += "; judged as prepared it may be decided";
     if (!held.inclusion) return;
     const SubjectClaims claims = decide_rest(
         subject_, subject_.mesh, q_.claims, *held.inclusion,

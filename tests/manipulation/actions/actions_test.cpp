@@ -300,9 +300,9 @@ judge::Cell enlarged(const TwoArms& arms, double by) {
     out.add_robot(robot.name, robot.kinematics, robot.base);
   for (std::size_t r = 0; r < arms.world.robots.size(); ++r)
     for (const world::LinkShape& shape : arms.world.robots[r].shapes)
-      out.add_link(r, shape.link, larger(shape.outer.body(0).hull));
+      out.add_link(r, shape.link, larger(shape.outer.body(0).core));
   for (const world::Object& o : arms.world.objects)
-    out.add_object(o.name, larger(o.outer.body(0).hull));
+    out.add_object(o.name, larger(o.outer.body(0).core));
   return out;
 }
 

@@ -18,21 +18,21 @@ using geom::Transform;
 using geom::Vec3;
 using plan::Answer;
 
-struct Asked {
+struct ActionCall {
   std::string function;
   std::vector<std::string> arguments;
   std::map<std::string, std::string> words;
 };
 
 /// Calls with a wall somewhere, mostly where the left arm has to go, and the right arm anywhere.
-std::vector<Asked> random_calls(const TwoArms& arms, std::size_t count, bool wall_is_held) {
+std::vector<ActionCall> random_calls(const TwoArms& arms, std::size_t count, bool wall_is_held) {
   std::mt19937_64 random(11);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
-  std::vector<Asked> out;
+  std::vector<ActionCall> out;
   for (std::size_t i = 0; i < count; ++i) {
-    Asked call;
+    ActionCall call;
     call.words = {{"conf(left)", "home"}, {"conf(right)", "home"}, {"pose(socket)", "start"}};
     if (i % 3 != 0) {
       std::vector<double> q = arms.world.robots[TwoArms::kRight].home;
@@ -68,7 +68,7 @@ void expect_same(const Answer& a, const Answer& b) {
 }
 
 /// Carries the motions out among the exact meshes. @return samples in contact.
-int contacts_of(const TwoArms& arms, const Asked& call, const Answer& answer) {
+int contacts_of(const TwoArms& arms, const ActionCall& call, const Answer& answer) {
   judge::CellState state = arms.state();
   for (std::size_t r = 0; r < 2; ++r)
     state.q[r] = manipulation::configuration_of(
@@ -106,11 +106,12 @@ class Involved : public ::testing::TestWithParam<bool> {};
 
 TEST_P(Involved, WhatIsInTheWayIsKeptClearOfAndNothingAskedBeforeMatters) {
   const TwoArms arms;
-  const std::vector<Asked> calls = random_calls(arms, 36, GetParam());
+  const std::vector<ActionCall> calls = random_calls(arms, 36, GetParam());
   const auto there = manipulation::bind_externals(arms.world, {});
   const auto back = manipulation::bind_externals(arms.world, {});
   std::vector<Answer> answers;
-  for (const Asked& c : calls) answers.push_back(ask(there, c.function, c.arguments, c.words, 2));
+  for (const ActionCall& c : calls)
+    answers.push_back(ask(there, c.function, c.arguments, c.words, 2));
   for (std::size_t i = calls.size(); i-- > 0;)
     expect_same(answers[i], ask(back, calls[i].function, calls[i].arguments, calls[i].words, 2));
   int found = 0, failed = 0;

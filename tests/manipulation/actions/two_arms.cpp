@@ -49,7 +49,7 @@ std::string urdf() {
 }
 
 world::BoundingSet set_of(const geom::Mesh& mesh) {
-  return {{{mesh, 0}}, collide::Direction::Outer, TwoArms::kEpsilon};
+  return {{{"", mesh}}, collide::Direction::Outer, TwoArms::kEpsilon};
 }
 
 Transform turned(const Vec3& axis, double angle, const Vec3& at) {

@@ -28,11 +28,11 @@ inline std::string describe_json_damage(std::string_view text, std::size_t byte)
   return "not JSON at " + place + (near.empty() ? "" : ", near '" + near + "'");
 }
 
-/// How deep the lists and objects of JSON from elsewhere may be in each other: values are copied,
-/// compared and written by recursion.
+/// Largest depth that the lists and objects of JSON from elsewhere may be in each other: values are
+/// copied, compared and written by recursion.
 constexpr std::size_t kDeepestJson = 64;
 
-/// Whether they are deeper, as far as the text is JSON.
+/// True if they are deeper, as far as the text is JSON.
 inline bool is_nested_too_deep(std::string_view text) {
   std::size_t depth = 0;
   bool quoted = false;

@@ -6,7 +6,7 @@
 
 namespace kaboum {
 
-/// What is to be said of several files, each sentence once.
+/// Notes on several files, each sentence once.
 class Notes {
  public:
   void add(const std::string& file, const std::string& text);

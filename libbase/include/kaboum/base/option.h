@@ -63,6 +63,17 @@ std::string range_words(const OptionDescription& option);
 std::string meaning(const std::string& text,
                     const std::function<std::string(const std::string&)>& spelled);
 
+/// A remedy in an error or a note of a library, with options as a front end names them. Libraries
+/// write an option as «name» or «name=value».
+/// @param spelled  of a name and a value, which may be empty: "--prepare wrap", "prepare='wrap'"
+std::string remedy(
+    const std::string& text,
+    const std::function<std::string(const std::string& name, const std::string& value)>& spelled);
+/// As command lines do: "--prepare wrap", "--drop-sheets".
+std::string remedy_of_program(const std::string& text);
+/// As Python does: "prepare='wrap'", "drop_sheets", "scale=1000".
+std::string remedy_of_python(const std::string& text);
+
 /// Objection to a text as a value of the option ("must be ..."); empty where it is one.
 std::string flaw_of(const OptionDescription& option, const std::string& value);
 

@@ -10,7 +10,7 @@ namespace kaboum {
 // throws what one of its calls has thrown, the first to be caught; calls that have not begun by
 // then are left out. docs/architecture.md, "Parallel loops", says why TBB's own are not called.
 
-/// How the indices of a loop are handed out.
+/// Order in which the indices of a loop are handed out.
 struct LoopParts {
   std::size_t grain = 1;  ///< no part of several threads' is smaller, but for the last ones
   bool alone = false;     ///< every index by itself: for calls that take long, or unequally long

@@ -20,7 +20,7 @@ class Work {
   void add(std::uint64_t steps) { done_.fetch_add(steps, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
   [[nodiscard]] double most() const { return most_; }
-  /// Whether this share of what is allowed has been done.
+  /// True if this share of what is allowed has been done.
   [[nodiscard]] bool spent(double share) const {
     return static_cast<double>(done()) >= share * most_;
   }

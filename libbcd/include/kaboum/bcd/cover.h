@@ -11,17 +11,10 @@
 
 namespace kaboum::bcd {
 
-/// How much work the search spends.
+/// Effort of the search.
 enum class Effort { Fast, Normal, Best };
 
-/// How bodies are found; the claims are the same. The last two are there to be compared with.
-enum class Method {
-  Planes,    ///< cuts that follow the shape, merging, refinement
-  Clusters,  ///< clusters of triangles, as HACD forms them, take the pieces of such cuts
-  Voxels,    ///< cuts across the axes, as V-HACD chooses them, and merging
-};
-
-/// Whether the input is simplified to a bounding mesh first ([gaschler2016] §4.4.2): within a tenth
+/// Choice of simplifying the input to a bounding mesh first ([gaschler2016] §4.4.2): within a tenth
 /// of epsilon, which the bodies' distance to the input includes.
 enum class PreStep {
   Auto,  ///< above 20,000 triangles, if a quarter of the vertices suffices
@@ -29,13 +22,13 @@ enum class PreStep {
   Off
 };
 
-/// How a decomposition stands.
+/// Progress of a decomposition.
 struct Progress {
   std::string stage;
   double fraction;  ///< estimate of the share of the work done, 0 to 1
 };
 
-/// What either search is asked for.
+/// Request for either search.
 struct SetOptions {
   /// Outwards: largest distance allowed from a point of the bodies to the solid and its triangles.
   /// Inwards: largest depth allowed of what is in no body. [length]
@@ -65,7 +58,6 @@ struct CoverOptions : SetOptions {
   /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
   /// the smallest distance with which both hold. Not with min_thickness.
   std::optional<std::size_t> max_total_vertices;
-  Method method = Method::Planes;
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. [length]
   double min_thickness = 0;
@@ -98,7 +90,7 @@ struct CoverStatistics {
 /// 20 s, and 1 s per thousand triangles beyond ten thousand. [s]
 double default_work(std::size_t triangles);
 
-/// What find_cover has found. No claim that it covers: certify::certify_set decides that.
+/// Result of find_cover. No claim that it covers: certify::certify_set decides that.
 struct CoverCandidate {
   std::vector<geom::ConvexBody> bodies;
   Stop stop = Stop::Done;

@@ -12,7 +12,7 @@ struct InnerOptions : SetOptions {
   std::vector<std::uint32_t> doubtful;
 };
 
-/// What find_inner has found. No claim that it lies inside: certify::certify_set decides that.
+/// Result of find_inner. No claim that it lies inside: certify::certify_set decides that.
 struct InnerCandidate {
   std::vector<geom::ConvexBody> bodies;
   Stop stop = Stop::Done;

@@ -11,7 +11,7 @@
 
 namespace kaboum::bmesh {
 
-/// What an edge contraction is said to cost. [gaschler2016] §4.3.2, §4.3.3.
+/// Cost of an edge contraction. [gaschler2016] §4.3.2, §4.3.3.
 enum class Cost {
   Distance,        ///< the measured distance between result and original, both ways: the maximum
   Mean,            ///< squared distances to the planes around, integrated over their area
@@ -21,7 +21,7 @@ enum class Cost {
   Triangles,       ///< sum of squared distances to the triangles' centres
 };
 
-/// How much is done for tightness besides contracting. Anything but Fast needs a closed mesh (or
+/// Effort for tightness besides contracting. Anything but Fast needs a closed mesh (or
 /// Direction::Any) and excludes keep_convex: see `possible_effort`.
 enum class Effort {
   Fast,  ///< nothing

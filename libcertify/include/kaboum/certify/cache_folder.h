@@ -33,7 +33,7 @@ class CacheFolder {
   /// @throws Error{InvalidArgument} when the variable is no size
   static std::uintmax_t size_limit();
 
-  /// What was stored under the key's hash (SHA-256, hexadecimal), whose entry counts as used now.
+  /// Content stored under the key's hash (SHA-256, hexadecimal), whose entry counts as used now.
   /// @param kind  one line that names the format of what is stored
   /// @param flaw  becomes the reason why an entry that is there is not used, else empty.
   [[nodiscard]] std::optional<std::string> find(std::string_view kind, const std::string& key,
@@ -53,7 +53,7 @@ class CacheFolder {
   /// Why an entry is damaged; empty: it is whole. Which input and options it is of is looked at by
   /// who uses it.
   static std::string flaw_of(const Entry& entry);
-  /// What an entry says it is, "KABOUM-SET 3"; empty: nothing.
+  /// Kind that an entry states, "KABOUM-SET 3"; empty: nothing.
   static std::string kind_of(const Entry& entry);
 
  private:

@@ -24,7 +24,7 @@ class Certified {
   /// @throws Error{Internal}, as all below, of a value made by default or moved from.
   [[nodiscard]] const Artefact& artefact() const& { return value().artefact; }
   [[nodiscard]] const Certificate& certificate() const& { return value().certificate; }
-  /// What is to be written; empty where nothing is.
+  /// Bytes to be written; empty where nothing is.
   [[nodiscard]] const std::vector<char>& bytes() const& { return value().bytes; }
   // Parts of a temporary would be gone before they are used. Through `->` of a temporary optional
   // they still would: keep what certify_set and its like return.

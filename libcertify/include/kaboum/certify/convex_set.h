@@ -15,7 +15,7 @@
 
 namespace kaboum::certify {
 
-/// What a set of convex bodies is asked to be.
+/// Request for a set of convex bodies.
 struct SetRequest {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
@@ -29,7 +29,6 @@ struct SetRequest {
 
   // Of outer sets; inner ones refuse them.
   std::optional<std::size_t> max_total_vertices;
-  bcd::Method method = bcd::Method::Planes;
   bcd::PreStep pre_step = bcd::PreStep::Auto;
   std::optional<double> simplify;      ///< share of epsilon for leaving out vertices
   std::optional<double> improve_work;  ///< nominal seconds, see bcd::SetOptions
@@ -58,7 +57,7 @@ struct SetRequest {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// What was found out about a set. A claim only as part of a CertifiedSet.
+/// Certificate of a set. A claim only as part of a CertifiedSet.
 struct SetCertificate {
   SetRequest::Direction direction = SetRequest::Direction::Outer;
   bcd::Stop stop = bcd::Stop::Done;
@@ -74,7 +73,6 @@ struct SetCertificate {
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
-  bcd::Method method = bcd::Method::Planes;
   /// Why it is not known that an outer set holds all that the triangles, which are inside, are
   /// meant to bound; empty: it does.
   std::string undecided;
@@ -82,7 +80,7 @@ struct SetCertificate {
   /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
   std::optional<WrapCertificate> wrap;
 
-  /// Whether epsilon, if asked for, is reached, within all limits.
+  /// True if epsilon, if asked for, is reached, within all limits.
   [[nodiscard]] bool reached() const { return stop == bcd::Stop::Done; }
 };
 
@@ -93,7 +91,7 @@ using CertifiedSet = Certified<geom::ConvexSet, SetCertificate>;
 /// As in reports of bcd-decompose, with the claims and what they are about: a JSON object.
 std::string to_json(const CertifiedSet& set);
 
-/// How long work is watched. Both may be empty; called from the calling thread.
+/// Callbacks of long work. Both may be empty; called from the calling thread.
 struct Hooks {
   std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
   std::function<void(const std::string& text)> note;       ///< things a user should know

@@ -11,7 +11,7 @@
 
 namespace kaboum::certify {
 
-/// What an enclosing mesh of a file is asked to be: how the file's triangles get a solid, and what
+/// Request for an enclosing mesh of a file: how the file's triangles get a solid, and what
 /// is made of that.
 struct EnclosureRequest {
   /// Outer, and one result; its distance is measured whatever `measure` says.
@@ -33,7 +33,7 @@ struct EnclosureRequest {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// Whether every triangle of a file lies in the solid of a mesh: decided by libverify from the
+/// Verdict whether a file's triangles lie in the solid of a mesh: decided by libverify from the
 /// bytes of both. Triangles of sheets dropped on request are not asked for. Undecided as well where
 /// all are inside, but which solid they bound is not known and not all that it may be is.
 struct TrianglesInside {
@@ -45,7 +45,7 @@ struct TrianglesInside {
   friend bool operator==(const TrianglesInside&, const TrianglesInside&) = default;
 };
 
-/// What was found out about an enclosing mesh. A claim only as part of a CertifiedEnclosure.
+/// Certificate of an enclosing mesh. A claim only as part of a CertifiedEnclosure.
 struct EnclosureCertificate {
   std::size_t vertices_in = 0, vertices = 0, triangles = 0;
   bool in_spare_format = false;  ///< the bytes: EnclosureRequest::spare_format

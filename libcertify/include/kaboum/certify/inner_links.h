@@ -9,7 +9,7 @@
 
 namespace kaboum::certify {
 
-/// What was found out about the inner set of a link.
+/// Certificate of the inner set of a link.
 struct InnerLinkCertificate {
   std::uint32_t link = 0;
   std::size_t shapes = 0;  ///< that have bodies

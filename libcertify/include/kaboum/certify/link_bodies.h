@@ -12,10 +12,10 @@
 
 namespace kaboum::certify {
 
-/// What the sets of a robot's links are asked to be.
+/// Request for the sets of a robot's links.
 struct RobotRequest {
-  /// Of each mesh; lengths in the robot's unit. Direction: outer. Its `improve_work` is that of all
-  /// meshes together: by default kRobotWork with Effort::Normal.
+  /// Request for each mesh; lengths in the robot's unit. Direction: outer. Its `improve_work` is
+  /// that of all meshes together: by default kRobotWork with Effort::Normal.
   SetRequest set;
   robot::ShapeChoice shapes;
   std::optional<io::Format> format;  ///< of the meshes; by default by extension
@@ -46,7 +46,7 @@ struct CertifiedLinkMesh {
   bool held = true;       ///< else `made` holds nothing
 };
 
-/// How long work is watched; all may be empty. Called from the calling thread.
+/// Callbacks of long work; all may be empty. Called from the calling thread.
 struct RobotHooks {
   std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
   std::function<void(const std::string& file, const std::string& text)> note;
@@ -56,7 +56,7 @@ struct RobotHooks {
 /// Hooks that collect the notes on meshes, and show progress as it comes.
 RobotHooks hooks_of(Notes& notes, std::function<void(const std::string&)> progress);
 
-/// What bodies of a robot's links stand for.
+/// Meaning of bodies of a robot's links.
 struct BodiesCertificate {
   robot::ShapeChoice choice;  ///< the shapes that they stand for
   std::vector<CertifiedLinkMesh> meshes;

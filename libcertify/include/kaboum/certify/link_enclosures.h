@@ -9,7 +9,7 @@
 
 namespace kaboum::certify {
 
-/// What the enclosing meshes of a robot's links are asked to be.
+/// Request for the enclosing meshes of a robot's links.
 struct LinkEnclosuresRequest {
   EnclosureRequest mesh;  ///< of each; lengths in the robot's unit
   robot::ShapeChoice shapes;

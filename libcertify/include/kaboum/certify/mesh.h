@@ -16,7 +16,7 @@
 
 namespace kaboum::certify {
 
-/// What a bounding mesh is asked to be, and how it is written. At least one of vertices, ratio and
+/// Request for a bounding mesh and its file. At least one of vertices, ratio and
 /// epsilon is given; the first one reached stops.
 struct MeshRequest {
   /// Numbers of result vertices.
@@ -48,13 +48,13 @@ struct MeshRequest {
   bool decide = true;
   bool record_steps = false;  ///< for a log or a progressive file
 
-  /// Whether double may stand in for float32.
+  /// True if double may stand in for float32.
   [[nodiscard]] bool may_be_double() const {
     return numbers == Numbers::Auto && io::holds_double(format);
   }
 };
 
-/// What a request comes to for one mesh.
+/// Limits that a request sets for one mesh.
 struct MeshPlan {
   double diagonal = 0;                ///< of the bounding box [length]
   std::optional<double> epsilon;      ///< [length]
@@ -83,7 +83,7 @@ struct MeshSeries {
   std::vector<bmesh::Step> steps;           ///< with record_steps
 };
 
-/// How long work is watched. All may be empty; called from the calling thread.
+/// Callbacks of long work. All may be empty; called from the calling thread.
 struct MeshHooks {
   std::function<void(const std::string& stage)> progress;  ///< often; may throw to cancel
   std::function<void()> found;  ///< candidates are found, certifying begins
@@ -97,7 +97,7 @@ struct MeshHooks {
 geom::Prepared prepare_mesh(const geom::Mesh& mesh,
                             const geom::PrepareOptions& options = {.holes = geom::Holes::Fill});
 
-/// What certify_meshes would do.
+/// Plan of what certify_meshes would do.
 /// @throws Error{InvalidInput} when a percentage is no length; Error{InvalidArgument} on
 ///   contradictory requests.
 MeshPlan plan_mesh(const geom::Prepared& original, const MeshRequest& request);
@@ -137,12 +137,12 @@ struct BoundedMesh {
   /// they do.
   std::string undecided;
 
-  /// Whether all triangles of the input are in all results (outer), or all triangles of these in
-  /// the input's solid (inner); Undefined where nothing is claimed.
+  /// Decides whether all triangles of the input are in all results (outer), or all triangles of
+  /// these in the input's solid (inner); Undefined where nothing is claimed.
   [[nodiscard]] verify::Answer surface_answer() const;
 };
 
-/// What a user should know of how the input got its solid, in sentences.
+/// Notes for the user on how the input got its solid, in sentences.
 std::vector<std::string> notes_of(const BoundedMesh& made);
 
 /// Gives the mesh a solid, and bounds that by certify_meshes. With Wrap::WhereNeeded every triangle

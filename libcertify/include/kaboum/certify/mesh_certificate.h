@@ -12,7 +12,7 @@
 
 namespace kaboum::certify {
 
-/// What an answer rests on.
+/// Evidence behind an answer.
 enum class Basis {
   Bytes,     ///< decided by libverify from the bytes
   Meshes,    ///< decided by libverify from the meshes
@@ -52,7 +52,7 @@ struct DecidedSurface {
   bool at_filling = false;     ///< its triangle fills a hole: not one of the input
 };
 
-/// What libverify decided from the bytes.
+/// Verdict of libverify on the bytes.
 struct DecidedMesh {
   verify::Inclusion inclusion;
   std::optional<verify::Answer> nested;  ///< in, or round, the finer result before
@@ -67,7 +67,7 @@ struct Outliers {
   double away = 0;        ///< largest distance of some vertices of the original from it [length]
 };
 
-/// What was found out about a bounding mesh. Claims are made of a CertifiedMesh only.
+/// Certificate of a bounding mesh. Claims are made of a CertifiedMesh only.
 struct MeshCertificate {
   bmesh::Direction direction = bmesh::Direction::Outer;
   bool keep_convex = false;
@@ -91,10 +91,10 @@ struct MeshCertificate {
   /// Upper bound of the Hausdorff distance. [length] @pre it was measured
   [[nodiscard]] double hausdorff_upper() const;
 
-  /// Whether every triangle is where it is claimed to be; Undefined where nothing is claimed.
+  /// Answer whether triangles are where they are claimed to be; Undefined: nothing is claimed.
   [[nodiscard]] verify::Answer surface_answer() const;
 
-  /// Whether there are as few vertices as requested, or epsilon allows no fewer.
+  /// True if there are as few vertices as requested, or epsilon allows no fewer.
   [[nodiscard]] bool reached() const;
 };
 

@@ -29,7 +29,7 @@ const std::vector<Option<MeshOptions>>& mesh_options();
 /// @param stated  names of those that a user stated
 std::string contradiction(const MeshOptions& options, const std::set<std::string>& stated);
 
-/// How an input is given its solid for a bounding mesh.
+/// Options of giving an input its solid for a bounding mesh.
 /// @param bent_quads  of the input, as io::ReadResult has them; steps that are recorded start from
 ///   the file's own triangles
 /// @param deviation   of its exact faces [length]; 0: the triangles are meant

@@ -12,7 +12,7 @@
 
 namespace kaboum::certify {
 
-/// How the triangles of a file are given a solid, as a user states it.
+/// Options of giving a file's triangles a solid, as a user states them.
 struct PreparationOptions {
   enum class Mode {
     Auto,    ///< prepared; wrapped where that is needed
@@ -26,14 +26,14 @@ struct PreparationOptions {
   bool drop_sheets = false;
   bool keep_orientation = false;
 
-  /// How triangles are prepared where they are not wrapped.
+  /// Preparation of triangles where they are not wrapped.
   [[nodiscard]] geom::PrepareOptions preparing() const;
-  /// Whether an outer result is to hold the exact faces of a CAD file, not only the triangles that
+  /// True if an outer result is to hold the exact faces of a CAD file, not only the triangles that
   /// stand for them.
   [[nodiscard]] bool holds_exact_faces() const { return mode == Mode::Auto || mode == Mode::Wrap; }
 };
 
-/// What a mesh is prepared for.
+/// Purpose of a preparation.
 enum class PreparedFor {
   Bodies,     ///< a set of convex bodies: open meshes are refused
   Bounding,   ///< a bounding mesh: it may be open, like its input

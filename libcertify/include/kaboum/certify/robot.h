@@ -7,7 +7,7 @@
 
 namespace kaboum::certify {
 
-/// What was found out about the set of a link.
+/// Certificate of the set of a link.
 struct LinkCertificate {
   std::uint32_t link = 0;
   std::size_t shapes = 0;

@@ -7,7 +7,7 @@
 
 namespace kaboum::certify {
 
-/// What all links of a robot together may have.
+/// Limits on all links of a robot together.
 struct RobotBudget {
   std::optional<std::size_t> bodies, vertices;
 };

@@ -19,7 +19,7 @@ class SetCache {
 
   explicit SetCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Of everything that a result depends on.
+  /// Everything that a result depends on.
   struct Key {
     std::string hash;                      ///< SHA-256
     geom::Provenance origin;               ///< what the container says of itself; its claims apart
@@ -30,8 +30,8 @@ class SetCache {
   /// @param mesh_hash  hash_of the mesh
   static Key key_of(const std::string& mesh_hash, const std::string& sha256,
                     const SetRequest& request);
-  /// Of the triangles as read. Their bytes say more than a file's, which may refer to others, and
-  /// than a reader's version.
+  /// Hash of the triangles as read. Their bytes say more than a file's, which may refer to others,
+  /// and than a reader's version.
   static std::string hash_of(const geom::Mesh& mesh);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -46,7 +46,7 @@ class SetCache {
   std::filesystem::path folder_;
 };
 
-/// What certify_set made, or an earlier run of it.
+/// Set made by certify_set, now or in an earlier run.
 struct FoundSet {
   CertifiedSet set;
   bool cached = false;

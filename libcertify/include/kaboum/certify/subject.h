@@ -7,7 +7,7 @@
 
 namespace kaboum::certify {
 
-/// What claims about a mesh are about: how the mesh that was certified differs from the input.
+/// Subject of claims about a mesh: how the mesh that was certified differs from the input.
 struct Subject {
   std::size_t reversed_triangles = 0;  ///< and the solid is the one so oriented
   std::size_t dropped_copies = 0;      ///< triangles of copies: what is left is the same surface

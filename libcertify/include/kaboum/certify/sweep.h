@@ -10,7 +10,7 @@
 
 namespace kaboum::certify {
 
-/// What a swept set is asked to be.
+/// Request for a swept set.
 struct SweepRequest {
   /// epsilon: of the margin [length]. Its progress is told of the decision, too.
   sweep::SweepOptions search;
@@ -31,7 +31,7 @@ enum class MotionClaim {
   Decided,  ///< by libverify as well, on the bytes in the container
 };
 
-/// What was found out about a swept set. A claim only as part of a CertifiedSweep.
+/// Certificate of a swept set. A claim only as part of a CertifiedSweep.
 struct SweepCertificate {
   MotionClaim motion = MotionClaim::None;
   std::string undecided;  ///< why it is not decided where that was asked for; one clause
@@ -39,7 +39,7 @@ struct SweepCertificate {
   double margin = 0;     ///< of the set: it holds the robot with this margin only [length]
   double deviation = 0;  ///< see sweep::SweepResult, as all below
   double left_out = 0, rounding = 0, excess = 0;
-  /// Of the robot's bodies from its shapes; `excess` is from what these bodies sweep. [length]
+  /// Distance of bodies from shapes; `excess` is from what these bodies sweep. [length]
   double bodies_distance = 0;
   std::vector<std::size_t> of_link;
   std::vector<std::size_t> sources;  ///< the robot's body that each body of the set sweeps

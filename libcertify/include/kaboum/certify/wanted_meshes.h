@@ -10,13 +10,13 @@
 
 namespace kaboum::certify {
 
-/// What is asked for of some links' meshes instead of what is asked for of all, by the links'
+/// Epsilons of some links' meshes instead of what is asked for of all, by the links'
 /// names: a length in the robot's unit, or a percentage of each mesh's diagonal.
 using LinkEpsilons = std::map<std::string, Length>;
 
 /// The meshes of the shapes that are meant, each once for every scale and epsilon.
 struct WantedMeshes : robot::LinkMeshes {
-  /// Of each mesh, where a link has one of its own, in the robot's unit.
+  /// Epsilon of each mesh, where a link has one of its own, in the robot's unit.
   std::vector<std::optional<Length>> epsilons;
 };
 

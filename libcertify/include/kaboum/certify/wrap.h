@@ -17,8 +17,8 @@ struct WrapRequest {
   /// triangles, or is in doubt about what they enclose (geom::doubt_about). Then holes that it
   /// filled are wrapped as well. certify_wrap does not look at it.
   bool where_needed = false;
-  /// How far the wrap may be from the input where it can get near it [a quarter of `farthest`, else
-  /// 0.1 %]; percentages are of the diagonal.
+  /// Largest distance of the wrap from the input where it can get near it [a quarter of `farthest`,
+  /// else 0.1 %]; percentages are of the diagonal.
   std::optional<Length> offset;
   /// Hollows behind gaps narrower than this are filled [found, so that `farthest` is kept; else
   /// 1 %].
@@ -31,7 +31,7 @@ struct WrapRequest {
   /// Quads that are not plane (io::ReadResult::bent_quads): both ways of splitting them are to be
   /// inside.
   std::vector<std::uint32_t> quads = {};
-  /// Of the triangles given, those of the input: the rest fills its holes or is another way of
+  /// Number of given triangles that are the input's: the rest fills its holes or is another way of
   /// splitting its quads [all].
   std::optional<std::size_t> input_triangles;
   bool float32 = true;         ///< numbers of the wrap; else doubles
@@ -39,8 +39,8 @@ struct WrapRequest {
   std::function<void(const std::string& stage)> progress;
 };
 
-/// How a file's triangles are wrapped where they stand for exact faces: clear of these. Wraps that
-/// are asked for get the clearance, and where none is, one is made if `hold` says so.
+/// Has a file's triangles wrapped clear of the exact faces that they stand for. Wraps
+/// that are asked for get the clearance, and where none is, one is made if `hold` says so.
 void hold_exact_faces(const io::ReadResult& read, bool hold, std::optional<WrapRequest>& wrap);
 
 /// @throws Error{InvalidInput}: an epsilon that leaves nothing beside the deviation of exact faces.
@@ -57,7 +57,7 @@ struct WrapCertificate {
   std::size_t input_triangles = 0;
 };
 
-/// What a wrap is, in one sentence.
+/// Description of a wrap, in one sentence.
 std::string in_words(const WrapCertificate& wrap);
 
 /// As in reports: a JSON object.

@@ -51,7 +51,7 @@ class BodyTree {
   std::vector<Node> nodes_;  ///< the root last
 };
 
-/// Whether narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
+/// True if narrow(i, j) says so for body i of `a` and body j of `b`, which `pose` takes into the
 /// frame of `a`; asked of pairs whose boxes meet, until it does.
 template <typename Narrow>
 bool any_pair(const BodyTree& a, const BodyTree& b, const geom::Transform& pose,

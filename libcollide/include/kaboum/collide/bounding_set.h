@@ -14,20 +14,15 @@ enum class Direction {
   Inner,  ///< lies in its solid
 };
 
-/// A union of convex polytopes, each enlarged by a ball, that bounds a solid from one side; ready
-/// for queries.
+/// A union of convex bodies that bounds a solid from one side; ready for queries.
 class BoundingSet {
  public:
-  struct Body {
-    geom::Mesh hull;    ///< facets with outward normals, exactly convex
-    double margin = 0;  ///< ≥ 0 [length]
-  };
-
-  /// @param epsilon  an outer set's points are within it of the solid, margins included; what an
+  /// @param bodies   exactly convex (geom::is_convex)
+  /// @param epsilon  an outer set's points are within it of the solid, radii included; what an
   ///   inner one leaves out of the solid is not deeper. [length]
-  /// @throws Error{InvalidArgument} for a margin or epsilon that is negative or not finite;
+  /// @throws Error{InvalidArgument} for a radius or epsilon that is negative or not finite;
   ///   Error{InvalidInput} as Polytope.
-  BoundingSet(std::vector<Body> bodies, Direction direction, double epsilon);
+  BoundingSet(std::vector<geom::ConvexBody> bodies, Direction direction, double epsilon);
 
   /// A set as its container states it.
   /// @throws Error{InvalidInput} when it states no direction or no epsilon, or a body is not
@@ -35,16 +30,17 @@ class BoundingSet {
   explicit BoundingSet(const geom::ConvexSet& set);
 
   [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-  [[nodiscard]] const Body& body(std::size_t i) const { return bodies_[i]; }
+  [[nodiscard]] const geom::ConvexBody& body(std::size_t i) const { return bodies_[i]; }
+  /// The core of a body.
   [[nodiscard]] const Polytope& polytope(std::size_t i) const { return polytopes_[i]; }
-  /// A ball that holds all bodies with their margins, in the set's frame; rounded up. Radius 0
+  /// A ball that holds all bodies, in the set's frame; rounded up. Radius 0
   /// where there are none. [length]
   struct Ball {
     geom::Vec3 center = geom::Vec3::Zero();
     double radius = 0;
   };
   [[nodiscard]] const Ball& ball() const { return ball_; }
-  /// Box along the axes of the set's frame that holds all bodies with their margins.
+  /// Box along the axes of the set's frame that holds all bodies.
   [[nodiscard]] const geom::Box3& box() const { return box_; }
   [[nodiscard]] Direction direction() const { return direction_; }
   [[nodiscard]] double epsilon() const { return epsilon_; }
@@ -53,10 +49,10 @@ class BoundingSet {
   friend class PosedSet;
   friend class OrientedBoxes;
 
-  std::vector<Body> bodies_;
+  std::vector<geom::ConvexBody> bodies_;
   std::vector<Polytope> polytopes_;
-  /// Of the bodies' boxes, axis by axis: middle, half the size, and the largest |coordinate|; then
-  /// the margins. Each for as many bodies as stride() says, the last one repeated.
+  /// Of the cores' boxes, axis by axis: middle, half the size, and the largest |coordinate|; then
+  /// the radii. Each for as many bodies as stride() says, the last one repeated.
   std::vector<double> rows_;
   [[nodiscard]] std::size_t stride() const { return (size() + 1) / 2 * 2; }
   [[nodiscard]] const double* row(std::size_t i) const { return rows_.data() + i * stride(); }
@@ -85,18 +81,18 @@ class PosedSet {
   [[nodiscard]] const BoundingSet& set() const { return *set_; }
   [[nodiscard]] const geom::Transform& pose() const { return pose_; }
   [[nodiscard]] double error() const { return error_; }
-  /// Radii of balls that hold the image of a body's margin, and that it holds: `linear` may stretch
-  /// it. [length]
-  [[nodiscard]] double margin_above(std::size_t i) const {
-    return set_->body(i).margin * (1 + defect_);
+  /// Radii of balls that hold the image of the ball of a body's radius, and that it holds: `linear`
+  /// may stretch it. [length]
+  [[nodiscard]] double radius_above(std::size_t i) const {
+    return set_->body(i).radius * (1 + defect_);
   }
-  [[nodiscard]] double margin_below(std::size_t i) const {
-    return set_->body(i).margin * (1 - defect_);
+  [[nodiscard]] double radius_below(std::size_t i) const {
+    return set_->body(i).radius * (1 - defect_);
   }
   [[nodiscard]] Posed body(std::size_t i) const {
     return {set_->polytope(i), pose_, Posed::Checked{}};
   }
-  /// Boxes along the axes, margins and error included.
+  /// Boxes along the axes, radii and error included.
   [[nodiscard]] const geom::Box3& box() const { return box_; }
   [[nodiscard]] geom::Box3 box(std::size_t i) const {
     return {{low(0)[i], low(1)[i], low(2)[i]}, {high(0)[i], high(1)[i], high(2)[i]}};
@@ -135,7 +131,7 @@ struct BodyPair {
 
 /// Definition 1 of [gaschler2016], cases 1 to 3: whether two solids collide, by their outer sets:
 /// of objects, robots' links, or swept volumes. The first pair of bodies whose exact images,
-/// enlarged by margins, errors and `slack`, meet; nullopt when there is none.
+/// enlarged by errors and `slack`, meet; nullopt when there is none.
 ///
 /// Never nullopt when the solids meet, or come within `slack` of each other. Always nullopt when
 /// they are farther apart than both epsilons, errors and the slack. The same for any memory.
@@ -150,11 +146,11 @@ bool certainly_collide(const PosedSet& a, const PosedSet& b);
 
 /// A certified bracket of the distance between two sets, and the bodies and points it is between.
 struct Clearance {
-  /// Of the sets with their margins: `lower` also of the solids of outer sets. lower = 0: they may
+  /// Of the sets: `lower` also of the solids of outer sets. lower = 0: they may
   /// meet. [length]
   double lower = 0, upper = 0;
   BodyPair bodies;
-  geom::Vec3 on_a = geom::Vec3::Zero(), on_b = geom::Vec3::Zero();  ///< margins not included
+  geom::Vec3 on_a = geom::Vec3::Zero(), on_b = geom::Vec3::Zero();  ///< of the cores
 };
 
 /// nullopt when a set has no bodies.

@@ -4,7 +4,7 @@
 
 namespace kaboum::collide {
 
-/// Whether an axis separates two oriented boxes (the 15 of the separating axis theorem: S.
+/// True if an axis separates two oriented boxes (the 15 of the separating axis theorem: S.
 /// Gottschalk, M. C. Lin, D. Manocha: OBBTree, 1996). False where rounding could decide.
 /// @param axes     of the second box, in the frame of the first one: columns, orthonormal.
 /// @param between  from the first centre to the second one, in the frame of the first. [length]

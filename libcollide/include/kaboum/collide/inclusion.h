@@ -8,7 +8,7 @@ namespace kaboum::collide {
 
 enum class Inclusion {
   Included,     ///< certainly: the outer set is in the union of the inner one's bodies
-  NotIncluded,  ///< the outer set, with its margin and errors, is not: the solid is, if at all, by
+  NotIncluded,  ///< the outer set, with its radii and errors, is not: the solid is, if at all, by
                 ///< less than tolerance_of_inclusion
   Undecided,    ///< out of work
 };
@@ -16,7 +16,7 @@ enum class Inclusion {
 /// Definition 1 of [gaschler2016], case 4: whether one solid contains another one, by an outer set
 /// of the one that is to be contained and an inner set of the other one. The union counts: a body
 /// may lie in several bodies of the inner set together. Exact: bodies are subtracted one after the
-/// other in rational arithmetic; margins of inner sets are not made use of.
+/// other in rational arithmetic; polytopes within them stand for inner bodies with a radius.
 ///
 /// @param most_pieces  that bodies are cut into before it is given up.
 /// @throws Error{InvalidArgument} unless the first set is an outer one and the second an inner one.

@@ -59,7 +59,7 @@ class Posed {
   ///   (matrix) or 1e60 (vector).
   Posed(const Polytope& body, const geom::Transform& pose);
   struct Checked {};
-  /// Of a pose that was looked at before.
+  /// For a pose that was looked at before.
   /// @pre no number of it is beyond what the other constructor takes; it is a rotation up to 1e-8.
   Posed(const Polytope& body, const geom::Transform& pose, Checked /*unused*/)
       : body_(&body),
@@ -83,7 +83,7 @@ class Posed {
     s.value += d.dot(pose_->translation);
     return s;
   }
-  /// Whether products of its points with directions may be looked at in floats.
+  /// True if products of its points with directions may be looked at in floats.
   [[nodiscard]] bool is_rough() const { return is_small_ && !body_->floats().empty(); }
   /// Box along the axes that holds the exact image, and `reach` round it.
   [[nodiscard]] geom::Box3 box(double reach = 0) const;

@@ -6,23 +6,23 @@
 
 namespace kaboum::collide {
 
-/// Whether two convex polytopes come within a distance of each other, and how far they are apart.
+/// Proximity of two convex polytopes: if they come within a distance, and how far they are apart.
 /// The answers are those of exact arithmetic on the doubles given: directions and points found in
 /// rounded arithmetic are taken only with their errors bounded, and dyadic numbers decide what is
 /// too close for that. docs/algorithms/bounded-predicates.md has the bounds and their proofs.
 
-/// What is remembered between queries of one pair; it changes how long an answer takes, never the
+/// Memory between queries of one pair; it changes how long an answer takes, never the
 /// answer. A zero vector: nothing.
 using Axis = geom::Vec3;
 
-/// How queries were decided.
+/// Counts of how queries were decided.
 struct Decided {
   std::uint64_t at_once = 0;  ///< by the axis remembered
   std::uint64_t rounded = 0;  ///< by another direction, or by a common point
   std::uint64_t exactly = 0;  ///< by exact arithmetic
 };
 
-/// Whether the smallest distance of the polytopes is at most `reach`; touching ones have the
+/// True if the smallest distance of the polytopes is at most `reach`; touching ones have the
 /// distance 0. With reach = a + b: whether they meet when one is enlarged by a ball of radius a,
 /// the other one by a ball of radius b.
 /// @param reach    ≥ 0 and finite. [length]

@@ -17,13 +17,17 @@ struct Boundary {
                      ///< distance of the other [length]
 };
 
-/// The boundary of the union of the bodies. Clips every facet against all other bodies; what lies
-/// inside them, or between two bodies that touch there, is left out. Margins are not looked at.
+/// @throws Error{InvalidInput} naming the first body that is not convex.
+void require_convex(const geom::ConvexSet& set);
+
+/// The boundary of the union of the bodies' cores. Clips every facet against all other bodies; what
+/// lies inside them, or between two bodies that touch there, is left out. Radii are not looked at.
 ///
 /// Cuts are made in exact rational arithmetic and their corners rounded once; `error` bounds what
 /// that moves (docs/algorithms/distances.md, "Convex sets").
 ///
 /// @throws Error{InvalidInput} naming a body that is not convex.
+/// @pre the cores are polytopes
 Boundary union_boundary(const geom::ConvexSet& set);
 
 /// The boundary of the solid closure{x : w(x) ≥ 1} of a closed chain, however it crosses itself:

@@ -64,9 +64,9 @@ class Comparison {
 
   /// The surface that stands for a shape, moved by −origin().
   [[nodiscard]] const geom::Mesh& surface(Side side) const { return sides_[side].surface; }
-  /// How far it may be from the one that is meant. [length]
+  /// Largest distance from the one that is meant. [length]
   [[nodiscard]] double surface_error(Side side) const { return sides_[side].error; }
-  /// Of the bounding box of both. [length]
+  /// Diagonal of the bounding box of both. [length]
   [[nodiscard]] double diagonal() const { return diagonal_; }
   [[nodiscard]] const geom::Vec3& origin() const { return origin_; }
 
@@ -84,7 +84,7 @@ class Comparison {
     [[nodiscard]] geom::Box3 box() const;
     template <class Visit>
     void each_points(Visit&& visit);
-    /// How far a point is, given how far it is from the surface; null: just so.
+    /// Distance of a point, given its distance from the surface; null: just so.
     [[nodiscard]] std::function<double(const geom::Vec3&, double)> distance() const;
   };
 

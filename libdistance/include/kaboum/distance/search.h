@@ -6,8 +6,8 @@
 
 namespace kaboum::distance {
 
-/// What finds nearest triangles. Both answer with brackets of the same meaning; they may name
-/// different triangles where several are equally near within rounding.
+/// Search structure for nearest triangles. Both answer with brackets of the same meaning; they may
+/// name different triangles where several are equally near within rounding.
 enum class Backend {
   Embree,  ///< Embree's float32 hierarchy culls, double decides
   Own      ///< geom::DistanceQuery

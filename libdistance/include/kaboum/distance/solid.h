@@ -10,7 +10,9 @@ namespace kaboum::distance {
 
 /// A solid: the closure of the points with a winding number of at least 1 of a closed chain, or
 /// the union of convex bodies; membership is decided exactly, the boundary is at hand. A set's
-/// margin is kept apart: `boundary` and `contains` are those of the bodies without it.
+/// margin (geom::margin_of) is kept apart: `boundary` and `contains` are those of the bodies
+/// without it. For sets that have none, since radii differ or cores are segments and points,
+/// polytopes within the bodies stand, and results are widened by what these lack.
 class Solid final : public geom::Interior {
  public:
   /// @throws Error{InvalidInput} if the triangles form no closed chain, or the solid is empty.
@@ -20,8 +22,10 @@ class Solid final : public geom::Interior {
   ~Solid() override;
 
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
-  [[nodiscard]] double margin() const { return set_.margin; }
-  /// The bodies; none if it is a mesh's.
+  [[nodiscard]] double margin() const { return margin_; }
+  /// No point of the solid is farther from the polytopes that stand for bodies; 0 where none do.
+  [[nodiscard]] double defect() const { return defect_; }
+  /// The bodies, or the polytopes that stand for them; none if it is a mesh's.
   [[nodiscard]] const geom::ConvexSet& set() const { return set_; }
 
   /// Distance of a point from the solid, margin included, given its distance from the boundary
@@ -51,6 +55,7 @@ class Solid final : public geom::Interior {
   struct Members;
   std::unique_ptr<Members> members_;
   geom::ConvexSet set_;
+  double margin_ = 0, defect_ = 0;
   Boundary boundary_;
   geom::Bvh bvh_;  // of the boundary
   std::vector<std::uint8_t> exposed_;

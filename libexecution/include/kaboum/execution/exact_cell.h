@@ -10,7 +10,7 @@
 /// Plans carried out in simulation, and judged by exact meshes. docs/planning/geometry.md.
 namespace kaboum::execution {
 
-/// What `exact_cell` leaves out or could not take as it is; one sentence each.
+/// Things that `exact_cell` leaves out or could not take as it is; one sentence each.
 using Notes = std::vector<std::string>;
 
 /// A mesh in the frame of the link or object that it is of.

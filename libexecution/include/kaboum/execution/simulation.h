@@ -21,7 +21,7 @@ struct SimulationOptions {
   std::function<void(const std::string& stage)> progress = {};
 };
 
-/// What was looked at, and what was wrong.
+/// Result of a simulation: what was looked at, and what was wrong.
 struct SimulationReport {
   std::uint64_t steps = 0;    ///< nodes carried out, each once for every geometric state
   std::uint64_t motions = 0;  ///< paths of these

@@ -7,7 +7,7 @@
 
 namespace kaboum::external {
 
-/// What a shared library with external functions has to define, as it was compiled against this
+/// Interface that a shared library with external functions defines, as it was compiled against this
 /// version of <kaboum/plan/externals.h>, which needs no library to be linked:
 ///
 ///     extern "C" void kaboum_externals_1(kaboum::plan::ExternalBindings& bindings) {

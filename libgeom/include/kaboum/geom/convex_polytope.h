@@ -31,10 +31,10 @@ class ConvexPolytope {
 
   [[nodiscard]] const Mesh& hull() const { return hull_; }
   [[nodiscard]] const Box3& box() const { return box_; }
-  /// Of the facets that have one (facet_plane): the polytope lies below all of them, and points
-  /// that are below them need not lie in it.
+  /// Planes of the facets that have one (facet_plane): the polytope lies below all of them, and
+  /// points that are below them need not lie in it.
   [[nodiscard]] std::span<const FacetPlane> planes() const { return planes_; }
-  /// Whether the point is in the polytope or on its boundary; exact.
+  /// True if the point is in the polytope or on its boundary; exact.
   [[nodiscard]] bool contains(const Vec3& p) const;
 
  private:

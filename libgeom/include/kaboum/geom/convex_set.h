@@ -9,11 +9,13 @@
 
 namespace kaboum::geom {
 
-/// A convex polytope: its facets triangulated, normals outwards, every vertex on or below every
-/// facet's plane.
+/// A convex body: all points within `radius` of its core (the Minkowski sum of core and ball).
 struct ConvexBody {
   std::string name;
-  Mesh hull;
+  /// A convex polytope: its facets triangulated, normals outwards, every vertex on or below every
+  /// facet's plane. Or, without triangles: a segment by its two ends, or a point.
+  Mesh core;
+  double radius = 0;  ///< ≥ 0; > 0 where the core is a segment or a point [length]
 };
 
 /// Where a convex set comes from and what is certified of it.
@@ -32,12 +34,9 @@ struct Provenance {
   bool operator==(const Provenance&) const = default;
 };
 
-/// A union of convex polytopes, each enlarged by a ball of radius `margin` (Minkowski sum): the
-/// implicit offset of the thesis, Eq. 4.22. The empty list stands for the empty set, whatever the
-/// margin.
+/// A union of convex bodies. The empty list stands for the empty set.
 struct ConvexSet {
   std::vector<ConvexBody> bodies;
-  double margin = 0;  ///< ≥ 0 [length]
   Provenance provenance;
 };
 
@@ -45,7 +44,21 @@ struct ConvexSet {
 /// triangles form a closed chain of positive volume. Cost #V · #T filtered predicates.
 bool is_convex(const Mesh& hull);
 
+/// Whether the radius is finite and not negative, and the core is an exactly convex polytope or,
+/// with a positive radius, a segment between two different points or a point, all finite.
+bool is_convex(const ConvexBody& body);
+
 /// The first body that is not exactly convex (is_convex); nullopt when all are.
 std::optional<std::size_t> find_not_convex(const ConvexSet& set);
+
+/// The margin of a set of enlarged polytopes, the implicit offset of the thesis, Eq. 4.22: the
+/// radius of all bodies. 0 for the empty set; nullopt where radii differ, or a core is no polytope.
+std::optional<double> margin_of(const ConvexSet& set);
+
+/// Gives all bodies one radius. [length]
+void set_margin(ConvexSet& set, double radius);
+
+/// A box that holds the body, rounded up.
+Box3 bounding_box(const ConvexBody& body);
 
 }  // namespace kaboum::geom

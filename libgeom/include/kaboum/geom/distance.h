@@ -28,7 +28,7 @@ struct DistanceBounds {
 /// @pre coordinates of magnitude below 1e70; differences that matter above 1e-70.
 DistanceBounds point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Whether the triangle's box, and so the triangle, is certainly farther from p than `radius`.
+/// True if the triangle's box, and so the triangle, is certainly farther from p than `radius`.
 bool box_beyond(const Vec3& p, const std::array<Vec3, 3>& t, double radius);
 
 /// The upper bound alone, cheaper: never below the distance, and above point_triangle_distance's
@@ -100,7 +100,7 @@ class DistanceQuery final : public TriangleSearch {
   [[nodiscard]] std::uint32_t within(const Vec3& p, double radius,
                                      std::uint32_t hint = kNone) const;
 
-  /// Whether every point of the polygon is within `radius`: decided by cutting it along the prisms
+  /// True if every point of the polygon is within `radius`: decided by cutting it along the prisms
   /// of nearest triangles until each piece's corners are within the radius of one triangle (the
   /// distance to one triangle is convex). False also when that did not succeed in `max_pieces`
   /// pieces.
@@ -151,19 +151,19 @@ class Interior {
   Interior& operator=(const Interior&) = delete;
   virtual ~Interior() = default;
 
-  /// Whether p lies in the solid; decided exactly, or nullopt. Safe to call from several threads,
-  /// as all of these.
+  /// Decides whether p lies in the solid: exactly, or nullopt. Safe to call from several
+  /// threads, as all of these.
   ///
   /// @param free  lower bound of p's distance to the triangles of B, if one is known: within it
   ///   nothing changes, which helps where p lies on a fold inside the solid.
   [[nodiscard]] virtual std::optional<bool> contains(const Vec3& p, double free) const = 0;
 
-  /// Whether the ball is certainly part of the solid, given a lower bound of its centre's distance
+  /// True if the ball is certainly part of the solid, given a lower bound of its centre's distance
   /// to the triangles of B.
   [[nodiscard]] virtual bool covers_ball(const Vec3& center, double radius,
                                          double distance) const = 0;
 
-  /// Whether every point of the convex hull of the corners is certainly within `slack` of the
+  /// True if every point of the convex hull of the corners is certainly within `slack` of the
   /// solid. May say no where it is hard to tell.
   [[nodiscard]] virtual bool covers(std::span<const Vec3> corners, double slack) const = 0;
 };

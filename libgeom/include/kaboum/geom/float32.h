@@ -11,7 +11,7 @@ namespace kaboum::geom {
 double to_float32(double x);
 Vec3 to_float32(const Vec3& p);
 
-/// Whether float32 holds x exactly.
+/// True if float32 holds x exactly.
 inline bool is_float32(double x) { return to_float32(x) == x; }
 bool is_float32(const Vec3& p);
 

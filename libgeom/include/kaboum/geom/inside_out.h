@@ -8,7 +8,7 @@
 
 namespace kaboum::geom {
 
-/// What of a mesh as it is encloses nothing because it is oriented inwards.
+/// Parts of a mesh that enclose nothing because it is oriented inwards.
 struct InsideOut {
   std::size_t parts = 0;       ///< that preparing turns; 0: none
   std::uint32_t triangle = 0;  ///< of the first

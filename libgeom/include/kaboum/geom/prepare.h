@@ -10,7 +10,7 @@
 
 namespace kaboum::geom {
 
-/// What becomes of an open mesh, which bounds no solid.
+/// Treatment of an open mesh, which bounds no solid.
 enum class Holes {
   Keep,    ///< it stays open
   Fill,    ///< fill_holes closes it, before orientation is judged
@@ -36,7 +36,7 @@ struct LeftOut {
   std::array<Vec3, 3> corners;
 };
 
-/// How a prepared mesh came from the input: nothing that a claim about it rests on.
+/// Origin of a prepared mesh in the input: nothing that a claim about it rests on.
 struct PreparationReport {
   /// Per triangle of the prepared mesh: its index in the input. Triangles that fill holes are the
   /// mesh's last ones, and not in it: vertices that only those use are the last ones as well.
@@ -57,7 +57,7 @@ struct PreparationReport {
   std::size_t reversed_cavities = 0;      ///< shells turned along with those that they lie in
   std::size_t reversed_triangles = 0;     ///< against their neighbours or in a turned component
   std::size_t holes = 0;                  ///< filled
-  /// Of each of those, the vertices in the order of fill_holes: vertex k of input triangle t is
+  /// Their vertices, in the order of fill_holes: vertex k of input triangle t is
   /// 3 t + k.
   std::vector<std::vector<std::uint32_t>> rims;
   /// Triangles that were turned after holes had been filled, ascending: input triangles, and

@@ -13,7 +13,7 @@ struct NamedTriangle {
   std::array<Vec3, 3> at;
 };
 
-/// Whether two triangles that have an area meet in anything but the corner or the edge that both
+/// True if two triangles that have an area meet in anything but the corner or the edge that both
 /// have by name; exact. Corners of different names at the same place meet improperly.
 bool meet_improperly(const NamedTriangle& a, const NamedTriangle& b);
 

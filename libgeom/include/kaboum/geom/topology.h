@@ -32,7 +32,7 @@ struct TopologyReport {
 /// @pre indices in range.
 TopologyReport analyse(const Mesh& mesh);
 
-/// Whether the triangle has no area; exact.
+/// True if the triangle has no area; exact.
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Merges vertices with equal coordinates (−0 = +0) and drops those that no triangle uses; vertices

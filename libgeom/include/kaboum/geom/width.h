@@ -6,7 +6,7 @@
 
 namespace kaboum::geom {
 
-/// How thin a convex body is.
+/// Width of a convex body.
 struct Width {
   double lower = 0;  ///< certified: the body is at least this wide in every direction [length]
   /// Unit vector in which it is about that wide; zero where the search ended at `enough`.

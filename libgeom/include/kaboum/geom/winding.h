@@ -33,7 +33,7 @@ class WindingNumber {
   [[nodiscard]] std::optional<int> weighted(const Vec3& p,
                                             std::span<const std::int8_t> weight) const;
 
-  /// What the number is the sum of: calls visit(triangle, ±1) for each triangle that is crossed,
+  /// The terms of the number: calls visit(triangle, ±1) for each triangle that is crossed,
   /// and visit(triangle, 0) for each that p lies on. The sum over the triangles of a closed chain
   /// is the chain's winding number, unless p lies on it.
   void crossings(const Vec3& p, const std::function<void(std::uint32_t, int)>& visit) const;

@@ -6,7 +6,7 @@
 
 namespace kaboum::io {
 
-/// What a child process may use.
+/// Limits of a child process.
 struct ChildLimits {
   std::uint64_t memory;   ///< bytes besides what the process has already; no limit with sanitizers
   std::uint64_t seconds;  ///< of CPU time

@@ -27,7 +27,7 @@ std::optional<SetFormat> set_format_from_path(const std::filesystem::path& path)
 struct SetReadDetails {
   std::vector<std::string> notes;  ///< things a user should know; one sentence each
   std::vector<char> bytes;         ///< of the file (of all files of a folder, in order)
-  bool has_record = false;         ///< the margin and provenance come from the file
+  bool has_record = false;         ///< radii and provenance come from the file
   bool single_precision = false;   ///< coordinates were stored as float32
   std::string unit;                ///< as ReadResult::unit: what states it, or nothing
 };
@@ -57,7 +57,7 @@ geom::ConvexSet read_convex_set(const std::filesystem::path& path,
                                 SetReadDetails* details = nullptr);
 
 /// The set as the bytes of a GLB or OBJ file. Reading them back gives the same coordinates,
-/// triangles, names and margin, and (GLB) the same provenance; vertices that no triangle uses are
+/// triangles, names and radii, and (GLB) the same provenance; vertices that no triangle uses are
 /// left out. GLB may hold the empty set.
 ///
 /// @throws Error{OutputFailed} when GLB would have to round a coordinate, and for a margin > 0 in a

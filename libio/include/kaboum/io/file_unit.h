@@ -11,7 +11,7 @@ namespace kaboum::io {
 /// of one product or quotient; else "0.005 m", whose digits give the double back.
 std::string unit_of_metres(double metres);
 
-/// What ReadResult::unit says, in metres; nullopt where it says nothing.
+/// ReadResult::unit in metres; nullopt where it says nothing.
 std::optional<double> metres_of(const std::string& unit);
 
 /// Multiplies all coordinates by `factor`: each becomes the double nearest to the product. What is

@@ -44,7 +44,7 @@ std::vector<std::string> writable_formats();
 /// True when the format stores coordinates as text or as 64-bit floats, so that doubles survive.
 bool holds_double(Format format);
 
-/// Whether files of the format hold exact faces, which the triangles that are read stand for
+/// True if files of the format hold exact faces, which the triangles that are read stand for
 /// (ReadResult::deviation): STEP and IGES.
 bool is_cad(Format format);
 
@@ -78,7 +78,7 @@ struct ReadResult {
   std::size_t exact_faces = 0;  ///< of CAD files, one for each place of a face
 };
 
-/// What is to be known of a mesh whose triangles stand for exact faces, wherever something is said
+/// Note on a mesh whose triangles stand for exact faces, wherever something is said
 /// about the triangles alone; empty where they are what is meant.
 std::string about_exact_faces(const ReadResult& read);
 

@@ -5,7 +5,7 @@
 
 namespace kaboum::io {
 
-/// What an XML document describes, told by its root element and that one's children.
+/// Kind of an XML document, told by its root element and that one's children.
 enum class XmlKind {
   None,   ///< not XML, or damaged before its root
   Urdf,   ///< also one with xacro in it, which its parser names by line

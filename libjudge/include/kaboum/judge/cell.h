@@ -9,7 +9,7 @@
 
 namespace kaboum::judge {
 
-/// How a link of a robot holds an object.
+/// Hold of a robot's link on an object.
 struct Hold {
   std::size_t robot = 0;
   std::uint32_t link = 0;

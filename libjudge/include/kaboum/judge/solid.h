@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-/// What exact meshes say of collisions: to judge predicates by, none of whose code is in it. Own
+/// Collisions of exact meshes: to judge predicates by, none of whose code is in it. Own
 /// kinematics, own trees of boxes; pairs of triangles are decided by CGAL's exact predicates.
 namespace kaboum::judge {
 
@@ -16,13 +16,13 @@ class Solid {
  public:
   explicit Solid(const geom::Mesh& mesh);
 
-  /// Whether two meshes have a point in common, or one is inside of the other. Vertices are rounded
+  /// True if two meshes have a point in common, or one is inside of the other. Vertices are rounded
   /// once when they are placed (2^-52 of the coordinates); from there on it is exact. Inside of an
   /// open mesh is nothing.
   [[nodiscard]] bool meets(const geom::Transform& at, const Solid& other,
                            const geom::Transform& other_at) const;
 
-  /// Whether some two triangles of meshes that do not meet are at most `reach` apart; rounded.
+  /// True if some two triangles of meshes that do not meet are at most `reach` apart; rounded.
   [[nodiscard]] bool is_within(const geom::Transform& at, const Solid& other,
                                const geom::Transform& other_at, double reach) const;
 

@@ -73,10 +73,10 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Arm& arm, std::span<cons
 /// axis to axis and to the tool's origin, with the ranges of joints that move along. [length]
 double reach(const Arm& arm);
 
-/// Whether all values are within the limits.
+/// True if all values are within the limits.
 bool within_limits(const Arm& arm, std::span<const double> q);
 
-/// How far a pose is from another one.
+/// Distance of a pose from another one.
 struct PoseError {
   double position = 0;  ///< of the origins [length]
   double rotation = 0;  ///< Frobenius norm of the difference of the rotations, √8 sin(angle / 2)

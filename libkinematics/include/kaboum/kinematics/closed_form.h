@@ -110,7 +110,7 @@ Solutions solve(const ClosedForm& form, const Transform& target, const SolveOpti
 /// is along axis 1, or its origin on it. Empty for other families.
 std::vector<Transform> with_other_headings(const ClosedForm& form, const Transform& target);
 
-/// Whether a target's heading is free, too, or nearly: its last axis is along axis 1, or its origin
+/// True if a target's heading is free, too, or nearly: its last axis is along axis 1, or its origin
 /// on it. `with_other_headings` gives the target alone there.
 bool has_any_heading(const ClosedForm& form, const Transform& target);
 

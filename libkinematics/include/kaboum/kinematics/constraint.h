@@ -20,7 +20,7 @@ struct Plane {
 };
 using Feature = std::variant<Point, Line, Plane>;
 
-/// What a feature is fixed to.
+/// The frame that a feature is fixed to.
 struct FrameId {
   enum class Kind : std::uint8_t { World, Tool, Object, Link };
   Kind kind = Kind::World;
@@ -34,7 +34,7 @@ struct PlacedFeature {
   Feature feature;
 };
 
-/// What two features may be to each other. Source: [gaschler2016] Table 5.1; Coincident(Line,
+/// Relation of two features to each other. Source: [gaschler2016] Table 5.1; Coincident(Line,
 /// Plane), Angle, and the Perpendicular relations of lines are added. Features of one relation may
 /// come in either order.
 enum class Relation {

@@ -7,7 +7,7 @@
 
 namespace kaboum::kinematics {
 
-/// What is outside a limit by no more counts as being on it: solutions are rounded. [rad]
+/// Distance outside a limit that counts as being on it: solutions are rounded. [rad]
 constexpr double kOnLimit = 1e-11;
 
 /// The configuration within the limits that is nearest to `reference` and differs from q by whole
@@ -22,7 +22,7 @@ std::optional<std::vector<double>> nearest_copy(const Arm& arm, std::span<const 
 std::vector<std::vector<double>> copies(const Arm& arm, std::span<const double> q,
                                         std::size_t most = 4096);
 
-/// How many `copies` has without `most`.
+/// Number of results that `copies` has without `most`.
 double count_copies(const Arm& arm, std::span<const double> q);
 
 }  // namespace kaboum::kinematics

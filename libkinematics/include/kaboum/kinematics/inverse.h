@@ -11,7 +11,7 @@
 
 namespace kaboum::kinematics {
 
-/// What configurations are to reach a pose.
+/// Request for configurations that reach a pose.
 struct InverseRequest {
   Transform target;  ///< of the tool, in the base's frame
   /// A value for each axis: whole turns nearest to it are chosen, free joints

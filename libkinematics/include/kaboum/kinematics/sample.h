@@ -86,7 +86,7 @@ class ConstraintSampler {
   /// The next sample; nullopt when no draw led to one, which does not say that there is none.
   std::optional<Sample> next();
 
-  /// What became of all draws so far.
+  /// Outcomes of all draws so far.
   struct Tally {
     std::size_t draws = 0;
     std::size_t projected =

@@ -17,7 +17,7 @@ struct JointRange {
 struct SolutionFamily {
   std::vector<std::size_t> free;  ///< the joints that may be chosen
   unsigned singular = kRegular;   ///< of Singular
-  /// Of one free joint: its values to which a configuration within the limits belongs, whole turns
+  /// Values of one free joint to which a configuration within the limits belongs, whole turns
   /// apart, ascending, exact to 1e-5. Of several: for each of them one range that holds all such
   /// values.
   std::vector<JointRange> ranges;

@@ -27,8 +27,8 @@ class AnswerCache {
   [[nodiscard]] std::size_t reused() const;
 
  private:
-  struct Kept;
-  std::unique_ptr<Kept> kept_;
+  struct Entries;
+  std::unique_ptr<Entries> kept_;
 };
 
 }  // namespace kaboum::manipulation

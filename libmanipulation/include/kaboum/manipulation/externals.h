@@ -7,7 +7,7 @@
 
 namespace kaboum::manipulation {
 
-/// What the external functions have done, as in Tables 6.2, 6.4 and 6.7 of [gaschler2016].
+/// Work of the external functions, as in Tables 6.2, 6.4 and 6.7 of [gaschler2016].
 struct GeometryCounters {
   std::uint64_t ik_calls = 0;         ///< poses that configurations were looked for
   std::uint64_t predicate_calls = 0;  ///< configurations and motions that were looked at
@@ -17,7 +17,7 @@ struct GeometryCounters {
 };
 
 struct ExternalOptions {
-  /// Of each call; its seed is the question's, and the work doubles with each attempt.
+  /// Options of each call; its seed is the question's, and the work doubles with each attempt.
   motion::PathOptions path = {.most_work = 0.02, .shortcuts = 20};
   /// Things are put down from so far above, sums of ε apart. > 0 [length]
   double clearance = 1e-3;

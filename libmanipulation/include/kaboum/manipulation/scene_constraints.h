@@ -33,7 +33,7 @@ class SceneConstraints {
 
  private:
   [[nodiscard]] std::size_t robot_named(const std::string& name) const;
-  /// What moves with a link, with a pose in the link's frame.
+  /// A feature that moves with a link, with a pose in the link's frame.
   kinematics::PlacedFeature on_link(std::size_t robot, std::uint32_t link,
                                     const geom::Transform& pose, const world::Feature& feature);
 

@@ -27,7 +27,7 @@ struct Blocker {
   std::size_t times = 0;
 };
 
-/// What a search has done.
+/// Counts of a search.
 struct Spent {
   std::size_t configurations = 0;  ///< that were looked at
   std::size_t motions = 0;         ///< decided at every instant

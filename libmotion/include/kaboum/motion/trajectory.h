@@ -8,7 +8,7 @@
 
 namespace kaboum::motion {
 
-/// How fast each variable may change. Above 0. [rad/s or length/s; the same per s]
+/// Bounds on the speed of each variable. Above 0. [rad/s or length/s; the same per s]
 struct SpeedLimits {
   std::vector<double> velocity, acceleration;
 };
@@ -18,7 +18,7 @@ struct Instant {
   std::vector<double> q, velocity, acceleration;
 };
 
-/// How the share of a segment that is done grows.
+/// Profile by which the share of a segment that is done grows.
 enum class Profile {
   Quintic,   ///< a polynomial of degree 5: twice continuously differentiable
   Trapezoid  ///< of velocity: the fastest that keeps the limits; its accelerations jump
@@ -37,7 +37,7 @@ class Trajectory {
   Trajectory(robot::Path path, const SpeedLimits& limits, double rate,
              Profile profile = Profile::Quintic);
 
-  /// How many samples there are, both ends included: sample k is at k / rate.
+  /// Number of samples, both ends included: sample k is at k / rate.
   [[nodiscard]] std::size_t samples() const { return first_.back() + 1; }
   [[nodiscard]] double duration() const {
     return static_cast<double>(first_.back()) / rate_;
@@ -48,7 +48,7 @@ class Trajectory {
   }
   /// @pre 0 ≤ time ≤ duration. [s]
   [[nodiscard]] Instant at(double time) const;
-  /// Of sample k; waypoints exactly.
+  /// Values of sample k; waypoints exactly.
   [[nodiscard]] std::vector<double> sample(std::size_t k) const;
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] const robot::Path& path() const { return path_; }
@@ -60,7 +60,7 @@ class Trajectory {
   double rate_;
   Profile profile_;
   std::vector<std::size_t> first_;  ///< sample at each waypoint
-  /// Of each segment, with a trapezoid: the part of its time for which it accelerates.
+  /// For each segment, with a trapezoid: the part of its time for which it accelerates.
   std::vector<double> ramp_;
 };
 

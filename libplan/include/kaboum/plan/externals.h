@@ -22,7 +22,7 @@ class StateView {
   /// @throws Error{InvalidInput} if the model has no such term.
   virtual std::optional<std::string> value(const std::string& function,
                                            const std::vector<std::string>& arguments) = 0;
-  /// Whether an atom is known to be true or false; nullopt: neither.
+  /// Decides whether an atom is known to be true or false; nullopt: neither.
   /// @throws Error{InvalidInput} if the model has no such atom.
   virtual std::optional<bool> truth(const std::string& predicate,
                                     const std::vector<std::string>& arguments) = 0;
@@ -49,13 +49,13 @@ struct Answer {
   std::string value;    ///< the name of an object of the function's type, or any word of a handle
   std::string payload;  ///< kept with the plan: a path, samples used, ...
   std::string reason;   ///< why there is no value: "blocked by o3"
-  /// Of a value: it was chosen among several, or others were not looked for. Where a search with
-  /// it fails, it is not proved that there is no plan.
+  /// True of a value that was chosen among several, or without looking for others. Where a
+  /// search with it fails, it is not proved that there is no plan.
   bool chosen = false;
   /// Among how many things `Question::choice` decides which one is preferred; 0: there is nothing
   /// to choose. Where the search fails it begins anew with other choices.
   unsigned choices = 0;
-  /// Of a value: there is this one or none, whatever the state; only the arguments decide it.
+  /// True of a value that is the only one, whatever the state; only the arguments decide it.
   bool fixed = false;
 
   static Answer found(std::string value, std::string payload = "") {
@@ -92,7 +92,7 @@ class ExternalBinding {
 
   [[nodiscard]] Answer operator()(const Question& question) const { return answer_(question); }
   [[nodiscard]] bool reads_state() const { return reads_state_; }
-  /// Whether what it answers may hang on the question's seed and attempt.
+  /// True if what it answers may hang on the question's seed and attempt.
   [[nodiscard]] bool takes_seed() const { return takes_seed_; }
 
  private:

@@ -18,7 +18,7 @@ struct KnownFacts {
   std::map<Term, std::string> values;              ///< of functions
   std::map<Term, std::set<std::string>> excluded;  ///< values that a function does not have
   std::vector<std::set<Term>> exclusive;           ///< of the atoms of each, one holds
-  /// Of the literals of each, an atom and its truth, at least one holds.
+  /// Clauses: at least one literal of each, an atom and its truth, holds.
   std::vector<std::set<std::pair<Term, bool>>> some;
   /// More is known than this says: an action has changed an atom of disjunctions that tied others
   /// to each other, or what hangs together that actions may have changed is not kept.

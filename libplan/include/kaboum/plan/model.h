@@ -39,7 +39,7 @@ struct Symbol {
   std::vector<Index> parameters;  ///< types
   Index range = kNone;            ///< type of the value; kNone: a truth value
   bool numeric = false;           ///< a function whose constant values are integers (costs)
-  /// Of a derived predicate; kNone: effects say where it holds. Its rules read derived predicates
+  /// Level of a derived predicate; kNone: effects set it. Its rules read derived predicates
   /// of lower levels, and those of its own level that it depends on and that depend on it.
   Index level = kNone;
   bool recursive = false;  ///< derived, and depends on itself
@@ -120,7 +120,7 @@ struct Effect {
   Kind kind = Kind::Update;
   Update update;
   Query condition;
-  /// Of a condition: it is one of the world, K(p) standing for p, and decides in each possible
+  /// True of a condition of the world: K(p) stands for p, and it decides in each possible
   /// world what happens there, known or not. `denial` is then its negation.
   bool of_world = false;
   Query denial;
@@ -153,7 +153,7 @@ struct Rule {
   Query body;
 };
 
-/// What an external function may ask of the state.
+/// State as an external function may ask about it.
 class StateReader {
  public:
   virtual ~StateReader() = default;
@@ -161,7 +161,7 @@ class StateReader {
   virtual std::optional<bool> truth(Index predicate, std::span<const Index> arguments) = 0;
 };
 
-/// What goes with the arguments of one call.
+/// Context that goes with the arguments of one call.
 struct ExternalContext {
   StateReader& state;
   HandleTable& handles;

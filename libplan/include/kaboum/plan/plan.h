@@ -27,7 +27,7 @@ struct Plan {
     };
     std::vector<Case> cases;
   };
-  /// What an external function that the action's precondition names by `let` returned.
+  /// Value returned by an external function that the action's precondition names by `let`.
   struct Call {
     Index external = 0;
     std::vector<std::string> arguments;

@@ -41,11 +41,11 @@ struct Replan {
 struct ReplanSummary {
   RunSummary run;  ///< of all plans together; a way is counted in each plan that it is a part of
   std::vector<Replan> replans;
-  /// Whether there was a plan for all that happened, and every way has come to its end.
+  /// True if there was a plan for all that happened, and every way has come to its end.
   [[nodiscard]] bool complete() const;
 };
 
-/// What carries out the steps of a plan of a model. Both live as long as the run.
+/// Maker of what carries out the steps of a plan of a model. Both live as long as the run.
 using StepsOf =
     std::function<std::function<void(const RunStep&)>(const Model& model, const Plan& plan)>;
 

@@ -12,7 +12,7 @@
 
 namespace kaboum::plan {
 
-/// What is known in a state of a run, by names.
+/// Knowledge in a state of a run, by names.
 class KnownState {
  public:
   virtual ~KnownState() = default;

@@ -41,13 +41,13 @@ struct SolveOptions {
   std::size_t max_memory = 0;                       ///< bytes of grounding and search; 0: none
   std::function<void(const Statistics&)> progress;  ///< called now and then
   std::uint64_t seed = 1;                           ///< of external functions that choose at random
-  /// How often a call that finds nothing is made, with more samples each time, before the search
-  /// gives up: all calls once, then all that found nothing once more, and so on.
+  /// Number of times that a call that finds nothing is made, with more samples each time, before
+  /// the search gives up: all calls once, then all that found nothing once more, and so on.
   unsigned attempts = 8;
-  /// How often the search begins anew, each call made once, where it fails and external functions
-  /// say that they chose among several things: with other choices each time.
+  /// Number of times that the search begins anew, each call made once, where it fails and external
+  /// functions say that they chose among several things: with other choices each time.
   unsigned choices = 16;
-  /// How sensing is assumed to turn out, by atom or term, "isSpillable(o1)": "true", "false", or
+  /// Assumed outcomes of sensing, by atom or term, "isSpillable(o1)": "true", "false", or
   /// the value's name. The plan has branches for nothing else of these, unless it is known not to
   /// be so (run_and_replan goes on from there).
   std::map<std::string, std::string> assumed = {};

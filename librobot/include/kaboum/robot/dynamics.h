@@ -9,14 +9,14 @@
 
 namespace kaboum::robot {
 
-/// How a link's mass is spread.
+/// Mass of a link and its distribution.
 struct Inertial {
   Transform origin;             ///< from the frame of centre of mass and inertia to the link's
   double mass = 0;              ///< [kg]
   Mat3 inertia = Mat3::Zero();  ///< about the centre of mass, in that frame, symmetric [kg·m²]
 };
 
-/// What moves a joint and what resists it.
+/// Motor limits and friction of a joint.
 struct JointDynamics {
   std::optional<double> effort;        ///< most [N or N·m]; none: not stated
   double damping = 0;                  ///< [N·s/m or N·m·s/rad]
@@ -24,7 +24,7 @@ struct JointDynamics {
   std::optional<double> lower, upper;  ///< the joint's own limits, also where it mimics another
 };
 
-/// What a URDF says of masses and forces, by the names of links and joints.
+/// A URDF's statements of masses and forces, by the names of links and joints.
 struct Dynamics {
   std::map<std::string, Inertial> links;
   std::map<std::string, JointDynamics> joints;

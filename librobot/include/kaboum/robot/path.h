@@ -56,7 +56,7 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
 /// @throws Error{InvalidInput} naming the first waypoint and joint outside the joint's limits.
 void require_within_limits(const Path& path, const Robot& robot, const std::string& name);
 
-/// Whether the variable is an angle: it belongs to a joint that turns.
+/// True if the variable is an angle: it belongs to a joint that turns.
 bool is_angle(const Robot& robot, const Variable& variable);
 
 /// The path with its angles, given in degrees, in radians: times pi / 180, as rounded doubles.

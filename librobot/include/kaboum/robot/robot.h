@@ -24,9 +24,9 @@ struct Geometry {
   int line = 0;      ///< of the robot's file; 0: not known
 };
 
-/// Whether a box, cylinder or sphere has a size of 0: no volume, but perhaps an area or a length.
+/// True if a box, cylinder or sphere has a size of 0: no volume, but perhaps an area or a length.
 bool is_flat(const Geometry& geometry);
-/// Whether it is a point: nothing is left that could be held.
+/// True if it is a point: nothing is left that could be held.
 bool is_point(const Geometry& geometry);
 /// Its kind and what is special of its size: "cylinder of length 0".
 std::string describe(const Geometry& geometry);
@@ -94,7 +94,7 @@ Robot parse_rl(std::string_view text, const std::string& name);
 /// @pre shape is not Mesh; it is no point.
 std::vector<Vec3> bounding_points(const Geometry& geometry);
 
-/// How far that hull reaches beyond the shape at most. [length]
+/// Bound of what the hull reaches beyond the shape. [length]
 double bounding_excess(const Geometry& geometry);
 
 }  // namespace kaboum::robot

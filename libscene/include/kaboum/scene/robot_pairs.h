@@ -14,7 +14,7 @@ namespace kaboum::scene {
 world::RobotModel robot_model(const robot::Robot& robot,
                               const std::vector<certify::CertifiedLink>& links);
 
-/// What is known of a robot's pairs of links, by their bodies.
+/// Knowledge of a robot's pairs of links, by their bodies.
 struct RobotPairs {
   std::string srdf;  ///< <disable_collisions> of those that need no check
   std::size_t adjacent = 0, never = 0, fixed = 0;  ///< in the SRDF, by reason

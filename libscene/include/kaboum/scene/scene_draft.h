@@ -56,7 +56,7 @@ class SceneDraft {
   /// The text of the scene as it would be written as JSON.
   [[nodiscard]] std::string json() const;
 
-  /// What the scene holds, as world::read_scene reads it; nothing needs to be written for that.
+  /// Contents of the scene, as world::read_scene reads it; nothing needs to be written for that.
   /// @throws as world::parse_scene
   [[nodiscard]] world::SceneFile world() const;
 

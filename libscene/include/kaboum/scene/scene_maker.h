@@ -19,12 +19,12 @@ struct NamedFile {
   std::string name, file;
 };
 
-/// How a scene's sets are made.
+/// Options of making a scene's sets.
 struct SceneSetOptions {
   certify::SetRequest sets;             ///< of everything; direction apart
   bool visual = false;                  ///< of robots, shapes for drawing
   std::vector<std::string> links = {};  ///< of robots, only these; empty: all
-  /// Of robots, links that get an inner set as well; empty: all; by default none.
+  /// Links of robots that get an inner set as well; empty: all; by default none.
   std::optional<std::vector<std::string>> inner_links = {};
   std::vector<std::string> packages;         ///< folders that package:// URIs are looked up in
   const certify::SetCache* cache = nullptr;  ///< null: none
@@ -33,7 +33,7 @@ struct SceneSetOptions {
   std::function<io::Format(const std::string& file)> format_of = {};
 };
 
-/// What a scene is to be made of.
+/// Request for a scene.
 struct SceneMaker {
   std::filesystem::path scene;                    ///< to be written
   std::vector<NamedFile> robots;                  ///< URDF
@@ -45,12 +45,12 @@ struct SceneMaker {
   SceneSetOptions options;  ///< of everything
 };
 
-/// What was written, and what a user should know of it.
+/// Files that were written, and notes on them for the user.
 struct MadeScene {
   std::vector<std::filesystem::path> containers;  ///< written
   std::vector<std::string> inputs, notes;
   std::vector<std::string> sizes;  ///< how large each thing is, to see that its unit is right
-  /// Of links that are not held as asked for, each with its robot.
+  /// Links that are not held as asked for, each with its robot.
   std::vector<std::string> bad_links;
 };
 

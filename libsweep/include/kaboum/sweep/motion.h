@@ -51,7 +51,7 @@ class LinkMotion {
   std::size_t factors_ = 1;  // transforms that rounding enters by
 };
 
-/// How far a body fixed to a link reaches: all that bounds of the link's motions need of it.
+/// Reach of a body fixed to a link: all that bounds of the link's motions need of it.
 struct Reach {
   double distance = 0;  ///< from the origin of the frame that the last joint moves [length]
   double across = 0;    ///< from that joint's axis [length]

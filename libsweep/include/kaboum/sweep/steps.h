@@ -11,7 +11,7 @@ namespace kaboum::sweep {
 
 using robot::Path;
 
-/// How the steps along a path are chosen. docs/algorithms/swept-volumes.md proves all but Baginski.
+/// Rule for the steps along a path. docs/algorithms/swept-volumes.md proves all but Baginski.
 enum class StepRule {
   Baginski,     ///< Eq. 4.19; not proved, for comparison; no prismatic joints
   Uniform,      ///< Eq. 4.20 with the robot's largest radius: the same steps for all links
@@ -31,8 +31,8 @@ struct PathInterval {
   double deviation;  ///< rounded up, errors of kinematics included [length]
 };
 
-/// What all bodies of a robot share, for the rules Uniform and Baginski: per segment, the radius
-/// and the sums of turns and slides.
+/// Data that all bodies of a robot share, for the rules Uniform and Baginski: per segment, the
+/// radius and the sums of turns and slides.
 struct SharedBounds {
   double radius = 0, turn = 0, slide = 0;
 };
@@ -65,7 +65,7 @@ std::vector<PathInterval> choose_steps(const Robot& robot, std::uint32_t link,
                                        std::span<const Vec3> points, const Path& path,
                                        const StepOptions& options);
 
-/// How far the hull of the body's images at both ends of a piece may reach from what the body
+/// Distance that the hull of the body's images at both ends of a piece may reach from what the body
 /// sweeps in it: deviation + ¼ of the largest |(finish − start)(p − p')|, rounded up. [length]
 double excess(const PathInterval& piece, std::span<const Vec3> points);
 

@@ -8,13 +8,14 @@ namespace kaboum::verify {
 
 /// What verify_convexity found.
 struct Convexity {
-  /// Every body is a closed chain of positive volume with no vertex above any of its planes.
+  /// Every core is a closed chain of positive volume with no vertex above any of its planes or,
+  /// with a radius above 0, a segment or a point.
   Claim convex;
   /// Indices of the bodies that are not, and why, in order.
   std::vector<std::pair<std::size_t, std::string>> not_convex;
 };
 
-/// Decides exactly whether all bodies of a set are convex. The margin plays no part.
+/// Decides exactly whether all bodies of a set are convex.
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
 Convexity verify_convexity(const geom::ConvexSet& set);
 
@@ -29,22 +30,36 @@ struct Cover : Convexity {
 /// solid, without voids, and every one of its triangles.
 ///
 /// The sum of the bodies' chains winds about a point as often as there are bodies that contain it,
-/// so this is verify_inclusion(original, sum). With a margin m > 0 the union is that of all balls
-/// of radius m about points of the bodies: what these leave out must be within m of them. Where its
-/// distance is m but for rounding, or where it would take too long, the answer is undecided.
+/// so this is verify_inclusion(original, sum). With a margin m > 0 (geom::margin_of) the union is
+/// that of all balls of radius m about points of the cores: what these leave out must be within m
+/// of them. Where its distance is m but for rounding, or where it would take too long, the answer
+/// is undecided.
+///
+/// Bodies of several radii, or with segments and points as cores, are bounded by polytopes: what
+/// polytopes within them hold is verified, what polytopes round them do not hold is refuted, and
+/// what lies between the finest of both is undecided (docs/algorithms/rounded-bodies.md).
 ///
 /// @throws as verify_inclusion
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options = {});
 
-/// Decides whether every point of the union, its margin included, is within `epsilon` of the
+/// Decides whether every point of the union lies in the original's solid, and no part of the bodies
+/// out of it: what an inner set claims. Bodies with a radius are bounded by polytopes as in
+/// verify_cover, and claims then name no triangles of them.
+/// @throws as verify_inclusion
+Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
+                        const InclusionOptions& options = {});
+
+/// Decides whether every point of the union, its radii included, is within `epsilon` of the
 /// original's triangles or, with `to_solid`, of these or its solid: verify_distance from the
 /// bodies' triangles with what ε leaves beside the margin and, for the solid, a search of what the
 /// bodies hold of its outside (to the triangles alone, the inside of bodies is not looked at).
 /// Where that fails, only a point of the union that is farther away than ε refutes, since what the
-/// margin adds may be near another part of the original.
+/// margin adds may be near another part of the original. Sets without one margin are bounded by
+/// polytopes as in verify_cover.
 ///
-/// @pre epsilon > set.margin; with `to_solid` the original is a closed chain
+/// @pre epsilon > margin_of(set), where there is one; with `to_solid` the original is a closed
+/// chain
 /// @throws as verify_distance
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits = {});
@@ -62,7 +77,8 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options = {});
 
-/// The triangles of all bodies in one mesh.
+/// The triangles of all bodies' cores in one mesh or, where radii differ or cores are segments and
+/// points (no geom::margin_of), those of polytopes within the bodies.
 geom::Mesh sum_of(const geom::ConvexSet& set);
 
 }  // namespace kaboum::verify

@@ -16,8 +16,8 @@ struct RoundedHull {
 };
 
 /// Decides exactly whether the bodies of a set are convex and each holds the rounded hull of its
-/// index: no ball about one of its points passes a plane of the body. The set's margin plays no
-/// part.
+/// index: no ball about one of its points passes a plane of the body. Radii of
+/// the set play no part.
 ///
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
 Claim verify_holding(const geom::ConvexSet& set, std::span<const RoundedHull> held);

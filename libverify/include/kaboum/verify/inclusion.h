@@ -48,7 +48,7 @@ struct Claim {
   std::vector<std::uint32_t> inner_triangles, outer_triangles;
 };
 
-/// What deciding an inclusion is allowed where nobody says otherwise: many times what the most
+/// Work that deciding an inclusion is allowed where nobody says otherwise: many times what the most
 /// tangled of real meshes takes, so that only what is made to be hard is left undecided. [s]
 inline double usual_work(std::size_t triangles) {
   return 60 + 5e-3 * static_cast<double>(triangles);
@@ -73,7 +73,7 @@ struct InclusionOptions {
   std::function<void(const std::string&)> progress{};
 };
 
-/// What verify_inclusion found.
+/// Result of verify_inclusion.
 struct Inclusion {
   /// Solid claim. Closed meshes: {w_inner ≥ 1} ⊆ {w_outer ≥ 1} off the surfaces. Open ones with the
   /// same border: w_inner ≤ w_outer off the surfaces; `relative` is then true.

@@ -15,11 +15,11 @@
 
 namespace kaboum::verify {
 
-/// What an approximation is to its original: it encloses it, is enclosed by it or, as a set of
+/// Relation of an approximation to its original: it encloses it, is enclosed by it or, as a set of
 /// convex bodies, covers it.
 enum class Relation { Outer, Inner, Cover };
 
-/// What is asked of an original and its approximation.
+/// Question about an original and its approximation.
 struct MeshQuestion {
   const geom::Mesh& original;
   const geom::Mesh& approximation;       ///< or the sum of the bodies of `set`
@@ -30,13 +30,13 @@ struct MeshQuestion {
   std::size_t max_contacts = InclusionOptions{}.max_contacts;
   std::optional<double> max_work{};  ///< of each inclusion, as InclusionOptions [s]
   std::function<void(const std::string&)> progress{};  ///< called with what is being done
-  /// Of the exact faces that the original's triangles stand for, which are to be enclosed or
+  /// Points of the exact faces that the original's triangles stand for, which are to be enclosed or
   /// covered as well. Not looked at of Inner.
   std::optional<PointQuestion> exact_points{};
-  /// What the original is as a Subject: whether it is to be held whichever way it is oriented, and
+  /// The original as a Subject: whether it is to be held whichever way it is oriented, and
   /// which triangles are besides. Not looked at of Inner; null: the original is all.
   const Subject* subject = nullptr;
-  /// What a cover's distances are measured to, closed; null: the original.
+  /// Mesh that a cover's distances are measured to, closed; null: the original.
   const MeasuredMesh* measured = nullptr;
 
   [[nodiscard]] const geom::Mesh& inner() const {
@@ -47,7 +47,7 @@ struct MeshQuestion {
   }
 };
 
-/// Of which distance a bound is claimed.
+/// Distance of which a bound is claimed.
 enum class Between {
   ApproximationToOriginal,
   OriginalToApproximation,
@@ -68,12 +68,12 @@ struct DistanceVerdict {
 struct MeshVerdict {
   std::optional<Claim> convex;  ///< of the bodies of a set
   Inclusion inclusion;
-  /// How far what refutes the claims of enclosure sticks out, the margin of a cover taken off.
+  /// Depth by which what refutes the claims sticks out, the margin of a cover taken off.
   std::optional<Bracket> solid_depth, surface_depth;
   std::vector<DistanceVerdict> distances;
   std::optional<Claim>
       depth;  ///< of an inner set: that it leaves out nothing deeper than the bound
-  /// Of the points of exact faces, where they were asked for: they refute, and prove nothing.
+  /// Claim of the points of exact faces, where they were asked for: they refute, and prove nothing.
   std::optional<PointClaim> exact_points;
   std::optional<geom::Mesh> solid_part;  ///< the solid claim is that of this part of the original
   bool surface_of_all = false;           ///< the surface claim is that of Subject::triangles

@@ -14,7 +14,7 @@ struct ExactPoints {
   std::vector<geom::Vec3> points;
   std::vector<std::uint32_t> of_face;  ///< of each point; faces are counted from 0
   std::size_t faces = 0, edges = 0;    ///< one for each place of a face; edges of all of them
-  /// What evaluating may have moved a point by, in each coordinate. [length]
+  /// Bound of what evaluating may have moved a point by, in each coordinate. [length]
   double rounding = 0;
 };
 
@@ -31,7 +31,7 @@ struct PointClaim {
   Answer answer = Answer::Undefined;
   std::string reason;                              ///< one clause; empty unless undefined
   std::size_t points = 0, outside = 0, faces = 0;  ///< faces: that have points outside
-  /// Of the points outside the one that sticks out farthest: certainly by this. [length]
+  /// Certain distance of the point outside that sticks out farthest. [length]
   double farthest = 0;
   geom::Vec3 at = geom::Vec3::Zero();
   std::uint32_t face = 0;

@@ -59,7 +59,7 @@ SubjectClaims decide_rest(
     const Subject& subject, const geom::Mesh& mesh, Claims claims, Inclusion first,
     const std::function<Inclusion(const geom::Mesh&, bool surface_only)>& look);
 
-/// What distances from a subject are measured to: its solid and all triangles of the file.
+/// Reference of distances from a subject: its solid and all triangles of the file.
 struct MeasuredMesh {
   geom::Mesh mesh;  ///< that of the subject; else with each triangle once more the other way round
   bool has_solid = true;  ///< false: which solid the triangles bound is not known

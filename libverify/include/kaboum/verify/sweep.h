@@ -36,7 +36,7 @@ struct MotionBound {
 MotionBound bound_motion(const KinematicChain& chain, std::span<const double> from,
                          std::span<const double> to, double radius);
 
-/// What a robot is made of, as its file states it, before anything bounded it.
+/// A shape of a robot, as its file states it, before anything bounded it.
 struct MovingShape {
   enum class Kind { Mesh, Box, Cylinder, Sphere };
   std::string name;

@@ -19,7 +19,7 @@ struct PairOptions {
   std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
 };
 
-/// What is known of a pair of links with shapes.
+/// Knowledge of a pair of links with shapes.
 struct LinkPair {
   std::uint32_t a = 0, b = 0;  ///< a < b
   /// nullopt: they meet somewhere, or no proof was found.

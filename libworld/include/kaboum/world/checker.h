@@ -24,7 +24,7 @@ struct PairRow {
 struct Contact {
   std::array<Item, 2> items;
   collide::BodyPair bodies;  ///< of their outer sets
-  /// Whether the solids certainly collide: inner sets meet, or the outer ones are exact (ε = 0, no
+  /// True if the solids certainly collide: inner sets meet, or the outer ones are exact (ε = 0, no
   /// margin) and do. Else they are at most `epsilon` apart.
   bool certain = false;
   double epsilon = 0;         ///< sum of both ε, errors of places included [length]
@@ -55,9 +55,9 @@ class Observer {
   virtual ~Observer() = default;
   Observer(const Observer&) = delete;
   Observer& operator=(const Observer&) = delete;
-  /// Of find_contact, find_contacts and is_free.
+  /// Called by find_contact, find_contacts and is_free.
   virtual void asked(const WorldState& state) = 0;
-  /// Of check_motion; of find_obstacles too, with the things that it looks at.
+  /// Called by check_motion; by find_obstacles too, with the things that it looks at.
   virtual void asked(const WorldState& state, std::size_t robot,
                      const std::vector<std::vector<double>>& path,
                      const std::vector<Item>* things) = 0;
@@ -87,7 +87,7 @@ class Checker {
     return find_contact(state, scratch, Options{});
   }
 
-  /// Whether find_contact finds nothing; what is in contact is not looked into.
+  /// True if find_contact finds nothing; what is in contact is not looked into.
   /// @throws as find_contact
   [[nodiscard]] bool is_free(const WorldState& state, Scratch& scratch,
                              const Options& options) const;
@@ -112,13 +112,13 @@ class Checker {
     Item item;
     collide::PosedSet place;
   };
-  /// Of all items.
+  /// Places of all items.
   /// @throws as find_contact
   [[nodiscard]] std::vector<PosedItem> places(const WorldState& state) const {
     Scratch scratch;
     return places(state, items_, scratch);
   }
-  /// Of some, in their order. @pre none of them is absent.
+  /// Places of some, in their order. @pre none of them is absent.
   [[nodiscard]] std::vector<PosedItem> places(const WorldState& state,
                                               const std::vector<Item>& items,
                                               Scratch& scratch) const;
@@ -129,12 +129,12 @@ class Checker {
   /// The pairs that are looked at in states with these attachments, in their order.
   [[nodiscard]] std::vector<std::array<Item, 2>> pairs(const WorldState& state,
                                                        const Options& options) const;
-  /// Whether a value for each variable of a robot is within its limits: pairs of links proved never
+  /// True if a value for each variable of a robot is within its limits: pairs of links proved never
   /// to touch are not looked at there, and are elsewhere.
   [[nodiscard]] bool is_within_limits(std::size_t robot, const std::vector<double>& q) const;
   /// Vertices of the hull of a robot's shape or an object, in its frame.
   [[nodiscard]] const std::vector<Vec3>& hull_of(const Item& item) const { return hulls_.at(item); }
-  /// How far a robot's shape reaches.
+  /// Reach of a robot's shape.
   [[nodiscard]] const sweep::Reach& reach_of(std::size_t robot, std::size_t shape) const {
     return reaches_[robot][shape];
   }
@@ -149,7 +149,7 @@ class Checker {
                     Scratch::Impl& s) const;
   double error_of_held(const WorldState& state, std::size_t object, std::size_t item,
                        Scratch::Impl& s) const;
-  /// Whether error_ holds for these values of a robot's variables.
+  /// True if error_ holds for these values of a robot's variables.
   [[nodiscard]] bool is_usual(std::size_t robot, const std::vector<double>& q) const;
 
   /// Calls pair(i, j) for the numbers of items of pairs that are looked at until it is true; not
@@ -184,7 +184,7 @@ class Checker {
   std::vector<double> defects_;  ///< of their links' matrices, see defect_of
 };
 
-/// How a contact is to be understood, and where.
+/// Meaning of a contact, and its place.
 Contact contact_of(const World& world, const Item& a, const Item& b, const collide::PosedSet& at_a,
                    const collide::PosedSet& at_b, const collide::BodyPair& bodies);
 

@@ -13,7 +13,7 @@ struct MotionOptions {
   /// farther apart then counts as contact. > 0 [length]
   double resolution = 1e-5;
   std::size_t most_intervals = 1'000'000;
-  /// Whether it matters where in its segment a path stops being free; else the first contact that
+  /// True if it matters where in its segment a path stops being free; else the first contact that
   /// is seen ends the search, which takes less time: `share` is 0 then.
   bool where = true;
   Scratch* scratch = nullptr;  ///< that is used; null: one of its own
@@ -40,9 +40,9 @@ struct MotionAnswer {
   std::size_t intervals = 0, queries = 0;
 };
 
-/// Whether a robot may move along a path of straight segments of joint values while all else stays:
-/// at every instant, not at samples. A stretch of time is free when its middle is, with all bodies
-/// enlarged by as much as they move in half of it: LinkMotion's bounds (docs/algorithms/
+/// Decides whether a robot may move along a path of straight segments of joint values while all
+/// else stays: at every instant, not at samples. A stretch of time is free when its middle is, with
+/// all bodies enlarged by as much as they move in half of it: LinkMotion's bounds (docs/algorithms/
 /// swept-volumes.md); other stretches are halved. What the robot carries moves with it.
 ///
 /// Looked at are pairs with a link of this robot or with what it carries. Others may touch, as

@@ -8,10 +8,10 @@
 
 namespace kaboum::world {
 
-/// Whether an item lies in a region of the world in a state: its outer set, wherever errors of
-/// places may put it, in the union of the region's inner set (Definition 1 of [gaschler2016], case
-/// 4; docs/algorithms/bounded-predicates.md). Included is certain; what is in the region's solid by
-/// more than `tolerance_of_inclusion` is found to be.
+/// Decides whether an item lies in a region of the world in a state: its outer set, wherever errors
+/// of places may put it, in the union of the region's inner set (Definition 1 of [gaschler2016],
+/// case 4; docs/algorithms/bounded-predicates.md). Included is certain; what is in the region's
+/// solid by more than `tolerance_of_inclusion` is found to be.
 /// @param most_pieces  that bodies are cut into before it is given up.
 /// @throws as Checker::find_contact; Error{InvalidArgument} for items and regions that are not of
 ///   the world.
@@ -28,15 +28,15 @@ struct MotionInclusion {
   std::size_t intervals = 0;
 };
 
-/// Whether an item stays in a region while a robot moves along a path, at every instant: a stretch
-/// of time is inside when the item is at its middle, enlarged by as much as it moves in half of it
-/// (docs/scene.md); others are halved until it moves less than options.resolution.
+/// Decides whether an item stays in a region while a robot moves along a path, at every instant: a
+/// stretch of time is inside when the item is at its middle, enlarged by as much as it moves in
+/// half of it (docs/scene.md); others are halved until it moves less than options.resolution.
 /// @throws as check_motion and the one above.
 MotionInclusion find_inclusion(const Checker& checker, const WorldState& state, std::size_t robot,
                                const robot::Path& path, const Item& item, std::size_t region,
                                const MotionOptions& options, std::size_t most_pieces = 10'000);
 
-/// What is to lie in which region.
+/// Question whether items lie in a region.
 struct InclusionQuestion {
   std::string what, region_name;
   std::vector<Item> items;  ///< that `what` names
@@ -49,7 +49,7 @@ struct InclusionQuestion {
 InclusionQuestion inclusion_question(const World& world, const std::string& what,
                                      const std::string& region);
 
-/// Whether all items of a question lie in its region: not, else undecided, else inside.
+/// Decides whether all items of a question lie in its region: not, else undecided, else inside.
 collide::Inclusion find_inclusion(const Checker& checker, const WorldState& state,
                                   const InclusionQuestion& question);
 /// The same all along a motion of a robot; of the first item that stops being certainly inside.
@@ -61,7 +61,7 @@ MotionInclusion find_inclusion(const Checker& checker, const WorldState& state, 
 /// "inside", "not certainly inside", "undecided".
 const char* name_of(collide::Inclusion answer);
 
-/// Of several answers: not inside, else undecided, else inside.
+/// Conjunction of several answers: not inside, else undecided, else inside.
 void combine(collide::Inclusion& all, collide::Inclusion one);
 
 }  // namespace kaboum::world

@@ -48,12 +48,12 @@ std::size_t robot_named(const World& world, const std::string& name);
 /// @throws Error{InvalidInput}, Error{NotBuilt} as parse_scene.
 std::string scene_as_json(std::string_view text, const std::string& name);
 
-/// What proofs about the robot's own pairs depend on: hash of its kinematics with its limits and
-/// of its shapes.
+/// Identity that proofs about the robot's own pairs depend on: hash of its kinematics with its
+/// limits and of its shapes.
 std::string fingerprint_of(const RobotModel& robot);
 
-/// What a scene states beside pairs of links that were proved apart (`proved_for`): hash of the
-/// robot's fingerprint and of these pairs, so that no pair can be added by hand.
+/// Identity that a scene states beside pairs of links that were proved apart (`proved_for`): hash
+/// of the robot's fingerprint and of these pairs, so that no pair can be added by hand.
 std::string proof_hash(const RobotModel& robot, const std::vector<AllowedPair>& pairs);
 
 }  // namespace kaboum::world

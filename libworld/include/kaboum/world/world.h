@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-/// What a planner asks geometry about: robots, objects and regions by their bounding sets, never by
-/// meshes. docs/scene.md.
+/// Subject of a planner's geometric questions: robots, objects and regions by their bounding sets,
+/// never by meshes. docs/scene.md.
 namespace kaboum::world {
 
 using collide::BoundingSet;
@@ -79,7 +79,7 @@ struct RobotModel {
   std::string fingerprint;  ///< hash of what proofs about the robot alone depend on
 };
 
-/// How a tool holds an object.
+/// Hold of a tool on an object.
 struct Grasp {
   std::string name;
   Transform pose;  ///< from the object's frame to the tool's
@@ -121,7 +121,7 @@ struct Item {
   }
 };
 
-/// What stays the same during planning.
+/// The part of the world that stays the same during planning.
 struct World {
   std::string unit = "m";
   std::vector<RobotModel> robots;
@@ -138,7 +138,7 @@ struct World {
   [[nodiscard]] const std::optional<BoundingSet>& inner(const Item& item) const;
 };
 
-/// What changes. Poses of objects that are attached are not looked at.
+/// The part of the world that changes. Poses of objects that are attached are not looked at.
 struct WorldState {
   std::vector<std::vector<double>> q;                  ///< for each robot a value per variable
   std::vector<Transform> poses;                        ///< of the objects, to the world

@@ -9,7 +9,7 @@
 namespace kaboum::wrap {
 
 struct WrapOptions {
-  /// How far the wrap may be from the input where it can get near it; > 0. [length]
+  /// Largest distance of the wrap from the input where it can get near it; > 0. [length]
   double offset = 0;
   /// Hollows that no ball of this diameter can reach from outside without touching the input are
   /// filled; > 0. Also the scale of the search: time and memory grow with its inverse. [length]
@@ -23,7 +23,7 @@ struct WrapOptions {
   std::function<void(const std::string& stage)> progress;
 };
 
-/// Whether float32 numbers are near enough to each other for a wrap of what is in the box.
+/// True if float32 numbers are near enough to each other for a wrap of what is in the box.
 bool float32_is_fine(const geom::Box3& box, const WrapOptions& options);
 
 /// A closed surface that encloses triangles.

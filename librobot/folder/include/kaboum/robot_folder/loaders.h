@@ -26,8 +26,8 @@ const Loader& loader_of(const std::string& name);
 /// "package://NAME" of a folder.
 std::string package_prefix(const std::string& folder);
 
-/// What a loader needs, where the options say nothing else: formats and prefix of meshes only where
-/// none are stated.
+/// Adds a loader's needs where the options say nothing else: formats and prefix of meshes only
+/// where none are stated.
 void apply(const Loader& loader, const std::string& folder, FolderOptions& options);
 
 }  // namespace kaboum::robot_folder

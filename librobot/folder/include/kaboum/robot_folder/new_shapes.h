@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-/// What stands for the shapes of a robot's links in new files.
+/// The replacements of the shapes of a robot's links in new files.
 namespace kaboum::robot_folder {
 
-/// What stands for a shape of a link.
+/// The replacement of a shape of a link.
 struct NewShape {
   /// Names of its meshes' files, relative to the new robot's; none: the shape itself, a box,
   /// cylinder or sphere, or a mesh that nothing could be made of.
@@ -36,7 +36,7 @@ NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& ch
 std::string moved_reference(const std::string& reference, const std::filesystem::path& from,
                             const std::filesystem::path& to);
 
-/// How meshes are named that stay.
+/// Names of meshes that stay.
 enum class KeptNames {
   Moved,  ///< as moved_reference
   Files,  ///< as files, relative to the new folder, also those of packages

@@ -23,7 +23,7 @@
 /// What else is in these folders stays.
 namespace kaboum::robot_folder {
 
-/// What is made of one mesh at one scale.
+/// The result for one mesh at one scale.
 struct StoredMesh {
   std::size_t mesh = 0;
   geom::Vec3 scale;
@@ -35,7 +35,7 @@ struct StoredMesh {
 /// The text of a document with a comment that says that it is ours, to be replaced.
 std::string marked(std::string document);
 
-/// What is written into the folder; documents and URDF are marked.
+/// Files written into the folder; documents and URDF are marked.
 struct RobotContents {
   /// Writes a mesh's files.
   std::function<void(const StoredMesh& stored, const std::filesystem::path& place)> write_mesh;
@@ -60,7 +60,7 @@ class RobotFolder {
   /// The file of another format.
   [[nodiscard]] std::filesystem::path document(const std::string& extension) const;
 
-  /// Whether documents of an earlier robot are here that `write` would take away.
+  /// True if documents of an earlier robot are here that `write` would take away.
   [[nodiscard]] bool has_other_documents(const RobotContents& contents) const;
   /// @throws Error{OutputFailed} where somebody's own file has a document's name
   void require_own_document(const std::string& extension) const;
@@ -98,8 +98,8 @@ class RobotFolder {
   /// The files of the links, relative to the folder.
   [[nodiscard]] static std::vector<std::string> link_files(const RobotContents& contents);
 
-  /// What is there and not of this result, as an earlier one with other options leaves it. It
-  /// stays: it may be somebody's own.
+  /// Files that are there and not of this result, as an earlier one with other options leaves it.
+  /// It stays: it may be somebody's own.
   /// @param links  files of the links
   [[nodiscard]] std::vector<std::string> stale(const std::vector<std::string>& links) const;
 

@@ -15,7 +15,7 @@
 
 namespace kaboum::robot_folder {
 
-/// What a robot's folder is to hold.
+/// Contents of a robot's folder.
 struct FolderOptions {
   robot::ShapeChoice shapes;       ///< that other shapes stand for
   std::string mesh_prefix;         ///< put before names of meshes in URDF and SDF
@@ -24,7 +24,7 @@ struct FolderOptions {
   bool declare_convex = false;     ///< in the URDF, as Drake asks for
 };
 
-/// What a user should know of a file.
+/// Receiver of notes on files, for the user.
 using FileNote = std::function<void(const std::string& file, const std::string& text)>;
 
 /// A robot with other shapes on its way into a folder: URDF, other formats, meshes, links.
@@ -64,7 +64,7 @@ class RobotWriter {
   [[nodiscard]] const std::vector<std::string>& link_files() const;
   /// The files that hold the robot; the URDF is the first.
   [[nodiscard]] std::vector<std::string> documents() const;
-  /// What is in the folder and not of this result (RobotFolder::stale).
+  /// Files in the folder that are not of this result (RobotFolder::stale).
   [[nodiscard]] std::vector<std::string> stale() const;
   /// Links that have no shape of the kind.
   [[nodiscard]] robot::BareLinks bare_links() const;

@@ -6,7 +6,7 @@ namespace tinyxml2 {
 class XMLElement;
 }
 
-/// How programs find the meshes that a URDF names.
+/// Ways in which programs find the meshes that a URDF names.
 namespace kaboum::robot_folder {
 
 /// The prefix of names of files, with the slash at its end that may have been left out; empty as it

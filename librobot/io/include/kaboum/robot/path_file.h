@@ -7,7 +7,7 @@
 
 namespace kaboum::robot {
 
-/// How a path is read.
+/// Options of reading a path.
 struct PathOptions {
   bool check_limits = true;  ///< refuse waypoints outside the joints' limits
   bool degrees = false;      ///< angles of the file and of `fixed` are in degrees

@@ -17,7 +17,7 @@ struct RobotFile {
   std::string sha256;  ///< of the text
 };
 
-/// Whether a file is xacro by its name, NAME.xacro, NAME.urdf.xacro, which read_robot expands.
+/// True if a file is xacro by its name, NAME.xacro, NAME.urdf.xacro, which read_robot expands.
 bool is_xacro(const std::filesystem::path& path);
 
 /// Reads URDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element). Links of

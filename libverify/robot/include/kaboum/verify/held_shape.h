@@ -9,7 +9,7 @@
 
 namespace kaboum::verify {
 
-/// What was decided of one mesh of a link.
+/// Verdict on one mesh of a link.
 struct HeldShape {
   Answer answer = Answer::Undefined;
   std::string reason;                   ///< one clause, where no decision about the claims says it
@@ -19,7 +19,7 @@ struct HeldShape {
   bool prepare_helps = false;           ///< it is inside out, which preparing mends
 };
 
-/// How far what holds meshes is from them.
+/// Distance of meshes from what holds them.
 struct HeldDistance {
   std::optional<DistanceClaim> claim;  ///< none: not all of what is to hold is closed
   bool to_solid = true;                ///< else to the surface, as a mesh is open
@@ -39,10 +39,10 @@ class Holders {
   /// about a point only where one of them does.
   explicit Holders(const std::vector<NamedMesh>& meshes);
 
-  /// Whether the mesh is in the union of the holders. Refuted where none was given, or the only one
-  /// is left out and its triangles do not lie in what that one winds round. Where there are several
-  /// and they are not all convex, negative windings of one may hide what another holds: what would
-  /// be refuted is undecided then.
+  /// Decides whether the mesh is in the union of the holders. Refuted where none was given, or the
+  /// only one is left out and its triangles do not lie in what that one winds round. Where there
+  /// are several and they are not all convex, negative windings of one may hide what another holds:
+  /// what would be refuted is undecided then.
   /// @throws as verify_inclusion
   [[nodiscard]] HeldShape hold(const geom::Mesh& mesh, Claims claims,
                                const InclusionOptions& limits = {}) const;
@@ -51,14 +51,14 @@ class Holders {
   /// judged as it is.
   [[nodiscard]] HeldShape hold_any(const geom::Mesh& mesh, Claims claims,
                                    const InclusionOptions& limits = {}) const;
-  /// Whether the mesh is in the sum of the holders. @pre there are some
+  /// Decides whether the mesh is in the sum of the holders. @pre there are some
   [[nodiscard]] Inclusion inclusion_of(const geom::Mesh& mesh,
                                        const InclusionOptions& limits) const {
     return verify_inclusion(mesh, sum_, limits);
   }
 
-  /// Whether no point of the holders is farther than `bound` from the solids of the meshes; where
-  /// they are not all convex, no point of their surfaces.
+  /// Decides whether no point of the holders is farther than `bound` from the solids of the meshes;
+  /// where they are not all convex, no point of their surfaces.
   /// @pre bound > 0 [length, as the meshes]
   [[nodiscard]] HeldDistance distance(const std::vector<geom::Mesh>& meshes, double bound,
                                       const InclusionOptions& limits = {}) const;
@@ -67,7 +67,7 @@ class Holders {
   [[nodiscard]] const geom::ConvexSet& set() const { return set_; }
   [[nodiscard]] const Claim& convex() const { return convex_; }
   [[nodiscard]] bool all_convex() const { return convex_.answer == Answer::Verified; }
-  /// Whether what is not in their sum is in none of them.
+  /// True if what is not in their sum is in none of them.
   [[nodiscard]] bool refutes() const { return all_convex() || set_.bodies.size() < 2; }
   [[nodiscard]] const geom::Mesh& sum() const { return sum_; }
   /// Names of those that are left out, and why.
@@ -76,7 +76,7 @@ class Holders {
   }
 
  private:
-  /// Whether the only mesh, which is open or inside out, does not hold all triangles of another.
+  /// True if the only mesh, which is open or inside out, does not hold all triangles of another.
   [[nodiscard]] bool lone_refutes(const geom::Mesh& mesh, const InclusionOptions& limits) const;
 
   std::size_t given_;

@@ -16,20 +16,20 @@ struct MatchedShapes {
   std::size_t elsewhere = 0;           ///< shapes of the result in other frames
 };
 
-/// What is to hold what, in the order of the original's shapes. Frames are compared by same_frame,
-/// so that a mesh is held by meshes only, and a box by a box of its size.
+/// Pairs of shapes and their holders, in the order of the original's shapes. Frames are compared by
+/// same_frame, so that a mesh is held by meshes only, and a box by a box of its size.
 std::vector<MatchedShapes> match_shapes(const std::vector<robot::Geometry>& original,
                                         const std::vector<robot::Geometry>& result);
 
-/// Whether a box, cylinder or sphere is there again. Other shapes may hold it, which is not looked
-/// at: undecided then; so is one without volume where there is no shape at all.
+/// Decides whether a box, cylinder or sphere is there again. Other shapes may hold it, which is not
+/// looked at: undecided then; so is one without volume where there is no shape at all.
 Answer find_again(const robot::Geometry& shape, const MatchedShapes& match);
 
 /// A mesh that is not held in its frame may be held by shapes in others, which is not looked at.
 Answer beside_others(Answer held, const MatchedShapes& match);
 
-/// How many shapes of the result match none of the original's: how far they reach from it is not
-/// known.
+/// Number of shapes of the result that match none of the original's: how far they reach from it is
+/// not known.
 std::size_t count_strangers(const std::vector<robot::Geometry>& original,
                             const std::vector<robot::Geometry>& result);
 

@@ -11,7 +11,7 @@ namespace kaboum::verify {
 /// variable, bit by bit.
 std::string difference_in_motion(const robot::Robot& original, const robot::Robot& result);
 
-/// Whether a point of the one shape's frame is the same point of the link as in the other's: shape,
+/// True if a point of the one shape's frame is the same point of the link as in the other's: shape,
 /// size (of meshes: scale) and origin are the same, bit by bit, so that no pose is rounded.
 bool same_frame(const robot::Geometry& a, const robot::Geometry& b);
 

@@ -20,7 +20,7 @@ KinematicChain chain_to(const robot::Robot& robot, std::uint32_t link);
 std::optional<MovingShape> moving_shape(const robot::Robot& robot, std::uint32_t link,
                                         const robot::Geometry& shape, geom::Mesh mesh = {});
 
-/// Whether this verifier's kinematics and the robot's, written apart, put the shapes' links in the
+/// True if this verifier's kinematics and the robot's, written apart, put the shapes' links in the
 /// same place at all waypoints, up to the rounding of both.
 /// @param links  of the shapes
 /// @pre the last stage of each chain is the shape's place in its link

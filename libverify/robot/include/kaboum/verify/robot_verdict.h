@@ -42,12 +42,12 @@ struct MeshFile {
 /// @throws Error where no byte of it can be read, or the system fails
 MeshFile read_mesh_file(const std::string& path, std::size_t exact_points);
 
-/// Whether what such an error is about is one mesh: that one is not held, and others are judged.
+/// True if what such an error is about is one mesh: that one is not held, and others are judged.
 inline bool is_of_one_mesh(const Error& error) {
   return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
 }
 
-/// What is asked about two robots. Referred to while it is decided.
+/// Question about two robots. Referred to while it is decided.
 struct RobotQuestion {
   const robot::Robot& original;
   const robot::Robot& result;
@@ -73,7 +73,7 @@ struct RobotQuestion {
   }
 };
 
-/// What was decided of one shape of a link.
+/// Verdict on one shape of a link.
 struct ShapeVerdict {
   robot::Geometry::Shape shape = robot::Geometry::Shape::Mesh;
   std::string name;  ///< the file's, or the shape in words
@@ -110,7 +110,7 @@ struct RobotVerdict {
   std::vector<LinkVerdict> links;
   /// Shapes of the result that the original has no match for: how far they reach is not known.
   std::vector<std::pair<std::string, std::size_t>> strangers;
-  /// Of files: what a user should know.
+  /// Notes on files, for the user.
   std::vector<std::pair<std::string, std::string>> notes;
   bool open = false;  ///< the solid of an open mesh was not judged
 };
