@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 namespace kaboum {
 namespace {
@@ -80,6 +81,36 @@ std::string limits_flaw(const OptionDescription& option, const std::string& valu
          (whole ? "" : ", without a unit") + ", not " + value;
 }
 
+/// "finger=0.04"; nullopt: it is something else.
+std::optional<std::pair<std::string, double>> parsed_setting(const std::string& text) {
+  const std::size_t sign = text.rfind('=');
+  if (sign == std::string::npos || sign == 0) return std::nullopt;
+  const auto value = parsed<double>(std::string_view(text).substr(sign + 1));
+  if (!value || !std::isfinite(*value)) return std::nullopt;
+  return std::pair(text.substr(0, sign), *value);
+}
+
+std::string settings_flaw(const OptionDescription& option, const std::string& value) {
+  std::map<std::string, double> known;
+  for (const std::string& text : option_text::parts(value, option)) {
+    const auto setting = parsed_setting(text);
+    if (!setting) return "must be NAME=NUMBER, as in finger=0.04, not " + text;
+    if (!known.insert(*setting).second) return "gives '" + setting->first + "' twice";
+  }
+  return known.empty() ? "must be NAME=NUMBER, as in finger=0.04" : "";
+}
+
+std::string length_flaw(const OptionDescription& option, const std::string& value) {
+  const auto length = parse_length(value);
+  if (length && !(option.absolute && length->percent)) return {};
+  if (!option.absolute)
+    return "must be a positive number, or a percentage such as 0.5%, without blanks or units, "
+           "not " +
+           value;
+  return "must be a positive length without a unit, as in 0.005, not " + value +
+         (length ? " (there is no diagonal that it could be a percentage of)" : "");
+}
+
 }  // namespace
 
 std::string value_words(const OptionDescription& option) {
@@ -94,9 +125,15 @@ std::string value_words(const OptionDescription& option) {
     case Kind::Number:
       return "X";
     case Kind::Length:
-      return "LENGTH|P%";
+      return option.absolute ? "LENGTH" : "LENGTH|P%";
     case Kind::Choice:
       return joined(option.choices, "|");
+    case Kind::Files:
+      return "FILE";
+    case Kind::Names:
+      return "A,B";
+    case Kind::Settings:
+      return "NAME=X";
     case Kind::Text:
       break;
   }
@@ -183,19 +220,31 @@ std::string flaw_of(const OptionDescription& option, const std::string& value) {
       return sound ? "" : limits_flaw(option, value, false);
     }
     case Kind::Length:
-      return parse_length(value) ? ""
-                                 : "must be a positive number, or a percentage such as 0.5%, "
-                                   "without blanks or units, not " +
-                                       value;
+      return length_flaw(option, value);
     case Kind::Choice:
       return std::ranges::find(option.choices, value) != option.choices.end()
                  ? ""
                  : "must be " + alternatives(option.choices) + ", not " + value +
                        did_you_mean(value, option.choices);
+    case Kind::Settings:
+      return settings_flaw(option, value);
+    case Kind::Files:
+    case Kind::Names:
     case Kind::Text:
       break;
   }
   return {};
+}
+
+bool is_repeated(const OptionDescription& option) {
+  return option.kind == Kind::Files || option.kind == Kind::Settings;
+}
+
+std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings) {
+  std::map<std::string, double> out;
+  for (const std::string& text : settings)
+    if (const auto setting = parsed_setting(text)) out.insert(*setting);
+  return out;
 }
 
 namespace option_text {
@@ -211,6 +260,9 @@ std::string of(const std::vector<std::size_t>& value) {
 std::string of(double value) { return Length{value}.text(); }
 std::string of(const Length& value) { return value.text(); }
 std::string of(const std::string& value) { return value; }
+std::string of(const std::vector<std::string>& value, const OptionDescription& option) {
+  return joined(value, is_repeated(option) ? "\n" : ",");
+}
 
 void parse(const std::string& text, bool& value) { value = text == "true"; }
 void parse(const std::string& text, std::size_t& value) {
@@ -225,10 +277,28 @@ void parse(const std::string& text, Length& value) {
   value = parse_length(text).value_or(Length{});
 }
 void parse(const std::string& text, std::string& value) { value = text; }
+std::vector<std::string> parts(const std::string& text, const OptionDescription& option) {
+  const bool lines = is_repeated(option) || text.find('\n') != std::string::npos;
+  std::vector<std::string> out;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, lines ? '\n' : ',');)
+    if (!part.empty()) out.push_back(part);
+  return out;
+}
 
 }  // namespace option_text
 
 namespace option_detail {
+
+std::string recorded_words(const OptionDescription& option, const std::string& value) {
+  const std::string name = "--" + option.name;
+  if (option.kind == Kind::Flag) return name;
+  if (!is_repeated(option)) return name + ' ' + value;
+  std::string out;
+  for (const std::string& part : option_text::parts(value, option))
+    out.append(out.empty() ? "" : " ").append(name).append(" ").append(part);
+  return out;
+}
 
 std::string next_word(std::string_view& line) {
   const std::size_t begin = std::min(line.find_first_not_of(" \n"), line.size());

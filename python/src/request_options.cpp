@@ -24,8 +24,8 @@ constexpr std::size_t kWidth = 96;  ///< of lines of docstrings
 }
 
 /// Of Python's kind, in words.
-const char* type_words(Kind kind) {
-  switch (kind) {
+const char* type_words(const OptionDescription& option) {
+  switch (option.kind) {
     case Kind::Flag:
       return "bool";
     case Kind::Count:
@@ -35,7 +35,13 @@ const char* type_words(Kind kind) {
     case Kind::Number:
       return "float";
     case Kind::Length:
-      return "float or str";
+      return option.absolute ? "float" : "float or str";
+    case Kind::Files:
+      return "path or sequence of paths";
+    case Kind::Names:
+      return "str or sequence of str";
+    case Kind::Settings:
+      return "dict";
     case Kind::Choice:
     case Kind::Text:
       break;
@@ -57,6 +63,42 @@ std::string text_of_counts(const OptionDescription& option, const py::object& va
   return out;
 }
 
+/// The lines of texts: of one, or of a sequence.
+/// @param may_be_path  os.PathLike, too
+std::string text_of_texts(const OptionDescription& option, const py::object& value,
+                          bool may_be_path) {
+  const char* what = may_be_path ? "a path or a sequence of paths" : "a str or a sequence of str";
+  const auto line = [&](const py::object& one) -> std::optional<std::string> {
+    if (!py::isinstance<py::str>(one) && !may_be_path) return std::nullopt;
+    const auto text = path_of(one);
+    // An empty text is no name and no folder; an end of line would make two of one.
+    if (!text || text->empty() || text->find('\n') != std::string::npos) return std::nullopt;
+    return *text + '\n';
+  };
+  if (const auto one = line(value)) return *one;
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value))
+    refuse(option, what, value);
+  std::string out;
+  for (const py::handle one : value) {
+    const auto text = line(py::reinterpret_borrow<py::object>(one));
+    if (!text) refuse(option, what, value);
+    out += *text;
+  }
+  return out;
+}
+
+std::string text_of_settings(const OptionDescription& option, const py::object& value) {
+  const char* what = "a dict of names and numbers";
+  if (!py::isinstance<py::dict>(value)) refuse(option, what, value);
+  std::string out;
+  for (const auto& [name, number] : value.cast<py::dict>()) {
+    const auto given = number_of(number);
+    if (!py::isinstance<py::str>(name) || !given) refuse(option, what, value);
+    out += name.cast<std::string>() + '=' + option_text::of(*given) + '\n';
+  }
+  return out;
+}
+
 /// A default as Python writes it.
 std::string literal(const Keyword& keyword) {
   if (!keyword.initial) return "None";
@@ -65,6 +107,9 @@ std::string literal(const Keyword& keyword) {
       return *keyword.initial == "true" ? "True" : "False";
     case Kind::Count:
       return *keyword.initial;
+    case Kind::Length:
+      if (!keyword.option.absolute) break;
+      [[fallthrough]];
     case Kind::Number: {
       double value = 0;
       option_text::parse(*keyword.initial, value);
@@ -97,8 +142,8 @@ std::string entry_of(const Keyword& keyword) {
   if (const std::string range = range_words(o); !range.empty()) text += " (" + range + ")";
   text += '.';
   if (!o.otherwise.empty()) text += " By default " + spelled(o.otherwise) + ".";
-  return with_underscores(o.name) + " : " + type_words(o.kind) +
-         (keyword.initial ? "" : ", optional") + "\n" + wrapped(text, 4);
+  return with_underscores(o.name) + " : " + type_words(o) + (keyword.initial ? "" : ", optional") +
+         "\n" + wrapped(text, 4);
 }
 
 constexpr const char* kCacheEntry =
@@ -160,8 +205,19 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
         text = value.cast<std::string>();
       else if (const auto given = number_of(value))
         text = option_text::of(*given);
+      else if (option.absolute)
+        refuse(option, "a positive length", value);
       else
         refuse(option, "a positive number, or a percentage of the diagonal such as '0.5%'", value);
+      break;
+    case Kind::Files:
+    case Kind::Names:
+      text = text_of_texts(option, value, option.kind == Kind::Files);
+      if (text.empty()) return std::nullopt;
+      break;
+    case Kind::Settings:
+      text = text_of_settings(option, value);
+      if (text.empty()) return std::nullopt;
       break;
     case Kind::Choice:
     case Kind::Text:
@@ -242,7 +298,7 @@ py::list table_of(const std::vector<Keyword>& keywords) {
     py::dict entry;
     entry["name"] = o.name;
     entry["keyword"] = with_underscores(o.name);
-    entry["type"] = type_words(o.kind);
+    entry["type"] = type_words(o);
     entry["choices"] = py::cast(o.values.empty() ? o.choices : std::vector<std::string>());
     entry["values"] = value_words(o);
     entry["range"] = range_words(o);

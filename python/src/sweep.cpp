@@ -1,6 +1,7 @@
 // Swept volumes: kaboum.sweep, as sweep-approx, and verify_sweep, as `bound-verify sweep`.
 
-#include <kaboum/certify/sweep.h>
+#include <kaboum/certify/sweep_options.h>
+#include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/verify/moving_robot.h>
@@ -10,21 +11,12 @@
 #include "answers.h"
 #include "convex_set.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
-#include "set_options.h"
 
 namespace kaboum::python {
 namespace {
-
-using sweep::StepRule;
-constexpr std::array<std::pair<const char*, StepRule>, 6> kRules{
-    {{"baginski", StepRule::Baginski},
-     {"uniform", StepRule::Uniform},
-     {"subset", StepRule::Subset},
-     {"second-order", StepRule::SecondOrder},
-     {"adaptive", StepRule::Adaptive},
-     {"balanced", StepRule::Balanced}}};
 
 /// A file's path, or an array of waypoints x variables.
 robot::Path path_from(const py::object& value, const robot::Robot& robot,
@@ -110,41 +102,33 @@ void bind_class(py::module_& module) {
       });
 }
 
-SweptSet sweep_path(const py::object& robot, const py::object& path, const py::object& epsilon,
-                    const std::string& bound, const py::object& max_reach, double simplify,
-                    bool implicit_margin, bool no_merge, bool ignore_limits,
-                    const robot::FixedJoints& joint, bool degrees, const py::object& links,
-                    const std::string& geometry, const py::object& package_path,
-                    const py::object& body_epsilon, std::size_t max_vertices_per_body,
-                    const std::string& effort, bool drop_sheets, bool no_cache,
-                    const std::string& unit, bool verify, int threads, const py::object& progress) {
-  const RobotValue value = robot_of(robot, "robot");
+/// The robot where it is to stand.
+robot::RobotFile placed_robot(const RobotValue& value, certify::SweptSetOptions& options) {
+  robot::RobotFile out = *value.file;
+  if (options.base_pose.empty()) return out;
+  const robot::Transform base = robot::parse_pose(options.base_pose, "base_pose");
+  certify::place(out.robot, base, options);
+  return out;
+}
+
+SweptSet sweep_path(const py::object& robot, const py::object& path, bool verify,
+                    const py::kwargs& given) {
+  py::dict keywords = given;
+  certify::SweptSetOptions options;
+  take_options(certify::swept_set_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords);
+  require_all_taken("sweep", keywords, keywords_of(certify::swept_set_options()));
+  const robot::RobotFile placed = placed_robot(robot_of(robot, "robot"), options);
   SweptSet out;
-  const robot::Path waypoints =
-      path_from(path, value.file->robot, {!ignore_limits, degrees, joint}, out.notes);
-  certify::SweepRequest r;
-  const auto wished = plain_length_of(epsilon, "epsilon");
-  if (!wished) throw Error(ErrorCode::InvalidArgument, "epsilon must be a length");
-  r.search.epsilon = *wished;
-  r.search.rule = value_of(kRules, bound, "bound");
-  r.search.max_excess = plain_length_of(max_reach, "max_reach");
-  r.search.simplify = simplify;
-  r.search.explicit_margin = !implicit_margin;
-  r.search.merge = !no_merge;
+  const robot::Path waypoints = path_from(
+      path, placed.robot,
+      {!options.ignore_limits, options.degrees, numbers_by_name(options.joints)}, out.notes);
+  certify::SweepRequest r = certify::sweep_request_of(options);
   r.decide_motion = verify;
-  r.unit = unit;
-  r.parameters = "--epsilon " + Length{*wished}.text() + " --bound " + bound;
-  certify::RobotRequest bodies;
-  bodies.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
-  bodies.set.epsilon =
-      body_epsilon.is_none() ? Length{*wished} : *length_of(body_epsilon, "body_epsilon");
-  bodies.set.max_vertices = max_vertices_per_body;
-  bodies.set.effort = value_of(kSetEfforts, effort, "effort");
-  bodies.set.preparation.drop_sheets = drop_sheets;
-  bodies.set.wrap.emplace().where_needed = true;
-  Watch watch(progress);
+  const certify::RobotRequest bodies = certify::bodies_request_of(options);
+  Watch watch(running.progress);
   r.search.progress = watch.hook();
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
     certify::RobotHooks hooks;
     hooks.progress = watch.hook();
@@ -152,9 +136,9 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, const py::o
       out.notes.push_back(file + ": " + text);
     };
     const certify::CertifiedBodies made =
-        certify::certify_bodies(*value.file, bodies, no_cache ? nullptr : &cache, hooks);
-    auto swept = certify::certify_sweep(*value.file, made, waypoints, r);
-    if (!swept) throw certify::TooCoarse(value.file->path.string());
+        certify::certify_bodies(placed, bodies, running.no_cache ? nullptr : &cache, hooks);
+    auto swept = certify::certify_sweep(placed, made, waypoints, r);
+    if (!swept) throw certify::TooCoarse(placed.path.string());
     out.made = std::move(*swept);
     return out;
   });
@@ -244,35 +228,9 @@ Parameters
 robot : Robot or path
 path : path or array
     A file (.csv, .json), or waypoints x robot.variables, joined linearly. [rad or length]
-epsilon : float
-    Largest margin round the bodies. [length]
-bound : str
-    How steps are chosen: 'baginski' (not proved), 'uniform', 'subset', 'second-order', 'adaptive'
-    or 'balanced'.
-max_reach : float, optional
-    Largest distance of a hull from what it bounds. [length]
-simplify : float
-    Share of epsilon, 0 to 0.9, by which vertices may be left out.
-implicit_margin : bool
-    Do not enlarge the bodies by the margin, but state it.
-no_merge : bool
-    One body at least between two waypoints.
-ignore_limits : bool
-    Allow waypoints outside the joints' limits.
-joint : dict
-    Values of joints that the path's file has no column for.
-degrees : bool
-    Angles of the path and of joint are in degrees.
-links, geometry, package_path
-    As for `certify_robot`.
-body_epsilon : float or str, optional
-    Of the links' bodies; by default epsilon.
-max_vertices_per_body, effort, drop_sheets, no_cache, unit
-    Of the links' bodies, as for `decompose`.
 verify : bool
     Have the verifier decide the motion from the bodies as well, which takes longer.
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Raises
 ------
@@ -311,17 +269,14 @@ Error
 
 void bind_sweeps(py::module_& module) {
   bind_class(module);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  std::string text =
+      document("sweep", "robot: object, path: object", keywords_of(certify::swept_set_options()),
+               "kaboum.SweptSet", kSweepDoc);
+  text.replace(text.find("*,"), 2, "*, verify: bool = False,");
   module.def("sweep", &sweep_path, py::arg("robot"), py::arg("path"), py::kw_only(),
-             py::arg("epsilon") = 0.005, py::arg("bound") = "balanced",
-             py::arg("max_reach") = py::none(), py::arg("simplify") = 0.0,
-             py::arg("implicit_margin") = false, py::arg("no_merge") = false,
-             py::arg("ignore_limits") = false, py::arg("joint") = py::dict(),
-             py::arg("degrees") = false, py::arg("links") = py::none(),
-             py::arg("geometry") = "collision", py::arg("package_path") = py::tuple(),
-             py::arg("body_epsilon") = py::none(), py::arg("max_vertices_per_body") = 64,
-             py::arg("effort") = "normal", py::arg("drop_sheets") = false,
-             py::arg("no_cache") = false, py::arg("unit") = "m", py::arg("verify") = false,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kSweepDoc);
+             py::arg("verify") = false, text.c_str());
 }
 
 void bind_sweep_verification(py::module_& module) {

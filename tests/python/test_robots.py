@@ -87,6 +87,33 @@ def test_paths(arm, tmp_path):
         kaboum.sweep(arm, [[0, 0]], epsilon="1%")
 
 
+@pytest.mark.parametrize("options", [
+    {},
+    {"epsilon": 0.02, "body_epsilon": "5%", "effort": "fast", "max_vertices_per_body": 12, "unit": "mm"},
+    {"epsilon": 0.02, "bound": "adaptive", "simplify": 0.25, "max_reach": 1, "no_merge": True, "implicit_margin": True},
+    {"epsilon": 0.02, "links": ["tool", "upper"], "base_pose": "1,2,3", "drop_sheets": True, "package_path": ["."]},
+])
+def test_sweeps_have_the_bytes_of_the_program(arm, tmp_path, options):
+    (tmp_path / "p.csv").write_text("shoulder,slide\n0,0\n0.5,0.1\n")
+    arguments = []
+    for name, value in options.items():
+        arguments.append("--" + name.replace("_", "-"))
+        if value is not True:
+            arguments.append(",".join(value) if isinstance(value, list) else value)
+    program("sweep-approx", arm, "--path", tmp_path / "p.csv", "-o", tmp_path / "p.glb", *arguments)
+    assert kaboum.sweep(arm, tmp_path / "p.csv", **options).bytes == (tmp_path / "p.glb").read_bytes()
+
+
+def test_joints_without_a_column(arm, tmp_path):
+    (tmp_path / "p.csv").write_text("shoulder\n0\n20\n")
+    program("sweep-approx", arm, "--path", tmp_path / "p.csv", "-o", tmp_path / "p.glb", "--epsilon", 0.02,
+            "--joint", "slide=0.1", "--degrees")
+    swept = kaboum.sweep(arm, tmp_path / "p.csv", epsilon=0.02, joint={"slide": 0.1}, degrees=True)
+    assert swept.bytes == (tmp_path / "p.glb").read_bytes()
+    with pytest.raises(kaboum.Error, match="joint must be a dict"):
+        kaboum.sweep(arm, tmp_path / "p.csv", joint="slide=0.1")
+
+
 def test_robot_held_by_a_robot(arm, tmp_path):
     hull = kaboum.decompose(arm.parent / "tool.ply", max_bodies=1)
     hull.write(tmp_path / "hull.obj")

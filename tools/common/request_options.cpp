@@ -32,6 +32,19 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
         name, [assign] { assign("true"); }, text);
     return;
   }
+  if (is_repeated(option)) {
+    app.add_option_function<std::vector<std::string>>(
+           name,
+           [name, assign, &option](const std::vector<std::string>& parts) {
+             const std::string value = option_text::of(parts, option);
+             const std::string flaw = flaw_of(option, value);
+             if (!flaw.empty()) throw CLI::ValidationError(name, flaw);
+             assign(value);
+           },
+           text)
+        ->type_name(value_words(option));
+    return;
+  }
   app.add_option_function<std::string>(name, assign, text)
       ->check([&option](const std::string& value) { return flaw_of(option, value); })
       ->type_name(value_words(option));

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "common/motion_options.h"
 #include "common/result_files.h"
 #include "options.h"
 #include "picture.h"
@@ -40,7 +39,8 @@ struct Run {
 
 certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::RobotFile& robot,
                                      Notes& notes) {
-  const certify::RobotRequest request = bodies_request(o);
+  certify::RobotRequest request = certify::bodies_request_of(o.sweep);
+  request.partial = true;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
   require_formats(robot::link_meshes(robot, request.shapes), "");
@@ -60,23 +60,23 @@ certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::R
 }
 
 /// Makes the bodies and the verdicts on their links. Those that are not held are not swept, as if
-/// the others alone were asked for: `o.links`. @throws Error{InvalidInput} where none is held
+/// the others alone were asked for: `o.sweep.links`. @throws Error{InvalidInput} where none is held
 void make_bodies(SweepApproxOptions& o, Run& run) {
   Notes notes;
   run.bodies = make_bodies(o, run.robot, notes);
   run.verdicts = verdicts(run.bodies);
   const auto is_kept = [](const auto& link) { return link.outcome == certify::Outcome::Kept; };
   if (std::ranges::any_of(run.verdicts, is_kept)) {
-    o.links.clear();
+    o.sweep.links.clear();
     std::string why;
     for (const certify::LinkVerdict& link : run.verdicts) {
       const std::string& name = run.robot.robot.links[link.link].name;
       if (is_kept(link))
         why += (why.empty() ? "link '" : "; link '") + name + "': " + link.sentence;
       else
-        o.links += (o.links.empty() ? "" : ",") + name;
+        o.sweep.links.push_back(name);
     }
-    if (o.links.empty()) throw Error(ErrorCode::InvalidInput, why);
+    if (o.sweep.links.empty()) throw Error(ErrorCode::InvalidInput, why);
     run.bodies = make_bodies(o, run.robot, notes);
   }
   for (const std::string& note : notes.lines()) log(o.common.quiet, note);
@@ -204,9 +204,9 @@ void write_files(const Run& run, io::SetFormat format) {
        {o.output, [&] { write_set(run, format); }}});
 }
 
-/// The robot that is asked for, where it stands. `o.robot` becomes its file. @return the base as
-/// --base-pose; empty: at the origin
-std::string place_robot(SweepApproxOptions& o, robot::RobotFile& robot) {
+/// The robot that is asked for, where it stands. `o.robot` becomes its file.
+robot::RobotFile placed_robot(SweepApproxOptions& o) {
+  robot::RobotFile robot;
   robot::Transform base;
   if (!o.scene.empty()) {
     const SceneRobot found = read_scene_robot(o.scene, o.robot_name);
@@ -218,16 +218,14 @@ std::string place_robot(SweepApproxOptions& o, robot::RobotFile& robot) {
     throw Error(ErrorCode::InvalidArgument, "which robot? Give ROBOT, or --scene");
   } else {
     robot = robot::read_robot(o.robot);
-    if (!o.base_pose.empty()) base = robot::parse_pose(o.base_pose, "--base-pose");
+    if (!o.sweep.base_pose.empty()) base = robot::parse_pose(o.sweep.base_pose, "--base-pose");
   }
-  if (base.linear.isIdentity(0) && base.translation.isZero(0)) return {};
-  naming(o.robot, [&] { robot.robot = robot::placed(robot.robot, base); });
-  return robot::base_pose_text(base);
+  naming(o.robot, [&] { certify::place(robot.robot, base, o.sweep); });
+  return robot;
 }
 
 int sweep_path(SweepApproxOptions o) {
-  robot::RobotFile robot;
-  const std::string base = place_robot(o, robot);
+  robot::RobotFile robot = placed_robot(o);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},
                  {"--preview", o.preview},
@@ -235,18 +233,19 @@ int sweep_path(SweepApproxOptions o) {
                 {o.robot, o.path, o.scene});
   const ThreadLimit threads(o.common.threads);
   const io::SetFormat format = output_format(o);
-  Run run{o, std::move(robot), {}, {}, {}, sweep_request(o, base), {}, {}};
+  Run run{o, std::move(robot), {}, {}, {}, {}, {}, {}};
   if (!o.depfile.empty()) run.included = robot::included_files(run.robot);
   std::vector<std::string> notes;
-  run.path = robot::read_path(o.path, run.robot.robot,
-                              {!o.ignore_limits, o.degrees, fixed_joints(o.joints)}, notes);
+  run.path = robot::read_path(
+      o.path, run.robot.robot,
+      {!o.sweep.ignore_limits, o.sweep.degrees, numbers_by_name(o.sweep.joints)}, notes);
   for (const std::string& note : notes) log(o.common.quiet, note);
-  const certify::RobotRequest request = bodies_request(o);
+  const std::vector<std::string> links = o.sweep.links;
   make_bodies(o, run);
-  run.request = sweep_request(o, base);
-  run.bare = robot::bare_links(run.robot.robot, request.shapes.visual, request.shapes.links);
+  run.request = certify::sweep_request_of(o.sweep);
+  run.bare = robot::bare_links(run.robot.robot, o.sweep.visual, links);
   for (const std::string& note :
-       robot::notes_on({{}, run.bare.other}, request.shapes.visual, ": nothing of this is swept"))
+       robot::notes_on({{}, run.bare.other}, o.sweep.visual, ": nothing of this is swept"))
     log(o.common.quiet, o.robot + ": " + note);
   if (!sweep_bodies(run)) {
     log(false, o.robot +
@@ -256,8 +255,9 @@ int sweep_path(SweepApproxOptions o) {
   }
   log(o.common.quiet, summary(run));
   say_bad_links(run);
-  if (!base.empty())
-    log(o.common.quiet, "in the world's frame: bound-verify sweep needs --base-pose " + base);
+  if (!o.sweep.base_pose.empty())
+    log(o.common.quiet,
+        "in the world's frame: bound-verify sweep needs --base-pose " + o.sweep.base_pose);
   write_files(run, format);
   return exit_code(outcome_of(run.verdicts));
 }

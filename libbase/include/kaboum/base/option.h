@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ struct OptionDescription {
     Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "0.5%"
     Choice,  ///< one of `choices`
     Text,
+    Files,     ///< files or folders, each stated by itself
+    Names,     ///< different names with commas between them: "arm,hand"
+    Settings,  ///< numbers by name, each stated by itself: "finger=0.04"
   };
 
   std::string name;  ///< words in small letters, joined by hyphens: "max-bodies"
@@ -34,7 +38,8 @@ struct OptionDescription {
   std::string values = {};  ///< placeholder of a value in usage: "SECONDS"; empty: by its kind
   double low = -std::numeric_limits<double>::infinity();  ///< least count or number
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
-  bool between = false;  ///< a number lies between the limits and is none of them
+  bool between = false;   ///< a number lies between the limits and is none of them
+  bool absolute = false;  ///< a length is no percentage
   /// Default in words; empty: that of the request, if it has one.
   std::string otherwise = {};
   /// Part of each record, its default too.
@@ -42,7 +47,7 @@ struct OptionDescription {
   /// Part of no record's line: containers have a field of its own for it.
   bool unrecorded = false;
 
-  // Set by its kind.
+  // Set by option() and choice(), but for Names and Settings.
   Kind kind = Kind::Text;
   std::vector<std::string> choices = {};
 };
@@ -72,6 +77,13 @@ std::string remedy_of_python(const std::string& text);
 /// Objection to a text as a value of the option ("must be ..."); empty where it is one.
 std::string flaw_of(const OptionDescription& option, const std::string& value);
 
+/// Whether a value is a list whose parts are stated each by itself. Its text has a line for each.
+bool is_repeated(const OptionDescription& option);
+
+/// Numbers by name, of texts such as "finger=0.04".
+/// @pre flaw_of finds nothing.
+std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings);
+
 /// Texts of values: the fewest digits that read back as the same number.
 namespace option_text {
 std::string of(bool value);
@@ -80,6 +92,8 @@ std::string of(const std::vector<std::size_t>& value);
 std::string of(double value);
 std::string of(const Length& value);
 std::string of(const std::string& value);
+/// With commas or, where the option is repeated, ends of lines between the parts.
+std::string of(const std::vector<std::string>& value, const OptionDescription& option);
 
 /// @pre flaw_of finds nothing.
 void parse(const std::string& text, bool& value);
@@ -88,6 +102,9 @@ void parse(const std::string& text, std::vector<std::size_t>& value);
 void parse(const std::string& text, double& value);
 void parse(const std::string& text, Length& value);
 void parse(const std::string& text, std::string& value);
+/// The parts of a list: its lines or, where it has but one and is not repeated, what is between
+/// commas. Empty ones are left out.
+std::vector<std::string> parts(const std::string& text, const OptionDescription& option);
 }  // namespace option_text
 
 /// An option of a Request: its description, and how its value is read and set, as text.
@@ -127,13 +144,16 @@ constexpr OptionDescription::Kind kind_of() {
   else
     return Kind::Text;
 }
-}  // namespace option_detail
 
-/// An option whose value is a member of the request: a bool, size_t, double, Length, string or
-/// vector of size_t, or an optional one. An empty vector states nothing.
-/// @param member  of a request, const or not: a reference to the value
+/// The kind that a list of texts has: the one that its description states.
+inline OptionDescription::Kind kind_of_list(OptionDescription::Kind stated) {
+  using Kind = OptionDescription::Kind;
+  return stated == Kind::Names || stated == Kind::Settings ? stated : Kind::Files;
+}
+
+/// An option of one value, or of several counts.
 template <class Request, class Member>
-Option<Request> option(OptionDescription description, Member member) {
+Option<Request> single(OptionDescription description, Member member) {
   using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
   using Content = option_detail::Content<Stored>;
   description.kind = option_detail::kind_of<typename Content::Type>();
@@ -155,6 +175,33 @@ Option<Request> option(OptionDescription description, Member member) {
             option_text::parse(text, parsed);
             member(request) = std::move(parsed);
           }};
+}
+
+/// An option of several texts; none states nothing.
+template <class Request, class Member>
+Option<Request> list(OptionDescription description, Member member) {
+  description.kind = kind_of_list(description.kind);
+  return {description,
+          [member, description](const Request& request) -> std::optional<std::string> {
+            if (member(request).empty()) return std::nullopt;
+            return option_text::of(member(request), description);
+          },
+          [member, description](Request& request, const std::string& text) {
+            member(request) = option_text::parts(text, description);
+          }};
+}
+}  // namespace option_detail
+
+/// An option whose value is a member of the request: a bool, size_t, double, Length, string or
+/// vector of size_t or strings, or an optional one. An empty vector states nothing.
+/// @param member  of a request, const or not: a reference to the value
+template <class Request, class Member>
+Option<Request> option(OptionDescription description, Member member) {
+  using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
+  if constexpr (std::is_same_v<Stored, std::vector<std::string>>)
+    return option_detail::list<Request>(std::move(description), member);
+  else
+    return option_detail::single<Request>(std::move(description), member);
 }
 
 /// An option whose value is one of several, each of which has a name.
@@ -212,6 +259,11 @@ std::string value_of(const std::vector<Option<Request>>& options, std::string_vi
   return {};
 }
 
+namespace option_detail {
+/// An option and its value in a record; a repeated one as often as it has parts.
+std::string recorded_words(const OptionDescription& option, const std::string& value);
+}  // namespace option_detail
+
 /// The options of a request that are not as by default, in one line: the record of what a result
 /// was made with. "--epsilon 1% --drop-sheets"
 template <class Request>
@@ -221,8 +273,8 @@ std::string record_of(const std::vector<Option<Request>>& options, const Request
     const std::optional<std::string> value = option.value(request);
     if (option.unrecorded || !value) continue;
     if (!option.always_recorded && value == default_of(option)) continue;
-    out += (out.empty() ? "--" : " --") + option.name;
-    if (option.kind != OptionDescription::Kind::Flag) out += ' ' + *value;
+    if (!out.empty()) out += ' ';
+    out += option_detail::recorded_words(option, *value);
   }
   return out;
 }
@@ -248,9 +300,11 @@ std::string read_record(const std::vector<Option<Request>>& options, std::string
       if (!option.unrecorded && word == "--" + option.name) found = &option;
     if (found == nullptr) return word;
     const bool flag = found->kind == OptionDescription::Kind::Flag;
-    const std::string value = flag ? "true" : option_detail::next_word(record);
+    std::string value = flag ? "true" : option_detail::next_word(record);
     if (!flaw_of(*found, value).empty())
       return value.empty() ? word : word.append(" ").append(value);
+    if (const auto before = found->value(request); before && is_repeated(*found))
+      value = *before + '\n' + value;
     found->assign(request, value);
   }
   return {};
