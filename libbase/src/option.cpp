@@ -291,7 +291,7 @@ std::vector<std::string> parts(const std::string& text, const OptionDescription&
 namespace option_detail {
 
 std::string recorded_words(const OptionDescription& option, const std::string& value) {
-  const std::string name = "--" + option.name;
+  std::string name = "--" + option.name;
   if (option.kind == Kind::Flag) return name;
   if (!is_repeated(option)) return name + ' ' + value;
   std::string out;

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "decisions.h"
+#include "cache_words.h"
 #include "enclosure_record.h"
 #include "given_solid.h"
 #include "issuer.h"
@@ -21,9 +21,6 @@ namespace kaboum::certify {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Changes whenever the same request may give another mesh: cached ones are then not found.
-constexpr const char* kDecimation = "distance 5";
 
 // An entry's content is the certificate in one line, and the mesh's bytes.
 constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 2";
@@ -97,7 +94,8 @@ std::string key_of_enclosure(const std::string& mesh_hash, const EnclosureReques
       std::to_string(static_cast<int>(request.mesh.format)) + '\n' +
       (request.spare_format ? std::to_string(static_cast<int>(*request.spare_format)) + '\n'
                             : std::string()) +
-      request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + kDecimation + '\n' + kDecisions);
+      request.mesh.comment + '\n' + KABOUM_VERSION + '\n' + std::string(cache_words::kEnclosures) +
+      '\n' + std::string(cache_words::kDecisions));
 }
 
 io::Format format_of(const EnclosureRequest& request, const EnclosureCertificate& made) {

@@ -8,14 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cache_words.h"
+
 namespace kaboum::certify {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Changes whenever a reader of libio may give other triangles, notes or units for the same bytes:
-/// what is known of files is then not used.
-constexpr const char* kReaders = "4";
 
 constexpr std::string_view kKind = "KABOUM-FILE 1";
 constexpr std::size_t kReadAtOnce = std::size_t{1} << 15;  ///< [bytes]
@@ -25,7 +23,8 @@ std::string key_of_file(const std::filesystem::path& file, std::optional<io::For
   // The name: notes may have it, and the format is that of its extension.
   return kaboum::sha256(std::string(kKind) + '\n' + sha256 + '\n' + file.string() + '\n' +
                         std::to_string(format ? static_cast<int>(*format) : -1) + '\n' +
-                        Length{scale}.text() + '\n' + KABOUM_VERSION + '\n' + kReaders);
+                        Length{scale}.text() + '\n' + KABOUM_VERSION + '\n' +
+                        std::string(cache_words::kReaders));
 }
 
 }  // namespace

@@ -14,15 +14,13 @@
 #include <type_traits>
 #include <utility>
 
-#include "decisions.h"
+#include "cache_words.h"
 #include "issuer.h"
 
 namespace kaboum::certify {
 namespace {
 
 constexpr std::string_view kKind = "KABOUM-LINK 1";
-/// Changes whenever the same bodies may get other polytopes, or other bytes.
-constexpr const char* kAlgorithm = "1, coloured";
 /// Of fewer points, sets are made in the time of finding them.
 constexpr std::size_t kFewPoints = 200;
 
@@ -106,8 +104,8 @@ class Reader {
 
 std::string key_of(const LinkCase& link) {
   Writer w;
-  for (const std::string_view word : {kKind, std::string_view(KABOUM_VERSION),
-                                      std::string_view(kAlgorithm), std::string_view(kDecisions)})
+  for (const std::string_view word :
+       {kKind, std::string_view(KABOUM_VERSION), cache_words::kLinks, cache_words::kDecisions})
     w.text(word);
   w.value(std::endian::native);
   w.value(std::uint64_t{link.certificate.link});

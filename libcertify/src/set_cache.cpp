@@ -10,7 +10,7 @@
 #include <bit>
 #include <string_view>
 
-#include "decisions.h"
+#include "cache_words.h"
 #include "issuer.h"
 #include "request.h"
 #include "set_record.h"
@@ -19,12 +19,6 @@ namespace kaboum::certify {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Changes whenever the same request may give another result: cached results are then not found.
-constexpr const char* kAlgorithm = "planes 30";
-
-/// The same of containers' bytes.
-constexpr const char* kContainer = "coloured";
 
 // An entry's content is the certificate in one line, and the container.
 constexpr std::string_view kFormat = "KABOUM-SET 3";
@@ -85,7 +79,8 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + quads + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
       (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + KABOUM_VERSION + '\n' +
-      kAlgorithm + '\n' + kContainer + '\n' + kDecisions;
+      std::string(cache_words::kSets) + '\n' + std::string(cache_words::kContainers) + '\n' +
+      std::string(cache_words::kDecisions);
   return {kaboum::sha256(text), origin_of(r, sha256),
           r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed};
 }

@@ -22,7 +22,7 @@ constexpr std::array<std::pair<const char*, sweep::StepRule>, 6> kRules{
      {"balanced", sweep::StepRule::Balanced}}};
 
 /// An option whose record has a length's digits as they were stated.
-Option<R> with_its_digits(Option<R> option) {
+Option<R> with_its_digits(const Option<R>& option) {
   Option<R> out = option;
   out.value = [option](const R& r) {
     std::optional<std::string> value = option.value(r);

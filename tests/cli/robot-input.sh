@@ -144,7 +144,7 @@ expect 3 "joint 'k' at 3 is outside" "$S" flat.urdf --path j.json -o x.glb --joi
 expect 2 'has a column and a value' "$S" flat.urdf --path plain.csv -o x.glb --joint k=3
 expect 2 "no joint 'q'" "$S" flat.urdf --path plain.csv -o x.glb --joint q=3
 for joint in k= k =1 k=x k=nan; do expect 2 'NAME=NUMBER' "$S" flat.urdf --path j.json -o x.glb --joint $joint; done
-expect 2 'given twice' "$S" flat.urdf --path j.json -o x.glb --joint k=1 --joint k=2
+expect 2 "gives 'k' twice" "$S" flat.urdf --path j.json -o x.glb --joint k=1 --joint k=2
 expect 2 'there is no diagonal' "$S" flat.urdf --path plain.csv -o x.glb --epsilon 1%
 absent x.glb
 # JSON that is cut or wrong.

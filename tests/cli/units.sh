@@ -130,7 +130,7 @@ expect 0 'a: 0.013 x 0.012 x 0.012 m' "$S" update a.json --no-cache
 LC_ALL=C sed 's/--max-vertices-per-body 64/--method voxels           /' a/a.glb >voxels.glb
 grep -aq -- '--method voxels' voxels.glb || fail "no such option in the record"
 shows 0 'verified' "$V" cover mm.x3d voxels.glb --scale 0.001
-expect 3 'give that here' "$V" cover mm.x3d voxels.glb
+expect 3 'with --scale 0.001' "$V" cover mm.x3d voxels.glb
 cp voxels.glb a/a.glb
 expect 3 'was made with .--method., which is not known here.* --method voxels .*--scale 0.001' "$S" update a.json --no-cache
 expect 2 "scale: there is nothing of the name 'b'" "$S" make none.json --object a=mm.x3d --scale b=0.001
