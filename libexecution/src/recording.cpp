@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "motion_part.h"
 #include "simulation_state.h"
@@ -78,9 +79,9 @@ Recording::Recording(const world::World& world, const plan::Model& model, const 
     : world_(world),
       model_(model),
       plan_(plan),
-      options_(options),
+      options_(std::move(options)),
       data_(std::make_unique<Data>()) {
-  require_above_zero(options);
+  require_above_zero(options_);
   data_->nodes = Json::array_t(plan.nodes.size());
 }
 

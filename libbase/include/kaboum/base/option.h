@@ -304,7 +304,7 @@ std::string read_record(const std::vector<Option<Request>>& options, std::string
     if (!flaw_of(*found, value).empty())
       return value.empty() ? word : word.append(" ").append(value);
     if (const auto before = found->value(request); before && is_repeated(*found))
-      value = *before + '\n' + value;
+      value.insert(0, 1, '\n').insert(0, *before);
     found->assign(request, value);
   }
   return {};
