@@ -62,7 +62,7 @@ Request read_arguments(const std::vector<std::string>& args) {
   return r;
 }
 
-/// Whether a set covers the closed mesh, decided exactly.
+/// True if a set covers the closed mesh, decided exactly.
 bool covers(const geom::ConvexSet& set, const geom::Mesh& closed) {
   verify::InclusionOptions options;
   options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided

@@ -22,7 +22,7 @@ void append(std::vector<Finished> bodies, CoverCandidate& result) {
   }
 }
 
-/// What a given number of bodies changes in how cuts are scored.
+/// Changes in how cuts are scored where a number of bodies is given.
 Tuning for_task(Tuning how, const CoverOptions& options) {
   if (!options.epsilon) how.search.halving_bonus = kHalvingBonus;
   return how;

@@ -14,7 +14,8 @@ namespace kaboum::verify {
 /// too small, or too large, bounds what is true of the bodies. docs/algorithms/rounded-bodies.md.
 struct BodyBounds {
   geom::ConvexSet inside, outside;  ///< radius 0, and exactly convex; names are the bodies'
-  double gap = 0;  ///< no point of an outer polytope is farther from its body [length]
+  double gap = 0;  ///< no point of an outer polytope is farther from its body, nor one of
+                   ///< a body from its inner polytope [length]
 };
 
 /// Levels of subdivision of the ball, coarse to fine.

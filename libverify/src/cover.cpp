@@ -219,15 +219,21 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
                             bool to_solid, const InclusionOptions& limits) {
   const std::optional<double> one_radius = geom::margin_of(set);
   if (!one_radius) {
-    const auto of = [&](const geom::ConvexSet& polytopes) {
-      return verify_excess(polytopes, original, epsilon, to_solid, limits);
+    // To the triangles alone it is the bodies' surfaces that count, which are within the gap of
+    // those of both polytopes; to the solid, all points do, and what is inside is no farther.
+    const auto of = [&](const geom::ConvexSet& polytopes, double shift) {
+      const double bound = epsilon + (to_solid ? 0 : shift);
+      if (bound > 0) return verify_excess(polytopes, original, bound, to_solid, limits);
+      DistanceClaim nothing;
+      nothing.answer = Answer::Undecided;
+      return nothing;
     };
     DistanceClaim open;
     open.answer = Answer::Undecided;
     open.reason = kNoBounds;
     return decide_between(
-        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.outside); },
-        [&](const BodyBounds& bounds) { return of(bounds.inside); });
+        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.outside, -bounds.gap); },
+        [&](const BodyBounds& bounds) { return of(bounds.inside, bounds.gap); });
   }
   const double margin = *one_radius;
   DistanceClaimOptions options;

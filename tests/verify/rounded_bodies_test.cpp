@@ -285,6 +285,19 @@ TEST(RoundedBodies, ExcessIsThatOfTheBodies) {
   EXPECT_EQ(verify_excess(set, original, 0.5, true).answer, Answer::Undecided);
 }
 
+// Of an open original the bodies' surfaces count: those of a ball about a point of a plate.
+TEST(RoundedBodies, ExcessOverAnOpenOriginalIsThatOfTheSurfaces) {
+  Mesh plate;
+  plate.vertices = {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+  plate.triangles = {{0, 1, 2}};
+  const ConvexSet set = set_of({ball({0, -3, 0}, 1), ball({0, -3, 0}, 0.5)});
+  EXPECT_EQ(verify_excess(set, plate, 1.005, false).answer, Answer::Verified);
+  EXPECT_EQ(verify_excess(set, plate, 0.995, false).answer, Answer::Refuted);
+  // Nearer than any level's gap: never a guess.
+  EXPECT_EQ(verify_excess(set, plate, 1.0001, false).answer, Answer::Undecided);
+  EXPECT_EQ(verify_excess(set, plate, 0.9999, false).answer, Answer::Undecided);
+}
+
 TEST(RoundedBodies, InnerSetsLieInTheirSolid) {
   const Mesh original = cube(1);
   const auto within = [&](const ConvexBody& body) {

@@ -77,7 +77,7 @@ std::string remedy_of_python(const std::string& text);
 /// Objection to a text as a value of the option ("must be ..."); empty where it is one.
 std::string flaw_of(const OptionDescription& option, const std::string& value);
 
-/// Whether a value is a list whose parts are stated each by itself. Its text has a line for each.
+/// True if a value is a list whose parts are stated each by itself. Its text has a line for each.
 bool is_repeated(const OptionDescription& option);
 
 /// Numbers by name, of texts such as "finger=0.04".

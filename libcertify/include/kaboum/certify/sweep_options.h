@@ -20,7 +20,8 @@ struct SweptSetOptions {
   double simplify = 0;
   bool implicit_margin = false, no_merge = false;
 
-  /// Of the links' bodies: epsilon (by default that of the margin), vertices, effort, sheets.
+  /// Options of the links' bodies: epsilon (by default that of the margin), vertices, effort,
+  /// sheets.
   SetOptions bodies;
   bool visual = false;  ///< shapes for drawing, not those for collisions
   std::vector<std::string> links, packages;
@@ -38,7 +39,7 @@ struct SweptSetOptions {
 /// The options of a swept set, in the order in which records state them.
 const std::vector<Option<SweptSetOptions>>& swept_set_options();
 
-/// What the bodies of the robot's links are asked to be.
+/// The request for the bodies of the robot's links.
 RobotRequest bodies_request_of(const SweptSetOptions& options);
 
 /// What the swept set is asked to be, with the record of all options. The motion is not decided.
