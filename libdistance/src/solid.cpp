@@ -97,6 +97,21 @@ bool is_hidden(const Mesh& mesh, std::span<const char> whole, std::span<const ge
   });
 }
 
+/// Takes so much from radii that rounding moves no point of polytopes within the bodies out of
+/// them.
+/// @return the most that was taken [length]
+double shrink(geom::ConvexSet& set) {
+  double most = 0;
+  for (geom::ConvexBody& body : set.bodies) {
+    double largest = body.radius;
+    for (const Vec3& p : body.core.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+    const double taken = std::min(body.radius, 0x1p-40 * body.radius + 0x1p-48 * largest);
+    body.radius -= taken;
+    most = std::max(most, taken);
+  }
+  return most;
+}
+
 /// Of subdivision: the finer, the fewer bodies there are, for as much work.
 int level_for(std::size_t bodies) { return bodies <= 20 ? 4 : bodies <= 200 ? 3 : 2; }
 
@@ -122,9 +137,10 @@ Solid::Solid(const geom::ConvexSet& set) : members_(std::make_unique<Members>())
     margin_ = *margin;
   } else {
     require_convex(set);
-    Inflated inflated = inflate(set, level_for(set.bodies.size()));
+    const double taken = shrink(set_);
+    Inflated inflated = inflate(set_, level_for(set.bodies.size()));
     set_ = std::move(inflated.polytopes);
-    defect_ = inflated.defect;
+    defect_ = inflated.defect + taken;
   }
   boundary_ = union_boundary(set_);
   for (const geom::ConvexBody& body : set_.bodies) members_->bodies.emplace_back(body.core);
