@@ -25,7 +25,8 @@ world::RobotModel robot_model(const robot::Robot& robot,
   return model;
 }
 
-RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made) {
+RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made,
+                    const std::function<void()>& progress) {
   const robot::ShapeChoice& choice = made.bodies.certificate().choice;
   if (!choice.links.empty())
     throw Error(ErrorCode::InvalidArgument,
@@ -35,7 +36,13 @@ RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& ma
   if (choice.visual)
     for (robot::Link& link : model.kinematics.links)
       link.collision.insert(link.collision.end(), link.visual.begin(), link.visual.end());
-  const std::vector<world::LinkPair> examined = examine_pairs(model, {});
+  world::PairOptions options;
+  if (progress)
+    options.stop = [&] {
+      progress();
+      return false;
+    };
+  const std::vector<world::LinkPair> examined = examine_pairs(model, options);
   const std::vector<world::AllowedPair> allowed = pairs_without_check(model, examined);
   RobotPairs out;
   for (const world::AllowedPair& pair : allowed)

@@ -255,6 +255,7 @@ std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, S
   std::optional<Nearest> best;
   double lower = 0;
   visit(state, options, kAllNear, [&](std::size_t i, std::size_t j) {
+    if (options.progress) options.progress();
     const auto distance = clearance(s.set(i), s.set(j));
     if (!distance) return false;
     lower = best ? std::min(lower, distance->lower) : distance->lower;

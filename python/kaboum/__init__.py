@@ -63,6 +63,7 @@ from ._kaboum import (
     verify_sweep,
     wrap,
     write,
+    write_plan_page,
 )
 
 __all__ = [
@@ -117,4 +118,5 @@ __all__ = [
     "verify_sweep",
     "wrap",
     "write",
+    "write_plan_page",
 ]

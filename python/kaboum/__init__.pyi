@@ -216,6 +216,7 @@ class CertifiedRobot:
         mesh_prefix: str | None = None,
         srdf: bool = False,
         no_cache: bool = False,
+        progress: _Progress | None = None,
     ) -> dict[str, list[str]]: ...
 
 class EnclosedRobot:
@@ -433,8 +434,13 @@ class World:
         progress: _Progress | None = None,
     ) -> Path: ...
     def nearest(
-        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False
-    ) -> dict[str, Any] | None: ...
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        resting: bool = False,
+        progress: _Progress | None = None,
+    ) -> Any: ...
     def is_inside(
         self,
         what: str,
@@ -772,7 +778,9 @@ def wrap(
 def replay(
     original: _Path, log: _Path, result: _Mesh, *, scale: float = 1.0, progress: _Progress | None = None
 ) -> Verdict: ...
-def cache_entries(*, folder: _Path | None = None, verify: bool = False) -> list[dict[str, Any]]: ...
+def cache_entries(
+    *, folder: _Path | None = None, verify: bool = False, progress: _Progress | None = None
+) -> list[dict[str, Any]]: ...
 def prune_cache(*, folder: _Path | None = None, size: int | None = None) -> dict[str, int]: ...
 def make_scene(
     path: _Path,
@@ -872,7 +880,25 @@ def draw_plan(
     process_timeout: float = 10.0,
     input_format: _Language | None = None,
     problem_format: _Language | None = None,
+    progress: _Progress | None = None,
 ) -> str: ...
+def write_plan_page(
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    path: _Path,
+    *,
+    scene: _Path,
+    tree: bool = False,
+    package_path: _Path | Sequence[_Path] = (),
+    plugins: _Path | Sequence[_Path] = (),
+    processes: str | Sequence[str] = (),
+    process_timeout: float = 10.0,
+    input_format: _Language | None = None,
+    problem_format: _Language | None = None,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> list[str]: ...
 def convert_domain(
     domain: _Path,
     problem: _Path | None = None,
@@ -880,4 +906,5 @@ def convert_domain(
     to: _Language,
     input_format: _Language | None = None,
     problem_format: _Language | None = None,
+    progress: _Progress | None = None,
 ) -> str: ...

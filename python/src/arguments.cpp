@@ -34,6 +34,15 @@ void require_same(const py::array& given, const std::string& name, const Back& b
 
 }  // namespace
 
+py::array array_from(const py::object& value) {
+  py::array plain = py::array::ensure(value);
+  const bool listed = py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+  if (!plain || !listed || plain.dtype().kind() != 'f') return plain;
+  py::array exact =
+      py::module_::import("numpy").attr("array")(value, py::arg("dtype") = py::dtype("O"));
+  return exact.ndim() == plain.ndim() && exact.size() == plain.size() ? exact : plain;
+}
+
 void require_doubles(const py::array& array, const std::string& name) {
   const char kind = array.dtype().kind();
   const py::ssize_t size = array.dtype().itemsize();
@@ -52,6 +61,10 @@ void require_doubles(const py::array& array, const std::string& name) {
   } else if (kind == 'O') {
     py::ssize_t i = 0;
     for (const py::handle x : array.attr("ravel")()) {
+      if (PyFloat_CheckExact(x.ptr())) {
+        ++i;
+        continue;
+      }
       if (PyNumber_Check(x.ptr()) == 0 || PyComplex_Check(x.ptr()) != 0) refuse();
       PyObject* const number = PyNumber_Float(x.ptr());
       if (number == nullptr) throw py::error_already_set();
@@ -68,7 +81,12 @@ std::optional<double> number_of(const py::handle& value) {
       PyComplex_Check(value.ptr()) != 0)
     return std::nullopt;
   const double out = PyFloat_AsDouble(value.ptr());
-  if (out != -1 || PyErr_Occurred() == nullptr) return out;
+  if (out != -1 || PyErr_Occurred() == nullptr) {
+    if (!std::isnan(out) && !py::float_(out).equal(value))
+      throw Error(ErrorCode::InvalidArgument,
+                  py::str(value).cast<std::string>() + " is no float64; round it first");
+    return out;
+  }
   PyErr_Clear();  // arrays of several numbers, integers beyond doubles
   return std::nullopt;
 }

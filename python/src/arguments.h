@@ -20,6 +20,7 @@ namespace kaboum::python {
 
 /// The value of a number, also NumPy's; nullopt for all else, True, False and arrays of several
 /// too.
+/// @throws Error{InvalidArgument} for a number that is no double: nothing is rounded
 std::optional<double> number_of(const py::handle& value);
 
 /// A number, or a text as the tools take it ('1%', '0.002'); None: nullopt.
@@ -50,6 +51,10 @@ geom::Holes holes_of(const std::string& name, bool may_keep);
 /// Of a name ('stl', 'ply-ascii'), or else of a file name's extension; None and no extension:
 /// nullopt.
 std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument);
+
+/// What an array or a list of numbers holds, nothing rounded: NumPy itself makes float64 of a list
+/// in which whole numbers and others stand together. Null with an error set: it is none.
+py::array array_from(const py::object& value);
 
 /// Checks that nothing is rounded when a two-dimensional array becomes one of doubles: numbers of
 /// other types must be doubles all the same.

@@ -31,7 +31,7 @@ std::optional<std::vector<geom::Vec3>> points_of_core(const py::object& value) {
 }
 
 void take_radii(const py::object& value, geom::ConvexSet& set) {
-  const py::array given = py::array::ensure(value);
+  const py::array given = array_from(value);
   if (!given || given.ndim() > 1) {
     PyErr_Clear();
     throw Error(ErrorCode::InvalidArgument, "radii must be a number or a list of numbers");

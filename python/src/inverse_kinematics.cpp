@@ -80,7 +80,7 @@ py::list families_of(const InverseValue& value) {
 
 /// Values of so many numbers, all finite doubles.
 std::vector<double> numbers_of(const py::object& given, const char* name) {
-  const py::array array = py::array::ensure(given);
+  const py::array array = array_from(given);
   if (!array || array.ndim() != 1) {
     PyErr_Clear();
     throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a row of numbers");
@@ -100,7 +100,7 @@ std::vector<double> numbers_of(const py::object& given, const char* name) {
 /// x, y, z and roll, pitch, yaw, a quaternion or a matrix, row by row; or a 4 x
 /// 4 matrix.
 kinematics::Transform target_of(const py::object& pose) {
-  const py::array array = py::array::ensure(pose);
+  const py::array array = array_from(pose);
   if (!array) PyErr_Clear();
   std::vector<double> numbers;
   if (array && array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4) {

@@ -166,7 +166,7 @@ Error
 }  // namespace
 
 std::vector<geom::Vec3> points_of(const py::object& value, const char* argument) {
-  const py::array given = py::array::ensure(value);
+  const py::array given = array_from(value);
   if (!given) {
     PyErr_Clear();
     refuse(argument, "vertices must be numbers");

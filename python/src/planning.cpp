@@ -1,5 +1,7 @@
-// Planning: kaboum.solve, check_plan, draw_plan, run_plan and convert_domain, as kaboum-plan.
+// Planning: kaboum.solve, check_plan, draw_plan, write_plan_page, run_plan and convert_domain, as
+// kaboum-plan.
 
+#include <kaboum/execution/plan_page.h>
 #include <kaboum/execution/run_plan.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
@@ -23,7 +25,7 @@ constexpr std::array<std::pair<const char*, plan::Algorithm>, 5> kSearches{
      {"astar", plan::Algorithm::AStar}}};
 constexpr std::array<std::pair<const char*, plan::Language>, 2> kLanguages{
     {{"kpl", plan::Language::Kpl}, {"pddl", plan::Language::Pddl}}};
-using Drawing = std::string (*)(const plan::Model&, const plan::Plan&);
+using Drawing = std::string (*)(const plan::Model&, const plan::Plan&, const plan::PlanProgress&);
 constexpr std::array<std::pair<const char*, Drawing>, 3> kDrawings{
     {{"text", &plan::plan_text}, {"dot", &plan::plan_dot}, {"svg", &plan::plan_svg}}};
 
@@ -277,15 +279,38 @@ CheckValue check_plan(const Source& source, const py::object& plan, int threads,
 }
 
 std::string draw_plan(const Source& source, const py::object& plan, const std::string& format,
-                      bool tree) {
+                      bool tree, const py::object& progress) {
   const execution::TaskFiles files = source.files();
   const PlanText given(plan);
   const Drawing draw = value_of(kDrawings, format, "format");
+  Watch watch(progress);
+  const std::function<void()> drawing = [&] { watch("drawing the plan"); };
   return run(0, [&] {
     const execution::PlanningTask task(files);
     const plan::Model model = task.load();
-    const plan::Plan read = given.read(model);
-    return draw(model, tree ? plan::expand_tree(read) : read);
+    plan::Plan read = given.read(model);
+    if (tree) read = plan::expand_tree(read, plan::kMostTreeNodes, drawing);
+    return draw(model, read, drawing);
+  });
+}
+
+std::vector<std::string> write_plan_page(const Source& source, const py::object& plan,
+                                         const py::object& path, bool tree,
+                                         const py::object& package_path, int threads,
+                                         const py::object& progress) {
+  const execution::TaskFiles files = source.files();
+  const std::string file = required_path(path, "path");
+  const PlanText given(plan);
+  Watch watch(progress);
+  const execution::PlanPageOptions options{tree, packages_of(package_path), watch.hook()};
+  return run(threads, [&] {
+    const execution::PlanningTask task(files);
+    const plan::Model model = task.load();
+    execution::PlanPage page = execution::plan_page(task, model, given.read(model), options);
+    io::write_file(file, page.html);
+    std::vector<std::string> notes = task.scene()->notes;
+    notes.insert(notes.end(), page.notes.begin(), page.notes.end());
+    return notes;
   });
 }
 
@@ -392,13 +417,16 @@ py::list replans_of(const execution::PlanRunReport& r) {
 
 std::string convert_domain(const py::object& domain, const py::object& problem,
                            const std::string& to, const std::optional<std::string>& input_format,
-                           const std::optional<std::string>& problem_format) {
+                           const std::optional<std::string>& problem_format,
+                           const py::object& progress) {
   const Source source{domain,      problem, py::none(),   py::tuple(),
                       py::tuple(), 10,      input_format, problem_format};
   const execution::TaskFiles files = source.files();
   const plan::Language language = value_of(kLanguages, to, "to");
+  Watch watch(progress);
   return run(0, [&] {
     const plan::TaskTexts texts = execution::read_texts(files);
+    watch("converting the domain");
     return plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, language);
   });
 }
@@ -572,16 +600,16 @@ void bind_execution(py::module_& module) {
          const std::string& format, bool tree, const py::object& scene, const py::object& plugins,
          const py::object& processes, double process_timeout,
          const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format) {
+         const std::optional<std::string>& problem_format, const py::object& progress) {
         return draw_plan({domain, problem, scene, plugins, processes, process_timeout, input_format,
                           problem_format},
-                         plan, format, tree);
+                         plan, format, tree, progress);
       },
       py::arg("domain"), py::arg("problem"), py::arg("plan"), py::kw_only(),
       py::arg("format") = "svg", py::arg("tree") = false, py::arg("scene") = py::none(),
       py::arg("plugins") = py::tuple(), py::arg("processes") = py::tuple(),
       py::arg("process_timeout") = 10.0, py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(),
+      py::arg("problem_format") = py::none(), py::arg("progress") = py::none(),
       R"(A plan as an indented text, Graphviz DOT or SVG, as `kaboum-plan show`.
 
 Parameters
@@ -592,14 +620,56 @@ format : str
     'text', 'dot' or 'svg'.
 tree : bool
     Expand shared sub-plans.
+progress
+    As for `decimate`.
 
 Returns
 -------
 str)");
   module.def(
+      "write_plan_page",
+      [](const py::object& domain, const py::object& problem, const py::object& plan,
+         const py::object& path, const py::object& scene, bool tree, const py::object& package_path,
+         const py::object& plugins, const py::object& processes, double process_timeout,
+         const std::optional<std::string>& input_format,
+         const std::optional<std::string>& problem_format, int threads,
+         const py::object& progress) {
+        return write_plan_page({domain, problem, scene, plugins, processes, process_timeout,
+                                input_format, problem_format},
+                               plan, path, tree, package_path, threads, progress);
+      },
+      py::arg("domain"), py::arg("problem"), py::arg("plan"), py::arg("path"), py::kw_only(),
+      py::arg("scene"), py::arg("tree") = false, py::arg("package_path") = py::tuple(),
+      py::arg("plugins") = py::tuple(), py::arg("processes") = py::tuple(),
+      py::arg("process_timeout") = 10.0, py::arg("input_format") = py::none(),
+      py::arg("problem_format") = py::none(), py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      R"(Writes a page that plays a plan in its scene, the bytes of `kaboum-plan show --html`.
+
+It is one HTML file, which needs nothing besides itself (docs/pages.md).
+
+Parameters
+----------
+domain, problem, plan, plugins, processes, process_timeout, input_format, problem_format
+    As for `check_plan`.
+path : str or path
+    Of the page.
+scene : path
+tree : bool
+    Expand shared sub-plans.
+package_path : path or sequence of path
+    Folders that package:// is looked up in.
+threads, progress
+    As for `decimate`.
+
+Returns
+-------
+list of str
+    What a user should know of the scene and of the page.)");
+  module.def(
       "convert_domain", &convert_domain, py::arg("domain"), py::arg("problem") = py::none(),
       py::kw_only(), py::arg("to"), py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(),
+      py::arg("problem_format") = py::none(), py::arg("progress") = py::none(),
       R"(A domain, with its problem if there is one, in another language, as `kaboum-plan convert`.
 
 Parameters
@@ -608,6 +678,8 @@ domain, problem, input_format, problem_format
     As for `solve`.
 to : str
     'kpl' or 'pddl'.
+progress
+    As for `decimate`.
 
 Returns
 -------

@@ -81,13 +81,15 @@ double seconds_since(std::filesystem::file_time_type time) {
       .count();
 }
 
-py::list cache_entries(const py::object& folder, bool verify) {
+py::list cache_entries(const py::object& folder, bool verify, const py::object& progress) {
   const certify::CacheFolder cache = cache_of(folder);
   using Entry = certify::CacheFolder::Entry;
   std::vector<std::string> kinds, flaws;
+  Watch watch(progress);
   const std::vector<Entry> entries = run(0, [&] {
     std::vector<Entry> found = cache.entries();
     for (const Entry& entry : found) {
+      watch(entry.path.stem().string());
       kinds.push_back(certify::CacheFolder::kind_of(entry));
       flaws.push_back(verify ? certify::CacheFolder::flaw_of(entry) : std::string());
     }
@@ -143,7 +145,7 @@ Raises
 Error
     'invalid_input' where the log was made from another file.)");
   module.def("cache_entries", &cache_entries, py::kw_only(), py::arg("folder") = py::none(),
-             py::arg("verify") = false,
+             py::arg("verify") = false, py::arg("progress") = py::none(),
              R"(Entries of the cache, those not used for the longest time first, as `kaboum-cache`.
 
 Parameters
@@ -151,7 +153,9 @@ Parameters
 folder : str or path, optional
     By default $KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum.
 verify : bool
-    Look at each entry: 'flaw' is why it is damaged, empty where it is whole.)");
+    Look at each entry: 'flaw' is why it is damaged, empty where it is whole.
+progress
+    As for `decimate`.)");
   module.def("prune_cache", &prune_cache, py::kw_only(), py::arg("folder") = py::none(),
              py::arg("size") = py::none(),
              R"(Removes what was not used for the longest time, until the rest is small enough.

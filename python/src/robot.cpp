@@ -122,15 +122,22 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& links,
 
 py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
                      const py::object& formats, const std::optional<std::string>& loader,
-                     const std::optional<std::string>& mesh_prefix, bool srdf, bool no_cache) {
+                     const std::optional<std::string>& mesh_prefix, bool srdf, bool no_cache,
+                     const py::object& progress) {
   const auto place = path_of(folder);
   if (!place) throw Error(ErrorCode::InvalidArgument, "folder must be a str or an os.PathLike");
   const robot_folder::FolderOptions options =
       folder_options_of(*place, formats, loader, mesh_prefix);
   std::vector<std::string> notes;
+  Watch watch(progress);
   const robot_folder::WrittenRobot written = run(0, [&] {
     std::vector<std::pair<std::string, std::string>> documents;
-    if (srdf) documents.emplace_back(".srdf", scene::pairs_of(robot.file->robot, robot.made).srdf);
+    if (srdf) {
+      const scene::RobotPairs pairs =
+          scene::pairs_of(robot.file->robot, robot.made, [&] { watch("pairs of links"); });
+      documents.emplace_back(".srdf", pairs.srdf);
+    }
+    watch("writing");
     std::optional<certify::CacheFolder> cache;
     if (!no_cache) cache.emplace(certify::CacheFolder::default_folder());
     return robot_folder::write_robot(*place, *robot.file, robot.made, options, documents,
@@ -165,6 +172,8 @@ srdf : bool
     asked for.
 no_cache : bool
     Write all files, also those that an earlier run has written just so.
+progress
+    As for `decimate`; of pairs of links.
 
 Returns
 -------
@@ -212,7 +221,8 @@ void bind_certified(py::module_& module) {
           "notes", [](const Value& r) { return r.notes; }, "What a user should know of the meshes.")
       .def("write", &write_robot, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
-           py::arg("srdf") = false, py::arg("no_cache") = false, kWriteDoc)
+           py::arg("srdf") = false, py::arg("no_cache") = false, py::arg("progress") = py::none(),
+           kWriteDoc)
       .def("__repr__", [](const Value& r) {
         return "<kaboum.CertifiedRobot of " + std::to_string(r.made.links.size()) + " links>";
       });

@@ -19,10 +19,10 @@ namespace {
 robot::Path path_from(const py::object& value, const robot::Robot& robot,
                       const robot::PathOptions& options, std::vector<std::string>& notes) {
   if (const auto file = path_of(value)) return robot::read_path(*file, robot, options, notes);
-  const py::array given = py::array::ensure(value);
+  const py::array given = array_from(value);
   if (!given) PyErr_Clear();
   if (given && given.ndim() == 2) require_doubles(given, "path");
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   if (!array) PyErr_Clear();
   const std::size_t variables = robot.variables.size();
   if (!array || array.ndim() != 2 || static_cast<std::size_t>(array.shape(1)) != variables ||

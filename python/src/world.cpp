@@ -52,7 +52,7 @@ std::size_t robot_index(const world::World& world, const std::optional<std::stri
 /// or
 ///   not finite
 robot::Path rows_of(const py::object& value, std::size_t variables, const char* name, bool& one) {
-  py::array given = py::array::ensure(value);
+  py::array given = array_from(value);
   if (!given) PyErr_Clear();
   one = given && given.ndim() == 1;
   if (one) given = given.reshape({py::ssize_t{1}, given.shape(0)});
@@ -267,24 +267,36 @@ InclusionValue stays_inside(const WorldValue& in, const std::string& what,
   });
 }
 
+py::object dict_of(const world::World& world, const std::optional<world::Checker::Nearest>& found) {
+  if (!found) return py::none();
+  py::dict out;
+  out["pair"] = py::make_tuple(world.name_of(found->items[0]), world.name_of(found->items[1]));
+  out["lower"] = found->clearance.lower;
+  out["upper"] = found->clearance.upper;
+  return out;
+}
+
 py::object nearest(const WorldValue& in, const py::object& q,
-                   const std::optional<std::string>& robot, bool resting) {
+                   const std::optional<std::string>& robot, bool resting,
+                   const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
-  if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
+  Watch watch(progress);
   const auto found = run(0, [&] {
     world::Scratch scratch;
-    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, {resting});
+    std::vector<std::optional<world::Checker::Nearest>> out;
+    const world::Checker::Options options{resting, [&] { watch("nearest pair"); }};
+    for_rows(rows, watch, [&](const std::vector<double>& row) {
+      out.push_back(in.checker->find_nearest(state_at(in, index, row), scratch, options));
+    });
+    return out;
   });
-  if (!found) return py::none();
-  py::dict out;
-  out["pair"] =
-      py::make_tuple(in.world().name_of(found->items[0]), in.world().name_of(found->items[1]));
-  out["lower"] = found->clearance.lower;
-  out["upper"] = found->clearance.upper;
-  return out;
+  if (one) return dict_of(in.world(), found.front());
+  py::list out;
+  for (const auto& pair : found) out.append(dict_of(in.world(), pair));
+  return std::move(out);
 }
 
 /// What is known of a robot's pairs of links.
@@ -548,9 +560,10 @@ resolution : float
 progress
     As of `check`.)")
       .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false,
+           py::arg("resting") = false, py::arg("progress") = py::none(),
            "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
-           "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
+           "'lower', 'upper' of its sets' distance; None where no pair is looked at. Of n x k "
+           "values a list of them. [length]")
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
            R"(Whether a thing is in a region of the scene, as `kaboum-check --inside`.

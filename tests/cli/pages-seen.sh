@@ -9,7 +9,7 @@ PAGES=$4
 sed 's/position + explode \* away/position/' "$PAGES/bodies.html" >still.html
 sed 's/mix(k, heat\[i + 1\]/mix(k, heat[0]/' "$PAGES/bodies.html" >dark.html
 sed 's/const grey = /nothing();\n  const grey = /' "$PAGES/bodies.html" >broken.html
-node "$HERE/look_at_pages.js" "$CHROMIUM" "$HERE/../../tools/player/scene.js" seen.png \
+node "$HERE/look_at_pages.js" "$CHROMIUM" "$HERE/../../libpage/src/scene.js" seen.png \
   "$PAGES/bodies.html#layer0=hidden&layer1=shown" \
   "$PAGES/bodies.html#layer0=shown&layer1=shown&colours=bodies&explode=1" \
   "$PAGES/bodies.html" "whole:$PAGES/bodies.html" \

@@ -3,7 +3,7 @@
 # pages-seen.sh, which looks at them.
 HERE=$(cd "$(dirname "$0")" && pwd)
 . "$HERE/common.sh"
-PLAYER=$HERE/../../tools/player
+PLAYER=$HERE/../../libpage/src
 PAGES=${4-}
 KABOUM_CACHE=$WORK/cache
 KABOUM_SCENE=$BIN/kaboum-scene

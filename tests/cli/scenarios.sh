@@ -29,7 +29,7 @@ END
 }
 # player NAME: the page holds all bodies, all steps, and nothing from elsewhere; its code plays every branch.
 player() {
-  python3 - "$1" "$S/../../tools/player" <<'END_OF_PAGE' || fail "$1: the page"
+  python3 - "$1" "$S/../../libpage/src" <<'END_OF_PAGE' || fail "$1: the page"
 import base64, html.parser, json, re, sys
 name, player = sys.argv[1:]
 page = open(f"{name}/plan.html", encoding="utf-8").read()
@@ -71,7 +71,7 @@ if box:
     assert len(base64.b64decode(box[0]["points"])) == 8 * 3 * 4
 END_OF_PAGE
   command -v node >/dev/null || fail "Node.js is missing (nodejs, which scripts/setup installs): the page's code has not been run"
-  node "$HERE/play_page.js" "$1/plan.html" "$S/../../tools/player" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
+  node "$HERE/play_page.js" "$1/plan.html" "$S/../../libpage/src" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
 }
 scenario force-sensing 2 10 4
 scenario remove 6 12 1 --robots 2

@@ -3,6 +3,7 @@
 import fractions
 import os
 import pathlib
+import re
 import subprocess
 import types
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 import kaboum
-from conftest import signed_volume
+from conftest import cube, signed_volume
 
 
 def test_arrays_are_views_that_cannot_be_written(box):
@@ -33,6 +34,20 @@ def test_dtypes(box, vertices, faces):
     np.testing.assert_array_equal(mesh.faces, box[1])
 
 
+@pytest.mark.parametrize("other", [0.5, 1])
+def test_whole_numbers_in_lists_are_not_rounded(other):
+    """Beside a number with a fraction, NumPy makes float64 of them without a word."""
+    rows = [[0, 0, other], [1, 0, 2**53 + 1], [0, 1, 0]]
+    with pytest.raises(kaboum.Error, match=re.escape(f"vertices[1, 2] is {2**53 + 1}, which is no float64")):
+        kaboum.Mesh(rows, [[0, 1, 2]])
+    rows[1][2] = 2**53
+    assert kaboum.Mesh(rows, [[0, 1, 2]]).vertices[1, 2] == 2**53
+    with pytest.raises(kaboum.Error, match=f"{2**53 + 1} is no float64"):
+        kaboum.decompose(cube(), epsilon=2**53 + 1)
+    with pytest.raises(kaboum.Error, match="is no float64"):
+        kaboum.decompose(cube(), epsilon=np.longdouble(1) + np.longdouble(2) ** -60)
+
+
 @pytest.mark.parametrize("number, ok", [
     (np.int64(2**53), True),
     (np.int64(2**53 + 1), False),
@@ -47,6 +62,7 @@ def test_dtypes(box, vertices, faces):
     (fractions.Fraction(1, 3), False),
     (2**70, True),
     (2**70 + 1, False),
+    (2**53 + 1, False),
     (np.float16(0.25), True),
     (1j, False),
     ("0.1", False),

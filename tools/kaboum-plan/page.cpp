@@ -1,55 +1,28 @@
-// One HTML page from the files of player/, with a plan's execution as its data.
+// kaboum-plan show --html: the page of a plan as a file.
 
 #include "page.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/base/xml_text.h>
-#include <kaboum/execution/recording.h>
+#include <kaboum/execution/plan_page.h>
 #include <kaboum/io/mesh_io.h>
-
-#include <filesystem>
 
 #include "common/scene_file.h"
 #include "input.h"
-#include "player/page.h"
 
 namespace kaboum::tools {
-namespace {
-
-/// The scene's exact meshes; without them, and a line on stderr, where one cannot be read.
-std::vector<execution::ExactMesh> meshes_of(const SceneFile& scene, const PlanOptions& o) {
-  try {
-    return execution::exact_meshes(scene.world, o.scene, o.packages);
-  } catch (const Error& error) {
-    log(o.common.quiet, std::string("only bounding sets are shown: ") + error.what());
-    return {};
-  }
-}
-
-}  // namespace
 
 int write_page(const PlanOptions& o) {
   if (o.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   const execution::PlanningTask task = read_task(o);
-  const SceneFile& scene = *task.scene();
-  std::vector<std::string> inputs = scene.inputs;
+  std::vector<std::string> inputs = task.scene()->inputs;
   inputs.insert(inputs.end(), {o.plan, o.domain, o.problem});
   require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = task.load();
-  plan::Plan plan = read_plan_file(model, o.plan);
-  if (o.tree) plan = plan::expand_tree(plan);
-  execution::Recording recording(scene.world, model, plan, {});
-  plan::RunOptions options;
-  options.unplanned = [&](const plan::Unplanned&) { recording.end_unplanned(); };
-  plan::run(model, plan, options, [&](const plan::RunStep& step) { recording.carry_out(step); });
-  const std::string name =
-      model.name.empty() ? std::filesystem::path(o.domain).filename().string() : model.name;
-  io::write_file(
-      o.html,
-      page::filled("plan.html", {{"title", escape_xml("Plan " + name)},
-                                 {"graph", plan::plan_svg(model, plan)},
-                                 {"data", page::in_script(recording.json(meshes_of(scene, o)))}}));
+  const execution::PlanPage page = execution::plan_page(task, model, read_plan_file(model, o.plan),
+                                                        {.tree = o.tree, .packages = o.packages});
+  for (const std::string& note : page.notes) log(o.common.quiet, note);
+  io::write_file(o.html, page.html);
   return kDone;
 }
 

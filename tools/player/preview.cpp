@@ -5,12 +5,11 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/xml_text.h>
 #include <kaboum/io/packed_mesh.h>
+#include <kaboum/page/page.h>
 #include <kaboum/robot/page_data.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-
-#include "page.h"
 
 namespace kaboum::page {
 namespace {

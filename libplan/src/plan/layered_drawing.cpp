@@ -35,13 +35,17 @@ void LayeredGraph::connect(std::size_t upper, std::size_t lower) {
   nodes[lower].above.push_back(upper);
 }
 
-double LayeredGraph::place() {
+double LayeredGraph::place(const std::function<void()>& progress) {
   std::vector<double> at(nodes.size());  // place in the row, then x
   const auto number = [&](const std::vector<std::size_t>& row) {
     for (std::size_t i = 0; i < row.size(); ++i) at[row[i]] = static_cast<double>(i);
   };
   for (const auto& row : rows) number(row);
-  const auto sweep = [&](const auto& visit) {
+  const auto sweep = [&](const auto& look) {
+    const auto visit = [&](std::vector<std::size_t>& row, std::vector<std::size_t> Node::*side) {
+      if (progress) progress();
+      look(row, side);
+    };
     for (int s = 0; s < kSweeps; ++s) {
       for (std::size_t r = 1; r < rows.size(); ++r) visit(rows[r], &Node::above);
       for (std::size_t r = rows.size(); r-- > 1;) visit(rows[r - 1], &Node::below);

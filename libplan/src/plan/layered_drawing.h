@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 // Where the nodes of a layered graph go. Internal to kaboum_plan.
@@ -23,7 +24,8 @@ struct LayeredGraph {
   /// Sorts the rows so that few edges cross (barycentres, swept down and up [sugiyama1981]) and
   /// gives every node an x near its neighbours', such that no two of a row overlap. The smallest
   /// left side is at 0. @return the width of all.
-  double place();
+  /// @param progress  called for every row; may be empty
+  double place(const std::function<void()>& progress = {});
 };
 
 }  // namespace kaboum::plan

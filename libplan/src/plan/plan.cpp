@@ -149,7 +149,7 @@ PlanSize measure(const Model& model, const Plan& plan) {
   return size;
 }
 
-Plan expand_tree(const Plan& plan, std::size_t limit) {
+Plan expand_tree(const Plan& plan, std::size_t limit, const PlanProgress& progress) {
   bottom_up(plan);  // refuses cycles
   Plan tree;
   std::vector<std::pair<Index, Index>> todo;  // node of the plan, its copy
@@ -164,6 +164,7 @@ Plan expand_tree(const Plan& plan, std::size_t limit) {
   };
   tree.root = copy(plan.root);
   for (std::size_t i = 0; i < todo.size(); ++i) {
+    if (progress) progress();
     const auto [n, made] = todo[i];
     if (plan.nodes[n].branches) {
       for (std::size_t c = 0; c < plan.nodes[n].branch.cases.size(); ++c) {

@@ -23,7 +23,7 @@ std::string escape_dot(const std::string& s) {
 
 }  // namespace
 
-std::string plan_text(const Model& model, const Plan& plan) {
+std::string plan_text(const Model& model, const Plan& plan, const PlanProgress& progress) {
   measure(model, plan);  // refuses cycles
   std::vector<std::size_t> parents(plan.nodes.size(), 0);
   for (const Plan::Node& n : plan.nodes)
@@ -39,6 +39,7 @@ std::string plan_text(const Model& model, const Plan& plan) {
   std::vector<Item> stack = {{plan.root, 0, ""}};
   std::size_t length = 0;  // of the indentation
   while (!stack.empty()) {
+    if (progress) progress();
     const Item item = stack.back();
     stack.pop_back();
     // Each branch indents what follows: a chain of very many is a text of their square.
@@ -70,7 +71,7 @@ std::string plan_text(const Model& model, const Plan& plan) {
   return out.str();
 }
 
-std::string plan_dot(const Model& model, const Plan& plan) {
+std::string plan_dot(const Model& model, const Plan& plan, const PlanProgress& progress) {
   std::ostringstream out;
   out << "digraph plan {\n  node [shape=box, fontname=\"sans-serif\"];\n  goal "
          "[shape=doublecircle];\n"
@@ -80,6 +81,7 @@ std::string plan_dot(const Model& model, const Plan& plan) {
   };
   out << name(plan.root) << ";\n";
   for (Index i = 0; i < plan.nodes.size(); ++i) {
+    if (progress) progress();
     const Plan::Node& n = plan.nodes[i];
     out << "  n" << i << " [label=\"" << escape_dot(node_label(model, n)) << "\""
         << (n.branches ? ", style=rounded" : "") << "];\n";

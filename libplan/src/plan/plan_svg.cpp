@@ -66,7 +66,8 @@ enum class Kind : char { Start, Step, Branch, Goal, Reference, Label, Bend };
 /// The drawing: the graph's node k is items[k]. Steps stand in even rows, labels in odd ones.
 class Drawing {
  public:
-  Drawing(const Model& model, const Plan& plan) {
+  Drawing(const Model& model, const Plan& plan, const PlanProgress& progress)
+      : progress_(progress) {
     const Rows rows = rows_of(model, plan);
     const std::size_t start = add(0, Kind::Start, "");
     std::vector<std::size_t> item(plan.nodes.size(), 0);
@@ -79,6 +80,7 @@ class Drawing {
       for (const PlanEdge& e : plan_edges(model, plan.nodes[n]))
         if (e.to != kNone && far(n, e.to)) referred[e.to] = 1;
     for (const Index n : rows.order) {
+      look();
       std::string text = node_label(model, plan.nodes[n]);
       if (referred[n]) text += "  #" + std::to_string(n);
       item[n] = add(row(n), plan.nodes[n].branches ? Kind::Branch : Kind::Step, text);
@@ -90,6 +92,7 @@ class Drawing {
       lead(start, 0, "", item[plan.root], 2);
     }
     for (const Index n : rows.order) {
+      look();
       for (const PlanEdge& e : plan_edges(model, plan.nodes[n])) {
         const std::size_t below = row(n) + 2;
         if (e.to == kNone) {
@@ -105,7 +108,7 @@ class Drawing {
   }
 
   std::string svg() {
-    const double width = graph_.place() + 2 * kBorder;
+    const double width = graph_.place(progress_) + 2 * kBorder;
     double y = kBorder;
     for (std::size_t r = 0; r < graph_.rows.size(); ++r) {
       const bool steps = r % 2 == 0;
@@ -126,8 +129,14 @@ class Drawing {
            "markerWidth=\"7\" markerHeight=\"7\" orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" "
            "fill=\"#606060\"/></marker></defs>\n"
         << "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-    for (const std::vector<std::size_t>& edge : edges_) draw_edge(out, edge);
-    for (std::size_t i = 0; i < items_.size(); ++i) draw_item(out, i);
+    for (const std::vector<std::size_t>& edge : edges_) {
+      look();
+      draw_edge(out, edge);
+    }
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      look();
+      draw_item(out, i);
+    }
     out << "</svg>\n";
     return out.str();
   }
@@ -140,6 +149,10 @@ class Drawing {
     double y = 0, height = 0;
     Index node = kNone;  ///< of the plan, of steps: their boxes have ids
   };
+
+  void look() const {
+    if (progress_) progress_();
+  }
 
   std::size_t add(std::size_t row, Kind kind, std::string text) {
     const double letters = static_cast<double>(text.size());
@@ -214,6 +227,7 @@ class Drawing {
     out << "\">" << escape_xml(item.text) << "</text>\n";
   }
 
+  const PlanProgress& progress_;
   LayeredGraph graph_;
   std::vector<Item> items_;
   std::vector<std::vector<std::size_t>> edges_;
@@ -221,9 +235,9 @@ class Drawing {
 
 }  // namespace
 
-std::string plan_svg(const Model& model, const Plan& plan) {
+std::string plan_svg(const Model& model, const Plan& plan, const PlanProgress& progress) {
   measure(model, plan);  // refuses cycles
-  return Drawing(model, plan).svg();
+  return Drawing(model, plan, progress).svg();
 }
 
 }  // namespace kaboum::plan

@@ -2,6 +2,7 @@
 
 #include <kaboum/plan/model.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,15 @@ struct PlanSize {
 /// @throws Error{InvalidInput} for a cycle, a missing node, or two cases of a branch for one value.
 PlanSize measure(const Model& model, const Plan& plan);
 
+/// Called now and then by what may take long; what it throws ends the work.
+using PlanProgress = std::function<void()>;
+
+/// Nodes that a tree has at the most, where nothing else is asked for.
+inline constexpr std::size_t kMostTreeNodes = 1'000'000;
+
 /// The same plan without sharing. @throws Error{LimitReached} beyond `limit` nodes.
-Plan expand_tree(const Plan& plan, std::size_t limit = 1'000'000);
+Plan expand_tree(const Plan& plan, std::size_t limit = kMostTreeNodes,
+                 const PlanProgress& progress = {});
 
 /// JSON, as docs/planning/plans.md describes it.
 std::string write_plan(const Model& model, const Plan& plan);
@@ -75,9 +83,9 @@ Plan read_plan(const Model& model, const std::string& json, const std::string& f
 
 /// An indented text, Graphviz DOT, or a drawing.
 /// @throws Error{LimitReached} if the text's indentation would take more than 256 MiB.
-std::string plan_text(const Model& model, const Plan& plan);
-std::string plan_dot(const Model& model, const Plan& plan);
-std::string plan_svg(const Model& model, const Plan& plan);
+std::string plan_text(const Model& model, const Plan& plan, const PlanProgress& progress = {});
+std::string plan_dot(const Model& model, const Plan& plan, const PlanProgress& progress = {});
+std::string plan_svg(const Model& model, const Plan& plan, const PlanProgress& progress = {});
 
 /// "name(a, b)"; of a case "p(a)" or "!p(a)" or "f(a) = c".
 std::string action_text(const Model& model, const PlanAction& step);

@@ -4,6 +4,7 @@
 #include <kaboum/world/world.h>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ struct RobotPairs {
 /// Pairs of links that need no check: connected ones, and those whose bodies are proved never to
 /// touch within the limits (world::examine_pairs). Links that have shapes but no set are no frames:
 /// their pairs are left to the checks, but for those that a joint connects or that are fixed.
+/// @param progress  often called; what it throws ends the work
 /// @throws Error{InvalidArgument} where sets of some links only were asked for
-RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made);
+RobotPairs pairs_of(const robot::Robot& robot, const certify::CertifiedRobot& made,
+                    const std::function<void()>& progress = {});
 
 }  // namespace kaboum::scene

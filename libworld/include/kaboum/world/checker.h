@@ -4,6 +4,7 @@
 #include <kaboum/world/world.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -75,6 +76,8 @@ class Checker {
 
   struct Options {
     bool resting = false;  ///< pairs of objects that rest, too
+    /// Called by find_nearest before each pair; what it throws ends the work.
+    std::function<void()> progress = {};
   };
 
   /// The first pair in contact; nullopt: free, for certain.

@@ -7,8 +7,8 @@
 /// Pages that need nothing besides themselves. docs/pages.md.
 namespace kaboum::page {
 
-/// The page of a file of this folder with each {{name}} replaced by the value of that name, or by
-/// the file of that name; what is put in is not looked at again.
+/// The page of a file of the library (plan.html, preview.html) with each {{name}} replaced by the
+/// value of that name, or by the file of that name; what is put in is not looked at again.
 /// @throws std::out_of_range where there is neither.
 std::string filled(std::string_view file, const std::map<std::string, std::string>& values);
 

@@ -1,8 +1,7 @@
-// Pages from the files of this folder, which are part of the program.
-
-#include "page.h"
+// Pages from the files of this folder, which are part of the library.
 
 #include <embedded.h>
+#include <kaboum/page/page.h>
 
 namespace kaboum::page {
 
