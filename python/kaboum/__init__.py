@@ -11,6 +11,7 @@ Whatever goes wrong is an `Error`.
 """
 
 from ._kaboum import (
+    Batch,
     BoundingMesh,
     CertifiedRobot,
     CertifiedSet,
@@ -53,6 +54,7 @@ from ._kaboum import (
     read_robot,
     read_set,
     replay,
+    run_batch,
     run_plan,
     solve,
     sweep,
@@ -67,6 +69,7 @@ from ._kaboum import (
 )
 
 __all__ = [
+    "Batch",
     "BoundingMesh",
     "CertifiedRobot",
     "CertifiedSet",
@@ -108,6 +111,7 @@ __all__ = [
     "read_robot",
     "read_set",
     "replay",
+    "run_batch",
     "run_plan",
     "solve",
     "sweep",

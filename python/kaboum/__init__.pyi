@@ -285,6 +285,18 @@ class PlanRun:
     def notes(self) -> list[str]: ...
     def __bool__(self) -> bool: ...
 
+class Batch:
+    @property
+    def rows(self) -> list[dict[str, Any]]: ...
+    @property
+    def counts(self) -> dict[str, int]: ...
+    @property
+    def done_before(self) -> int: ...
+    @property
+    def to_do(self) -> int: ...
+    def __bool__(self) -> bool: ...
+    def __len__(self) -> int: ...
+
 class Contacts:
     @property
     def pairs(self) -> list[dict[str, Any]]: ...
@@ -811,6 +823,23 @@ def update_scene(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> dict[str, list[str]]: ...
+def run_batch(
+    inputs: _Path | Sequence[_Path],
+    folder: _Path,
+    commands: str | Sequence[str] | Mapping[str, str | Sequence[str]],
+    *,
+    extension: str | None = None,
+    jobs: int = 0,
+    memory: int | None = None,
+    max_memory: int | None = None,
+    timeout: float | None = None,
+    shard: str | None = None,
+    summary: bool = False,
+    retry: bool = False,
+    pictures: bool = True,
+    programs: _Path | None = None,
+    progress: _Progress | None = None,
+) -> Batch: ...
 def solve(
     domain: _Path,
     problem: _Path | None = None,

@@ -2,6 +2,8 @@
 
 #include "bindings.h"
 
+namespace kaboum::python { void bind_batches(py::module_& module); }
+
 PYBIND11_MODULE(_kaboum, module) {
   using namespace kaboum::python;
   // Names in messages and pickles are those that users import.
@@ -26,6 +28,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_replay_and_cache(module);
   bind_scenes(module);
   bind_worlds(module);
+  bind_batches(module);
   bind_option_tables(module);
   module.attr("__name__") = name;
 }

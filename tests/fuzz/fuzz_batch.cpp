@@ -2,8 +2,8 @@
 // rule with a program, or names of files, or is none or throws Error. The first byte selects the
 // kind: a line of the journal, a program's report, a rule.
 
-#include "../../tools/kaboum-batch/record.h"
 #include "fuzz.h"
+#include "record.h"
 
 namespace {
 

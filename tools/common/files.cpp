@@ -234,17 +234,4 @@ void write_depfile(const std::string& path, const std::vector<std::string>& targ
   io::write_file(path, is_list(path) ? list_of(inputs) : rule_of(targets, inputs));
 }
 
-std::vector<std::string> files_in_list(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return {};
-  const std::vector<char> text = io::read_file(path);
-  std::vector<std::string> names;
-  for (auto at = text.begin(); at != text.end();) {
-    const auto end = std::find(at, text.end(), '\0');
-    names.emplace_back(at, end);
-    at = end == text.end() ? end : end + 1;
-  }
-  return names;
-}
-
 }  // namespace kaboum::tools

@@ -36,7 +36,4 @@ void require_depfile(const std::string& path, const std::vector<std::string>& ta
 void write_depfile(const std::string& path, const std::vector<std::string>& targets,
                    const std::vector<std::string>& inputs);
 
-/// The inputs in a .list; none where there is no such file.
-std::vector<std::string> files_in_list(const std::string& path);
-
 }  // namespace kaboum::tools

@@ -1,19 +1,17 @@
 // One program for many files, in parallel, resumable.
 
 #include <kaboum/base/error.h>
-#include <kaboum/io/mesh_io.h>
+#include <kaboum/batch/batch.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
-#include <thread>
+#include <chrono>
+#include <csignal>
+#include <iostream>
 
-#include "command.h"
 #include "common/cli.h"
 #include "common/memory_size.h"
-#include "pool.h"
-#include "result.h"
-#include "summary.h"
 
 namespace {
 
@@ -106,107 +104,60 @@ std::vector<batch::Rule> rules_of(const Options& o) {
   return rules;
 }
 
-/// Four fifths of what is free; 0, which is no limit, where that is not known.
-std::uintmax_t free_memory() {
-  std::ifstream file("/proc/meminfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("MemAvailable:"))
-      return std::stoull(line.substr(line.find(':') + 1)) * 1024 / 5 * 4;
-  return 0;
-}
-
-/// Whether a record holds: the job's other sources are as they were, and the result is that very
-/// one, for a batch with other options may have written there since. Of what failed it is not known
-/// which other files were in the way.
-bool holds(const batch::Job& job, const batch::Record& record, const Options& o) {
-  for (const batch::FileState& source : record.sources)
-    if (batch::file_state(source.path) != source) return false;
-  if (!record.has_result())
-    return record.done() || !record.sources.empty() || !job.may_refer_to_others();
-  return batch::digest_of(fs::path(o.output) / record.output) == record.sha256;
-}
-
-std::vector<const batch::Job*> waiting_of(const std::vector<batch::Job>& jobs,
-                                          const batch::Journal& journal, bool retry) {
-  std::vector<const batch::Job*> waiting;
-  for (const batch::Job& job : jobs) {
-    const batch::Record* record = journal.find(job.name);
-    if (record == nullptr || (retry && !record->done())) waiting.push_back(&job);
-  }
-  return waiting;
-}
-
-std::vector<batch::Record> records_of(const std::vector<batch::Job>& jobs,
-                                      const batch::Journal& journal) {
-  std::vector<batch::Record> records;
-  for (const batch::Job& job : jobs)
-    if (const batch::Record* record = journal.find(job.name)) records.push_back(*record);
-  return records;
-}
-
-void write_summary(const Options& o, const batch::Summary& summary) {
-  const fs::path folder(o.output);
-  const auto write = [&](const char* name, const std::string& text) {
-    io::write_file(folder / name, text);
-  };
-  write("summary.html", batch::html_of(summary, "Batch " + folder.filename().string()));
-  write("summary.csv", batch::csv_of(summary));
-  write("summary.json", batch::json_of(summary));
-}
-
-void report(const Options& o, const batch::Summary& summary, double wall_seconds) {
+void report(const Options& o, const batch::BatchResult& result, double wall_seconds) {
   if (!o.common.report.empty()) {
-    batch::Json report = summary.json();
+    tools::Json report = tools::Json::parse(result.json());
     report["resources"] = {{"wall_seconds", wall_seconds}};
     tools::write_report(o.common, "kaboum-batch", report);
   }
   constexpr int kShown = 5;
   int shown = 0;
-  for (const batch::Record& record : summary.records)
+  for (const batch::Record& record : result.records)
     if (!record.done() && !record.reason.empty() && ++shown <= kShown)
       tools::log(o.common.quiet, record.name + ": " + record.reason);
   const std::string where = o.shard.empty() ? (fs::path(o.output) / "summary.html").string()
                                             : "part " + o.shard + " of " + o.output;
-  tools::log(o.common.quiet, summary.words() + "; " + where);
+  tools::log(o.common.quiet, result.words() + "; " + where);
 }
 
-batch::PoolOptions pool_options(const Options& o, const batch::Journal& journal) {
-  batch::PoolOptions options{
-      .folder = o.output,
-      .scratch = journal.scratch(),
-      .jobs = o.jobs,
-      .memory = o.memory.empty() ? free_memory() : tools::parse_memory(o.memory, "--memory"),
-      .most_memory = tools::parse_memory(o.most_memory, "--max-memory"),
-      .timeout = o.timeout,
-      .pictures = !o.no_pictures,
-      .quiet = o.common.quiet};
-  if (options.jobs == 0) options.jobs = std::max(1U, std::thread::hardware_concurrency());
-  return options;
+volatile std::sig_atomic_t is_stopped = 0;
+
+/// Ctrl-C and the end of a job of a cluster end the programs, and are written down nowhere.
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { is_stopped = 1; };
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
 int run(const Options& o) {
-  const auto begin = batch::Clock::now();
-  std::optional<batch::Shard> shard;
-  if (!o.shard.empty()) shard = batch::parse_shard(o.shard);
-  const std::vector<batch::Job> jobs =
-      batch::find_jobs({o.inputs, rules_of(o), o.extension, o.output, shard,
-                        [&](const std::string& text) { tools::log(o.common.quiet, text); }});
-  batch::Journal journal(
-      {o.output, shard, o.summary}, jobs,
-      [&](const auto& job, const auto& record) { return holds(job, record, o); });
-  std::vector<const batch::Job*> waiting = waiting_of(jobs, journal, o.retry);
-  const std::size_t before = jobs.size() - waiting.size();
-  bool whole = true;
-  if (!o.summary) {
-    batch::Pool pool(pool_options(o, journal), journal);
-    whole = pool.run(std::move(waiting));
-  }
-  const std::vector<batch::Record> records = records_of(jobs, journal);
-  const batch::Summary summary{records, o.summary ? 0 : before, jobs.size() - records.size()};
-  if (!shard) write_summary(o, summary);
-  report(o, summary, std::chrono::duration<double>(batch::Clock::now() - begin).count());
-  if (!whole) return tools::kLimit;
-  return summary.count("done") == jobs.size() ? tools::kDone : tools::kNo;
+  const auto begin = std::chrono::steady_clock::now();
+  batch::BatchRequest request;
+  if (!o.shard.empty()) request.shard = batch::parse_shard(o.shard);
+  request.inputs = o.inputs;
+  request.rules = rules_of(o);
+  request.folder = o.output;
+  request.extension = o.extension;
+  request.only_summary = o.summary;
+  request.retry = o.retry;
+  request.jobs = o.jobs;
+  if (!o.memory.empty()) request.memory = tools::parse_memory(o.memory, "--memory");
+  request.most_memory = tools::parse_memory(o.most_memory, "--max-memory");
+  request.timeout = o.timeout;
+  request.pictures = !o.no_pictures;
+  request.note = [&](const std::string& text) { tools::log(o.common.quiet, text); };
+  const bool shows = !o.common.quiet && isatty(STDERR_FILENO) == 1;
+  if (shows)
+    request.progress = [](const std::string& text) {
+      std::cerr << '\r' << text.substr(0, 120) << "\033[K" << std::flush;
+    };
+  request.stop = [] { return is_stopped != 0; };
+  catch_signals();
+  const batch::BatchResult result = batch::run_batch(request);
+  if (shows) std::cerr << "\r\033[K";
+  report(o, result,
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  if (result.stopped) return tools::kLimit;
+  return result.complete() ? tools::kDone : tools::kNo;
 }
 
 }  // namespace

@@ -134,12 +134,12 @@ std::vector<const Record*> shown_of(std::span<const Record> records) {
 
 }  // namespace
 
-std::size_t Summary::count(const char* state) const {
+std::size_t BatchResult::count(const char* state) const {
   return static_cast<std::size_t>(std::count_if(records.begin(), records.end(),
                                                 [&](const Record& r) { return r.state == state; }));
 }
 
-std::string Summary::words() const {
+std::string BatchResult::words() const {
   std::string text;
   for (const char* state : kStates)
     if (const std::size_t n = count(state); n > 0)
@@ -149,35 +149,29 @@ std::string Summary::words() const {
   return text.empty() ? "no file" : text;
 }
 
-Json Summary::head() const {
+/// All but the rows.
+static Json head_of(const BatchResult& result) {
   Json counts = Json::object();
-  for (const char* state : kStates) counts[state] = count(state);
-  return {{"files", records.size() + to_do},
+  for (const char* state : kStates) counts[state] = result.count(state);
+  return {{"files", result.records.size() + result.to_do},
           {"states", counts},
-          {"done_before", done_before},
-          {"to_do", to_do}};
+          {"done_before", result.done_before},
+          {"to_do", result.to_do}};
 }
 
-Json Summary::json() const {
-  Json all = head(), files = Json::array();
-  for (const Record& record : records) files.push_back(to_json(record));
-  all["rows"] = std::move(files);
-  return all;
-}
-
-std::string json_of(const Summary& summary) {
-  std::string text = summary.head().dump(1);
+std::string BatchResult::json() const {
+  std::string text = head_of(*this).dump(1);
   text.resize(text.rfind('\n'));  // goes on instead of ending
   text += ",\n \"rows\": [";
   const char* before = "\n";
-  for (const Record& record : summary.records) {
+  for (const Record& record : records) {
     text += before + to_json(record).dump(-1, ' ', false, Json::error_handler_t::replace);
     before = ",\n";
   }
   return text + "\n ]\n}\n";
 }
 
-std::string csv_of(const Summary& summary) {
+std::string csv_of(const BatchResult& summary) {
   std::string text;
   const auto add = [&](const Json& row, const auto& cell) {
     bool first = true;
@@ -196,7 +190,7 @@ std::string csv_of(const Summary& summary) {
   return text;
 }
 
-std::string html_of(const Summary& summary, const std::string& title) {
+std::string html_of(const BatchResult& summary, const std::string& title) {
   const std::vector<const Record*> shown = shown_of(summary.records);
   const bool pictures =
       std::any_of(shown.begin(), shown.end(), [](const Record* r) { return !r->picture.empty(); });

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,12 @@ namespace kaboum::batch {
 
 using Clock = std::chrono::steady_clock;
 
-/// Where programs are looked for first: beside this one.
+/// @param programs  BatchRequest::programs
 /// @return the program's path, or its name, which is on PATH then
-std::string find_program(const std::string& name);
+std::string find_program(const std::string& name, const fs::path& programs);
 
 /// Starts a program with nothing on standard input, its output discarded and its messages in a
-/// file. It ends when this process does, however that ends.
+/// file. It ends when the thread that started it does, however that ends.
 /// @param most_memory  of address space; 0: no limit [bytes]
 /// @return its id @throws Error{LimitReached} when no process can be made
 pid_t start(const std::vector<std::string>& command, const fs::path& messages,
@@ -32,8 +33,12 @@ struct Ended {
   double cpu_seconds = 0, peak_megabytes = 0;
 };
 
-/// The next process that has ended; id 0: none has yet.
-Ended next_ended();
+/// A descriptor that can be read once the process has ended, to be closed; -1: the system has none.
+int watched(pid_t id);
+
+/// How a process of ours ended; nullopt: it has not. One that somebody else has waited for counts
+/// as stopped.
+std::optional<Ended> end_of(pid_t id);
 
 /// The last line that is not empty, of a program's messages, shortened.
 std::string last_line(const fs::path& messages);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +20,10 @@ struct PoolOptions {
   std::uintmax_t memory = 0;       ///< of all of them together; 0: no limit [bytes]
   std::uintmax_t most_memory = 0;  ///< of one; 0: no limit [bytes]
   double timeout = 0;              ///< of one; 0: none [s]
-  bool pictures = false, quiet = false;
+  bool pictures = false;
+  fs::path programs = {};                                 ///< BatchRequest::programs
+  std::function<void(const std::string&)> progress = {};  ///< as of BatchRequest
+  std::function<bool()> stop = {};
 };
 
 /// Runs jobs at the same time, largest inputs first, as many as the processors and the memory
@@ -32,12 +36,9 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  /// @return false if a signal (Ctrl-C) ended it before all jobs were done.
+  /// @return false if `stop` ended it before all jobs were done.
   /// @throws Error{OutputFailed} when the folder cannot be written
   bool run(std::vector<const Job*> jobs);
-
-  /// Of the programs that ended, and of the whole. [s]
-  [[nodiscard]] double program_seconds() const { return program_seconds_; }
 
  private:
   /// A job at work.
@@ -49,6 +50,7 @@ class Pool {
     std::vector<FileState> before;  ///< what was in the result's place
     std::uintmax_t memory = 0;      ///< expected [bytes]
     bool ended_by_us = false;
+    int watch = -1;                 ///< as watched says
     std::optional<Record> drawing;  ///< the program is done, its picture is being drawn
   };
 
@@ -57,6 +59,8 @@ class Pool {
   void conclude(Running& run, const Ended& ended);
   bool draw(Running& run, Record& record);
   void add(const Record& record);
+  void wait() const;
+  void end_those_done();
   void end_late_ones();
   void show_life();
   void start_what_fits(std::deque<const Job*>& waiting);
@@ -70,7 +74,6 @@ class Pool {
   std::map<std::string, double> bytes_per_byte_;  // of programs: memory for each byte of input
   std::size_t all_ = 0, done_ = 0, short_ = 0, number_ = 0;
   std::uintmax_t used_ = 0;  // memory expected of what runs [bytes]
-  double program_seconds_ = 0;
   Clock::time_point begin_, next_sign_;
 };
 

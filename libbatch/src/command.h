@@ -22,8 +22,9 @@ fs::path result_in(const fs::path& scratch, const Job& job);
 /// What is run. `{input}`, `{output}`, `{report}` and `{name}` stand for files; a command without
 /// `{input}` gets what KABouM's programs take: INPUT -o OUTPUT --report REPORT --depfile SOURCES
 /// --threads 1.
-std::vector<std::string> command_of(const Job& job, const fs::path& folder,
-                                    const fs::path& scratch);
+/// @param programs  BatchRequest::programs
+std::vector<std::string> command_of(const Job& job, const fs::path& folder, const fs::path& scratch,
+                                    const fs::path& programs);
 
 /// The options, in one line.
 std::string parameters_of(const Job& job);

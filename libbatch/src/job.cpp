@@ -75,14 +75,15 @@ bool is_of_batch(const fs::path& path) {
          fs::is_directory(path.parent_path() / kJournals, error);
 }
 
-void add_folder(const fs::path& folder, const JobOptions& options, std::vector<InputFile>& found) {
+void add_folder(const fs::path& folder, const BatchRequest& options,
+                std::vector<InputFile>& found) {
   std::error_code error;
   fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
   if (error) throw Error(ErrorCode::InvalidInput, folder.string() + ": " + error.message());
   for (; it != fs::recursive_directory_iterator(); it.increment(error)) {
     const fs::path& path = it->path();
     const bool directory = it->is_directory(error);
-    if (directory && fs::equivalent(path, options.results, error)) {
+    if (directory && fs::equivalent(path, options.folder, error)) {
       it.disable_recursion_pending();
     } else if (directory && is_of_batch(path)) {
       it.disable_recursion_pending();
@@ -104,7 +105,7 @@ void require_no_results(const std::vector<InputFile>& found, const fs::path& bat
         results.end())
       throw Error(ErrorCode::InvalidArgument,
                   f.path.string() + " lies in " + (batch / "results").string() +
-                      ", where this batch writes its results; give another --output");
+                      ", where this batch writes its results; give another «output»");
   }
 }
 
@@ -123,7 +124,7 @@ void add_list(const fs::path& list, std::vector<InputFile>& found) {
   }
 }
 
-std::vector<InputFile> find_inputs(const JobOptions& options) {
+std::vector<InputFile> find_inputs(const BatchRequest& options) {
   std::vector<InputFile> found;
   for (const std::string& text : options.inputs) {
     const fs::path input(text);
@@ -135,7 +136,7 @@ std::vector<InputFile> find_inputs(const JobOptions& options) {
     else
       found.push_back({input.filename().string(), input});
   }
-  require_no_results(found, options.results);
+  require_no_results(found, options.folder);
   std::sort(found.begin(), found.end(), [](const InputFile& a, const InputFile& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
   });
@@ -175,7 +176,7 @@ void require_own_depfile(const std::vector<std::string>& command) {
   for (const std::string& word : command)
     if (word == "--depfile" || word.starts_with("--depfile="))
       throw Error(ErrorCode::InvalidArgument,
-                  "--depfile: a batch has one written for itself, to see what a result depends on; "
+                  "«depfile»: a batch has one written for itself, to see what a result depends on; "
                   "leave it out");
 }
 
@@ -185,7 +186,7 @@ Rule parse_rule(const std::string& text) {
   const std::size_t colon = text.find(": ");
   if (colon == std::string::npos || colon == 0)
     throw Error(ErrorCode::InvalidArgument,
-                "a rule is PATTERN: PROGRAM OPTIONS, as in '*.stl: bmesh-decimate --epsilon 1%', "
+                "a rule is PATTERN: PROGRAM OPTIONS, as in '*.stl: mesh-prepare', "
                 "not '" +
                     text + "'");
   Rule rule{text.substr(0, colon), words_of(text.substr(colon + 1))};
@@ -231,7 +232,7 @@ std::string Job::key() const {
   return io::sha256(text + "\n" + output);
 }
 
-std::vector<Job> find_jobs(const JobOptions& options) {
+std::vector<Job> find_jobs(const BatchRequest& options) {
   std::vector<Job> jobs;
   for (const InputFile& found : find_inputs(options)) {
     const auto rule = std::find_if(options.rules.begin(), options.rules.end(), [&](const Rule& r) {

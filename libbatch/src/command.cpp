@@ -10,8 +10,6 @@
 #include <csignal>
 #include <cstring>
 
-#include "common/files.h"
-
 namespace kaboum::batch {
 namespace {
 
@@ -23,14 +21,28 @@ std::string filled(std::string word, const std::string& name, const std::string&
   return word;
 }
 
+/// Names that end with a null character each, as programs write them into NAME.list.
+std::vector<std::string> files_in_list(const fs::path& list) {
+  std::error_code error;
+  if (!fs::exists(list, error)) return {};
+  const std::vector<char> text = io::read_file(list);
+  std::vector<std::string> names;
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = std::find(at, text.end(), '\0');
+    names.emplace_back(at, end);
+    at = end == text.end() ? end : end + 1;
+  }
+  return names;
+}
+
 }  // namespace
 
 fs::path result_in(const fs::path& scratch, const Job& job) {
   return scratch / fs::path(job.output).filename();
 }
 
-std::vector<std::string> command_of(const Job& job, const fs::path& folder,
-                                    const fs::path& scratch) {
+std::vector<std::string> command_of(const Job& job, const fs::path& folder, const fs::path& scratch,
+                                    const fs::path& programs) {
   // A robot's URDF refers to files by their places, so that it is made where it will be.
   const fs::path made = job.makes_folder() ? folder / job.output : result_in(scratch, job);
   if (job.makes_folder()) fs::create_directories(made.parent_path());
@@ -46,7 +58,7 @@ std::vector<std::string> command_of(const Job& job, const fs::path& folder,
     for (const auto& [name, value] : values) word = filled(std::move(word), name, value);
     command.push_back(std::move(word));
   }
-  command.front() = find_program(command.front());
+  command.front() = find_program(command.front(), programs);
   if (explicit_input) return command;
   command.insert(command.begin() + 1, {job.input.string(), "-o", made.string(), "--report",
                                        (scratch / kReport).string(), "--threads", "1"});
@@ -78,7 +90,7 @@ std::string reason_of(const Ended& ended, bool late, const std::string& last_wor
 
 std::vector<FileState> sources_in(const fs::path& scratch, const Job& job, std::int64_t since) {
   std::vector<FileState> sources;
-  for (const std::string& name : tools::files_in_list((scratch / kSources).string())) {
+  for (const std::string& name : files_in_list(scratch / kSources)) {
     if (name == job.input.string()) continue;
     sources.push_back(file_state(name));
     if (sources.back().changed >= since) sources.back().modified = -1;

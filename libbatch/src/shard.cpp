@@ -1,8 +1,7 @@
 // Parts of a batch.
 
-#include "shard.h"
-
 #include <kaboum/base/error.h>
+#include <kaboum/batch/batch.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <charconv>
@@ -33,7 +32,7 @@ Shard parse_shard(const std::string& text) {
     shard = {number_of(all.substr(0, slash)), number_of(all.substr(slash + 1))};
   if (shard.number == 0 || shard.number > shard.count)
     throw Error(ErrorCode::InvalidArgument,
-                "--shard: give a part and the number of parts, from 1/8 to 8/8, not " + text);
+                "«shard»: give a part and the number of parts, from 1/8 to 8/8, not " + text);
   return shard;
 }
 

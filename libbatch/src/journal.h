@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "job.h"
 #include "record.h"
 
 namespace kaboum::batch {

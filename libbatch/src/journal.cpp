@@ -110,7 +110,7 @@ void Journal::take_whole() {
     close(file_);
     throw Error(ErrorCode::OutputFailed,
                 folder_.parent_path().string() +
-                    ": another batch writes here; several machines share one with --shard");
+                    ": another batch writes here; several machines share one with «shard»");
   }
   char last = '\n';
   const off_t size = lseek(file_, 0, SEEK_END);

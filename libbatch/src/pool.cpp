@@ -2,14 +2,13 @@
 
 #include "pool.h"
 
-#include <fcntl.h>
 #include <kaboum/base/error.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <iostream>
 #include <thread>
 
 #include "command.h"
@@ -21,23 +20,6 @@ namespace {
 constexpr std::uintmax_t kLeastMemory = std::uintmax_t{48} << 20U;  // of any program [bytes]
 constexpr auto kSignOfLife = std::chrono::minutes(10);
 constexpr double kFirstGuess = 60;  // memory for each byte of an input, before one was seen
-
-/// Waits for the end of a child, a wish to stop, or a tenth of a second.
-/// @return the signal, or -1
-int wait_for_signal() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int s : {SIGCHLD, SIGINT, SIGTERM}) sigaddset(&set, s);
-  const timespec most{0, 100'000'000};
-  return sigtimedwait(&set, nullptr, &most);
-}
-
-void block_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int s : {SIGCHLD, SIGINT, SIGTERM}) sigaddset(&set, s);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-}
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -57,7 +39,6 @@ bool is_stopped(const Ended& ended, bool by_us) {
 
 Pool::Pool(PoolOptions options, Journal& journal)
     : o_(std::move(options)), journal_(journal), begin_(Clock::now()) {
-  block_signals();
   std::error_code error;
   fs::remove_all(o_.scratch, error);
   fs::create_directories(o_.scratch, error);
@@ -66,10 +47,12 @@ Pool::Pool(PoolOptions options, Journal& journal)
 
 Pool::~Pool() {
   for (const auto& [id, run] : running_) kill(id, SIGKILL);
-  while (!running_.empty() && next_ended().id == 0) wait_for_signal();
+  for (const auto& [id, run] : running_) {
+    while (!end_of(id)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (run.watch >= 0) close(run.watch);
+  }
   std::error_code error;
   fs::remove_all(o_.scratch, error);
-  if (!o_.quiet && isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K";
 }
 
 bool Pool::run(std::vector<const Job*> jobs) {
@@ -81,13 +64,29 @@ bool Pool::run(std::vector<const Job*> jobs) {
   while (!waiting.empty() || !running_.empty()) {
     start_what_fits(waiting);
     show(waiting.size());
-    const int signal = wait_for_signal();
-    if (signal == SIGINT || signal == SIGTERM) return false;
-    for (Ended ended = next_ended(); ended.id != 0; ended = next_ended()) end(ended);
+    wait();
+    if (o_.stop && o_.stop()) return false;
+    end_those_done();
     end_late_ones();
     show_life();
   }
   return true;
+}
+
+/// Until a program has ended, a signal came, or a tenth of a second has passed.
+void Pool::wait() const {
+  std::vector<pollfd> watches;
+  for (const auto& [id, run] : running_)
+    if (run.watch >= 0) watches.push_back({run.watch, POLLIN, 0});
+  const bool all_watched = watches.size() == running_.size();
+  poll(watches.data(), watches.size(), all_watched ? 100 : 5);
+}
+
+void Pool::end_those_done() {
+  std::vector<Ended> all;
+  for (const auto& [id, run] : running_)
+    if (const auto ended = end_of(id)) all.push_back(*ended);
+  for (const Ended& ended : all) end(ended);
 }
 
 void Pool::start_what_fits(std::deque<const Job*>& waiting) {
@@ -113,8 +112,9 @@ void Pool::begin(const Job& job, std::uintmax_t memory) {
   run.since = file_state(run.scratch).changed;  // by the clock of the file system
   run.before = marks_of(o_.folder / job.output);
   used_ += memory;
-  const pid_t id =
-      start(command_of(job, o_.folder, run.scratch), run.scratch / kMessages, o_.most_memory);
+  const pid_t id = start(command_of(job, o_.folder, run.scratch, o_.programs),
+                         run.scratch / kMessages, o_.most_memory);
+  run.watch = watched(id);
   running_.emplace(id, std::move(run));
 }
 
@@ -123,7 +123,8 @@ void Pool::end(const Ended& ended) {
   if (at == running_.end()) return;
   Running run = std::move(at->second);
   running_.erase(at);
-  program_seconds_ += ended.cpu_seconds;
+  if (run.watch >= 0) close(run.watch);
+  run.watch = -1;
   if (is_stopped(ended, run.ended_by_us)) {
     // Nothing is written down: it is to be done again.
   } else if (run.drawing) {
@@ -177,11 +178,13 @@ void Pool::conclude(Running& run, const Ended& ended) {
 bool Pool::draw(Running& run, Record& record) {
   const fs::path picture = run.scratch / kPicture;
   if (run.job->makes_folder()) return false;
-  const pid_t id = start({find_program("mesh-picture"), (o_.folder / record.output).string(), "-o",
-                          picture.string(), "--width", "320", "--height", "220"},
-                         run.scratch / kMessages, o_.most_memory);
+  const pid_t id =
+      start({find_program("mesh-picture", o_.programs), (o_.folder / record.output).string(), "-o",
+             picture.string(), "--width", "320", "--height", "220"},
+            run.scratch / kMessages, o_.most_memory);
   run.drawing = std::move(record);
   run.begin = Clock::now();
+  run.watch = watched(id);
   running_.emplace(id, run);
   return true;
 }
@@ -224,7 +227,7 @@ void Pool::learn(const Job& job, const Ended& ended) {
 }
 
 void Pool::show(std::size_t waiting) const {
-  if (o_.quiet || isatty(STDERR_FILENO) != 1) return;
+  if (!o_.progress) return;
   std::string text = std::to_string(done_) + " of " + std::to_string(all_) + " done, " +
                      std::to_string(short_) + " with a reason";
   if (done_ > 0 && waiting > 0) {
@@ -233,7 +236,7 @@ void Pool::show(std::size_t waiting) const {
     text += ", about " + std::to_string(static_cast<long>(left)) + " s left";
   }
   if (!running_.empty()) text += ": " + running_.begin()->second.job->name;
-  std::cerr << '\r' << text.substr(0, 120) << "\033[K" << std::flush;
+  o_.progress(text);
 }
 
 }  // namespace kaboum::batch

@@ -7,6 +7,7 @@
 #include <kaboum/io/mesh_io.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,12 +48,13 @@ double seconds(const timeval& t) {
 
 }  // namespace
 
-std::string find_program(const std::string& name) {
+std::string find_program(const std::string& name, const fs::path& programs) {
   if (name.find('/') != std::string::npos) return name;
   std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  const fs::path beside = self.parent_path() / name;
-  return !error && fs::is_regular_file(beside, error) ? beside.string() : name;
+  const fs::path folder =
+      programs.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() : programs;
+  const fs::path there = folder / name;
+  return !error && fs::is_regular_file(there, error) ? fs::absolute(there).string() : name;
 }
 
 pid_t start(const std::vector<std::string>& command, const fs::path& messages,
@@ -70,12 +72,19 @@ pid_t start(const std::vector<std::string>& command, const fs::path& messages,
   return id;
 }
 
-Ended next_ended() {
+int watched(pid_t id) { return static_cast<int>(syscall(SYS_pidfd_open, id, 0)); }
+
+std::optional<Ended> end_of(pid_t id) {
   int status = 0;
   rusage usage{};
   Ended ended;
-  ended.id = std::max(wait4(-1, &status, WNOHANG, &usage), pid_t{0});
-  if (ended.id == 0) return ended;
+  const pid_t got = wait4(id, &status, WNOHANG, &usage);
+  if (got == 0) return std::nullopt;
+  ended.id = id;
+  if (got < 0) {  // somebody else has waited for it
+    ended.signal = SIGTERM;
+    return ended;
+  }
   if (WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ended.signal = WTERMSIG(status);
   ended.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
