@@ -132,6 +132,16 @@ std::vector<const Record*> shown_of(std::span<const Record> records) {
   return shown;
 }
 
+/// All but the rows.
+Json head_of(const BatchResult& result) {
+  Json counts = Json::object();
+  for (const char* state : kStates) counts[state] = result.count(state);
+  return {{"files", result.records.size() + result.to_do},
+          {"states", counts},
+          {"done_before", result.done_before},
+          {"to_do", result.to_do}};
+}
+
 }  // namespace
 
 std::size_t BatchResult::count(const char* state) const {
@@ -147,16 +157,6 @@ std::string BatchResult::words() const {
   if (done_before > 0) text += "; " + std::to_string(done_before) + " of them earlier";
   if (to_do > 0) text += (text.empty() ? "" : "; ") + std::to_string(to_do) + " to do";
   return text.empty() ? "no file" : text;
-}
-
-/// All but the rows.
-static Json head_of(const BatchResult& result) {
-  Json counts = Json::object();
-  for (const char* state : kStates) counts[state] = result.count(state);
-  return {{"files", result.records.size() + result.to_do},
-          {"states", counts},
-          {"done_before", result.done_before},
-          {"to_do", result.to_do}};
 }
 
 std::string BatchResult::json() const {

@@ -31,6 +31,9 @@ std::vector<std::string> paths_of(const py::object& value, const char* argument)
 std::vector<std::string> command_of(const py::handle& value) {
   if (py::isinstance<py::str>(value))
     return batch::parse_rule("*: " + value.cast<std::string>()).command;
+  if (!py::isinstance<py::sequence>(value))
+    throw Error(ErrorCode::InvalidArgument,
+                "commands must be a str, a list of words, or a dict of patterns and these");
   std::vector<std::string> words;
   for (const py::handle word : value.cast<py::sequence>()) words.push_back(py::str(word));
   if (words.empty()) throw Error(ErrorCode::InvalidArgument, "a command needs a program");
@@ -55,12 +58,7 @@ batch::BatchResult run_batch(
   batch::BatchRequest request;
   request.inputs = paths_of(inputs, "inputs");
   request.folder = text_path(folder, "folder");
-  try {
-    request.rules = rules_of(commands);
-  } catch (const py::cast_error&) {
-    throw Error(ErrorCode::InvalidArgument,
-                "commands must be a str, a list of words, or a dict of patterns and these");
-  }
+  request.rules = rules_of(commands);
   request.extension = extension.value_or("");
   if (jobs > 1024) throw Error(ErrorCode::InvalidArgument, "jobs must be from 0 to 1024");
   request.jobs = jobs;

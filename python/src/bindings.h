@@ -9,6 +9,7 @@ namespace kaboum::python {
 
 namespace py = pybind11;
 
+void bind_batches(py::module_& module);
 void bind_errors(py::module_& module);
 void bind_meshes(py::module_& module);
 void bind_preparation(py::module_& module);

@@ -2,8 +2,6 @@
 
 #include "bindings.h"
 
-namespace kaboum::python { void bind_batches(py::module_& module); }
-
 PYBIND11_MODULE(_kaboum, module) {
   using namespace kaboum::python;
   // Names in messages and pickles are those that users import.

@@ -299,6 +299,8 @@ std::vector<std::string> write_plan_page(const Source& source, const py::object&
                                          const py::object& package_path, int threads,
                                          const py::object& progress) {
   const execution::TaskFiles files = source.files();
+  if (files.scene.empty())
+    throw Error(ErrorCode::InvalidArgument, "scene is needed: a page shows it");
   const std::string file = required_path(path, "path");
   const PlanText given(plan);
   Watch watch(progress);

@@ -296,7 +296,7 @@ py::object nearest(const WorldValue& in, const py::object& q,
   if (one) return dict_of(in.world(), found.front());
   py::list out;
   for (const auto& pair : found) out.append(dict_of(in.world(), pair));
-  return std::move(out);
+  return out;
 }
 
 /// What is known of a robot's pairs of links.

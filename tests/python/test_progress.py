@@ -71,7 +71,7 @@ def calls(arm, world, task, tmp_path):
         "make_scene": lambda **k: kaboum.make_scene(tmp_path / "cell.json", robots={"arm": arm}, force=True, no_cache=True, **k),
         "nearest": lambda **k: world.nearest(rows, **k),
         "draw_plan": lambda **k: kaboum.draw_plan(*task, plan, tree=True, **k),
-        "convert_domain": lambda **k: kaboum.convert_domain(*task, to="pddl", **k),
+        "convert_domain": lambda **k: kaboum.convert_domain(*task, to="kpl", **k),
         "cache_entries": lambda **k: kaboum.cache_entries(**k),
         "write": lambda **k: certified.write(tmp_path / "written", srdf=True, **k),
         "certify_robot": lambda **k: kaboum.certify_robot(arm, epsilon="5%", no_cache=True, **k),
