@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "clusters.h"
-#include "excess.h"
 #include "finish.h"
 #include "options.h"
 #include "pre_step.h"
@@ -72,21 +71,6 @@ std::vector<Body> by_voxels(SearchState& state, std::size_t target) {
     }
   }
   return state.merged(state.leaf_bodies(), target, kUnbounded, kVoxelVolumeWeight);
-}
-
-/// Brackets the distance of the result to the mesh that was not simplified.
-void measure_anew(CoverCandidate& result, const Mesh& closed) {
-  const SolidField solid(closed, kMeasuringGrid, 0);
-  std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
-  ExcessOptions options;
-  options.absolute_gap = kMeasuredGap * solid.diagonal();
-  options.worth_measuring = kWorthMeasuring;
-  result.excess_lower = result.excess_upper = 0;
-  for (const Excess& r : measure(hulls, solid, options)) {
-    result.excess_lower = std::max(result.excess_lower, r.lower);
-    result.excess_upper = std::max(result.excess_upper, r.upper);
-  }
 }
 
 /// Bodies round a closed mesh, simplified and measured.

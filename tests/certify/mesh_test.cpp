@@ -12,6 +12,7 @@
 
 #include "mesh_certifier.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
@@ -151,9 +152,8 @@ TEST(CertifyMeshes, WhatIsNotReachedStandsForAllAfterIt) {
 }
 
 TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
-  std::string name = (fs::temp_directory_path() / "kaboum-mesh-XXXXXX").string();
-  ASSERT_NE(mkdtemp(name.data()), nullptr);
-  const fs::path folder = name, in = folder / "in.off", out = folder / "out.ply";
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.path(), in = folder / "in.off", out = folder / "out.ply";
   io::write_file(in, io::serialise_mesh(torus(), io::Format::Off));
   for (const bool inner : {false, true}) {
     const std::string command = std::string(KABOUM_BMESH_DECIMATE) + " " + in.string() + " -o " +
@@ -172,7 +172,6 @@ TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
       EXPECT_EQ(made->bytes(), io::read_file(out)) << inner << decide;
     }
   }
-  fs::remove_all(folder);
 }
 
 /// Candidates from anywhere, as if decimation had made them.
