@@ -82,7 +82,7 @@ CoverCandidate search(ComparedMethod method, const Mesh& closed, const CoverOpti
   std::vector<Body> bodies = method == ComparedMethod::Clusters
                                  ? by_clusters(state, *options.max_bodies)
                                  : by_voxels(state, *options.max_bodies);
-  const double free_cost = kFreeShare * options.simplify * worst_of(bodies);
+  const double free_cost = kFreeShare * options.simplify_share() * worst_of(bodies);
   CoverCandidate result;
   for (Finished& f : finisher.finish(bodies, free_cost)) {
     result.excess_lower = std::max(result.excess_lower, f.excess.lower);
@@ -107,7 +107,7 @@ CoverCandidate find_cover_by(ComparedMethod method, const geom::SolidMesh& input
     throw Error(ErrorCode::InvalidArgument,
                 "methods are compared by a number of bodies, with no other limits");
   CoverCandidate result;
-  if (too_coarse(input.mesh(), options)) {
+  if (too_coarse(input.mesh(), options.epsilon)) {
     result.stop = Stop::TooCoarse;
     return result;
   }

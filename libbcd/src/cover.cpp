@@ -93,7 +93,7 @@ CoverCandidate cover_closed(const geom::SolidMesh& input, const CoverOptions& op
 
 CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& options) {
   require_sound(options);
-  if (too_coarse(input.mesh(), options)) {
+  if (too_coarse(input.mesh(), options.epsilon)) {
     CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/certify/certificate.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
 
@@ -22,5 +23,16 @@ struct Verdict {
 
 /// 'answer', 'reason', 'witness' (a point) and 'depth'.
 py::dict dict_of(const verify::Claim& claim);
+
+inline constexpr const char* kCertificateDoc =
+    R"(What is certified, a dict of the same shape for all results.
+
+'direction', 'of' (what it holds, or lies in), 'claims' (each with 'claim', 'answer', 'basis', and where there is one 'reason'
+or 'distance'), and 'distance' ('lower', 'upper'), or None where it was not measured.)";
+
+/// A certificate as kCertificateDoc says.
+inline py::object dict_of(const certify::Certificate& certificate) {
+  return py::module_::import("json").attr("loads")(certify::to_json(certificate));
+}
 
 }  // namespace kaboum::python

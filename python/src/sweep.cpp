@@ -74,6 +74,9 @@ void bind_class(py::module_& module) {
           "margin", [](const SweptSet& s) { return s.made.certificate().margin; },
           "By which the bodies have to be enlarged. [length]")
       .def_property_readonly(
+          "certificate", [](const SweptSet& s) { return dict_of(certify::certificate_of(s.made)); },
+          kCertificateDoc)
+      .def_property_readonly(
           "claim", [](const SweptSet& s) { return claim_of(s.made.certificate()); },
           "'decided', exactly and from the bodies; 'proved', by the steps; "
           "'none', of bound 'baginski'.")

@@ -263,7 +263,7 @@ bool is_internal_error(const Work& work) {
 TEST(Certified, WhatIsMadeByDefaultClaimsNothing) {
   EXPECT_FALSE(CertifiedSet());
   EXPECT_TRUE(is_internal_error([] { (void)to_json(CertifiedSet()); }));
-  EXPECT_TRUE(is_internal_error([] { (void)claims(CertifiedMesh()); }));
+  EXPECT_TRUE(is_internal_error([] { (void)certificate_of(CertifiedMesh()); }));
   EXPECT_TRUE(is_internal_error([none = CertifiedMesh()] { (void)none.bytes(); }));
   EXPECT_TRUE(is_internal_error([none = CertifiedSweep()] { (void)none.certificate(); }));
   EXPECT_TRUE(is_internal_error([] {

@@ -73,7 +73,7 @@ TEST_F(EnclosureTest, HoldsTheFilesMesh) {
     EXPECT_EQ(verify::verify_distance(mesh, part(), c.distance_upper * 1.0001).answer,
               Answer::Verified);
     ASSERT_FALSE(c.claims.empty());
-    EXPECT_EQ(c.claims[0].kind, MeshClaim::Kind::Solid);
+    EXPECT_EQ(c.claims[0].kind, Claim::Kind::Solid);
     EXPECT_EQ(c.claims[0].basis, decide ? Basis::Bytes : Basis::Steps);
     EXPECT_EQ(c.claims[0].answer, Answer::Verified);
   }

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using bmesh::Direction;
-using Kind = MeshClaim::Kind;
+using Kind = Claim::Kind;
 using verify::Answer;
 
 geom::Mesh torus() { return test::torus(1, 0.3, 24, 12); }
@@ -61,7 +61,7 @@ std::vector<geom::Vec3> corners(const geom::Mesh& mesh) {
 
 std::set<Kind> kinds(const CertifiedMesh& made, Basis basis, Answer answer) {
   std::set<Kind> found;
-  for (const MeshClaim& claim : claims(made))
+  for (const Claim& claim : certificate_of(made).claims)
     if (claim.basis == basis && claim.answer == answer) found.insert(claim.kind);
   return found;
 }
@@ -303,7 +303,7 @@ TEST(CertifyMesh, WithoutDecidingClaimsSayWhatTheyRestOn) {
   request.measure = false;
   EXPECT_FALSE(certify_mesh(prepare_mesh(torus()), request)->certificate().original_to_result);
   request.direction = Direction::Any;
-  EXPECT_TRUE(claims(*certify_mesh(prepare_mesh(torus()), request)).empty());
+  EXPECT_TRUE(certificate_of(*certify_mesh(prepare_mesh(torus()), request)).claims.empty());
 }
 
 TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {
