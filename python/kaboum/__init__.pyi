@@ -649,6 +649,7 @@ def verify_sweep(
     claims: Literal["all", "surface"] = "all",
     joint: Mapping[str, float] = {},
     degrees: bool = False,
+    base_pose: str = "",
     links: Sequence[str] | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
@@ -656,6 +657,7 @@ def verify_sweep(
     drop_sheets: bool = False,
     gap: float | None = None,
     max_cells: int = 20000,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

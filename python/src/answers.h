@@ -2,6 +2,7 @@
 
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
+#include <kaboum/verify/points.h>
 
 #include "arguments.h"
 
@@ -22,5 +23,9 @@ struct Verdict {
 
 /// 'answer', 'reason', 'witness' (a point) and 'depth'.
 py::dict dict_of(const verify::Claim& claim);
+/// 'answer', 'reason', 'points', 'outside' and, where some are, 'farthest', 'at' and 'face'.
+py::dict dict_of(const verify::PointClaim& claim);
+/// The claim about exact faces where the triangles alone were judged.
+py::dict exact_points_not_looked_at();
 
 }  // namespace kaboum::python

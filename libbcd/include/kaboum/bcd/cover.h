@@ -38,11 +38,11 @@ struct SetOptions {
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
   Effort effort = Effort::Normal;
-  /// Most work of the search: steps are counted, each as long as it takes on one core of a machine
+  /// Most work of the search. Steps are counted, each as long as it takes on one core of a machine
   /// of 2020, so the result is the same on any machine, however fast or busy. Then the search ends
   /// with the best found, measured like any other. What comes before and after (a pre-step, the
-  /// exact check) does not count. [s]
-  /// By default `default_work` of the triangles, or without limit for Effort::Best.
+  /// exact check) does not count. [s] By default `default_work` of the triangles, or without limit
+  /// for Effort::Best.
   std::optional<double> max_work;
   /// Within epsilon, fewer bodies are looked for until the search has done so much work in all; by
   /// default while max_work allows. Outwards only. [s]
@@ -102,8 +102,8 @@ struct CoverCandidate {
 
 /// Searches for convex bodies whose union contains the input's solid and every triangle of it.
 ///
-/// The solid is cut by planes into cells; what of it lies in a cell is contained in the hull of the
-/// clipped triangles and of the cell's corners that lie in the solid; hulls are merged while the
+/// The solid is cut by planes into cells. What of it lies in a cell is contained in the hull of the
+/// clipped triangles and of the cell's corners that lie in the solid. Hulls are merged while the
 /// distance to the solid allows, their vertices reduced by contractions that only enlarge them, and
 /// rounded outwards to float32. Source: [gaschler2016] §4.4; docs/algorithms/convex-
 /// decomposition.md has the covering argument, and which of its steps are left to an exact check of

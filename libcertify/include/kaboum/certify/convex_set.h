@@ -76,8 +76,9 @@ struct SetCertificate {
   /// Why it is not known that an outer set holds all that the triangles, which are inside, are
   /// meant to bound; empty: it does.
   std::string undecided;
-  /// Of the solid, where it is that of a wrap: distances are then to the solid or to the triangles
-  /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
+  /// The wrap's certificate, where the solid is that of a wrap. Distances are then to the solid or
+  /// to the triangles of the input (within its clearance: the surface that they stand for),
+  /// whichever is nearer.
   std::optional<WrapCertificate> wrap;
 
   /// True if epsilon, if asked for, is reached, within all limits.
@@ -97,7 +98,7 @@ struct Hooks {
   std::function<void(const std::string& text)> note;       ///< things a user should know
 };
 
-/// Searches for bodies, writes them as a GLB container, reads that back, and has libverify decide
+/// Searches for bodies, writes them as a GLB container and reads that back. Then libverify decides
 /// exactly that they are convex and cover the solid and every triangle (outer), or lie in the solid
 /// (inner). Where that fails the search is repeated, without its pre-step, then with larger
 /// allowances for rounding.

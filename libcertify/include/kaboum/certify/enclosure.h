@@ -21,7 +21,7 @@ struct EnclosureRequest {
   std::optional<io::Format> spare_format;
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is enclosed is a wrap round all triangles (certify_wrap), whose distance from them
-  /// counts towards epsilon; with `where_needed` only where preparing refuses them or is in doubt,
+  /// counts towards epsilon. With `where_needed` only where preparing refuses them or is in doubt,
   /// or not every triangle is inside otherwise. `farthest`, `float32` and `progress` are not looked
   /// at.
   std::optional<WrapRequest> wrap;

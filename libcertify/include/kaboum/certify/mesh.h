@@ -116,8 +116,8 @@ MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& req
 struct MeshPreparation {
   enum class Wrap {
     Never,
-    /// Where the mesh can be given no solid, or some triangle would not lie in an outer result:
-    /// only with Holes::Fill and without keep_orientation, for those say which solid is wanted.
+    /// Only if the mesh can be given no solid, or some triangle would not lie in an outer result.
+    /// Only with Holes::Fill and without keep_orientation, for those say which solid is wanted.
     WhereNeeded,
     Always,  ///< outer results only
   };
