@@ -103,8 +103,8 @@ TEST(PenetrationBetween, TouchingAndFlatBodiesHaveNoDepth) {
   EXPECT_LE(flat.upper, 1e-12);
   // A sheet has to leave the cube by the nearest side.
   const Penetration found = penetration_between(Posed(body, here), Posed(sheet, within));
-  EXPECT_NEAR(found.lower, 0.75, 1e-9);
-  EXPECT_NEAR(found.upper, 0.75, 1e-9);
+  EXPECT_NEAR(found.lower, 0.375, 1e-9);
+  EXPECT_NEAR(found.upper, 0.375, 1e-9);
 }
 
 TEST(Penetration, OfBallsIsTheSumOfRadiiLessTheDistance) {
