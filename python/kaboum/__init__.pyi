@@ -383,7 +383,7 @@ class Scene:
     def add_object(
         self,
         name: str,
-        shape: CertifiedSet | _Mesh,
+        shape: CertifiedSet | _Mesh | dict[str, Any],
         *,
         at: Sequence[float] | None = None,
         inner: CertifiedSet | _Mesh | None = None,
@@ -392,7 +392,7 @@ class Scene:
         **options: Any,
     ) -> None: ...
     def add_region(
-        self, name: str, shape: CertifiedSet | _Mesh, *, at: Sequence[float] | None = None, **options: Any
+        self, name: str, shape: CertifiedSet | _Mesh | dict[str, Any], *, at: Sequence[float] | None = None, **options: Any
     ) -> None: ...
     def allow_contact(self, a: str, b: str) -> None: ...
     def attach(self, **members: Any) -> None: ...

@@ -71,6 +71,9 @@ std::vector<std::filesystem::path> sources_of(const std::string& file) {
 
 bool is_made(const py::object& shape) { return py::isinstance<CertifiedSetValue>(shape); }
 
+/// A dict as of scene files: {"sphere": {"radius": 0.1}}.
+bool is_primitive(const py::object& shape) { return py::isinstance<py::dict>(shape); }
+
 /// Refuses options that no mesh is made into a set with.
 void require_mesh(const py::dict& options, bool all_made) {
   if (!options.empty() && all_made)
@@ -145,13 +148,21 @@ void add_robot(SceneValue& scene, const std::string& name, const py::object& rob
 void add_object(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::object& inner, const py::object& features,
                 const py::object& grasps, const py::kwargs& options) {
-  require_mesh(options, is_made(shape) && (inner.is_none() || is_made(inner)));
+  const bool primitive = is_primitive(shape);
+  require_mesh(options, primitive || (is_made(shape) && (inner.is_none() || is_made(inner))));
+  if (primitive && !inner.is_none())
+    throw Error(ErrorCode::InvalidArgument, "inner: a primitive has its own inner set");
   const std::string unit = unit_of(scene);
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   if (!features.is_none()) members["features"] = features;
   if (!grasps.is_none()) members["grasps"] = grasps;
   const std::string text = json_text(members);
+  if (primitive) {
+    const std::string sizes = json_text(shape);
+    run(0, [&] { scene.draft->add_primitive_object(name, sizes, text); });
+    return;
+  }
   scene::SceneSet outer = set_from(shape, options, "outer", unit);
   std::optional<scene::SceneSet> in;
   // With the same options: a set of another scale, or of the sheets too, is not inside the other.
@@ -161,10 +172,15 @@ void add_object(SceneValue& scene, const std::string& name, const py::object& sh
 
 void add_region(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::kwargs& options) {
-  require_mesh(options, is_made(shape));
+  require_mesh(options, is_made(shape) || is_primitive(shape));
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   const std::string text = json_text(members);
+  if (is_primitive(shape)) {
+    const std::string primitive = json_text(shape);
+    run(0, [&] { scene.draft->add_primitive_region(name, primitive, text); });
+    return;
+  }
   scene::SceneSet inner = set_from(shape, options, "inner", unit_of(scene));
   run(0, [&] { scene.draft->add_region(name, std::move(inner), text); });
 }
@@ -262,8 +278,10 @@ constexpr const char* kAddObjectDoc =
 Parameters
 ----------
 name : str
-shape : CertifiedSet or mesh
-    A mesh is decomposed.
+shape : CertifiedSet, mesh or dict
+    A mesh is decomposed. A dict is a primitive, as in scene files: {'box': {'size': [x, y, z]}},
+    {'sphere': {'radius': r}}, 'cylinder' or 'capsule' with 'radius' and 'length', 'plane' with
+    'size'.
 at : sequence of float, optional
     Where it stands: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 inner : CertifiedSet or mesh, optional

@@ -15,7 +15,7 @@ namespace kaboum::tools {
 
 struct SceneOptions {
   std::string scene, robot, srdf, epsilon = "1%", effort = "normal", unit = "m", cache;
-  std::vector<std::string> robots, objects, regions, places, scales, packages;
+  std::vector<std::string> robots, objects, primitives, regions, places, scales, packages;
   bool inner = false, inner_links = false, visual = false, no_cache = false, drop_sheets = false,
        force = false;
   std::size_t most_boxes = 20'000;
