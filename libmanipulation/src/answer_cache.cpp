@@ -173,10 +173,13 @@ AnswerCache::~AnswerCache() = default;
 
 plan::ExternalBindings AnswerCache::wrap(const plan::ExternalBindings& bindings) {
   plan::ExternalBindings out;
-  for (const auto& [name, function] : bindings)
-    out[name] = [kept = kept_.get(), name = name, function = function](const Question& question) {
+  for (const auto& [name, function] : bindings) {
+    plan::ExternalBinding& binding = out[name];
+    binding = [kept = kept_.get(), name = name, function = function](const Question& question) {
       return kept->ask(name, function, question);
     };
+    if (function.refuses_early()) binding.refuse_early();
+  }
   return out;
 }
 

@@ -162,7 +162,7 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
             result.value = constant ? found->second : context.handles.intern(g.range, answer.value);
             return result;
           },
-          function.reads_state(), function.takes_seed()};
+          function.reads_state(), function.takes_seed(), function.refuses_early()};
 }
 
 }  // namespace

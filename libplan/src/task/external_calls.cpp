@@ -143,6 +143,17 @@ ExternalCalls::Reply ExternalCalls::evaluate(Index call, const Word* state) {
   return reply(leaf);
 }
 
+void ExternalCalls::ask_early(Index call, const Word* state) {
+  if (!model_.external_functions[calls_[call].external].refuses_early) return;
+  struct Reset {
+    bool& early;
+    ~Reset() { early = false; }
+  };
+  const Reset reset{early_};
+  early_ = true;
+  evaluate(call, state);
+}
+
 ExternalResult ExternalCalls::run(const Call& c, const std::vector<Index>& objects,
                                   StateReader& reader, unsigned attempt) {
   ++made_;
@@ -166,11 +177,12 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
   ExternalResult result;
   std::size_t known = 0;
   for (unsigned attempt = first_attempt; attempt < attempts_; ++attempt) {
-    NotedReader reader(layout_, state, path);
+    NotedReader reader(layout_, state, path, early_ ? &objects : nullptr);
     known = handles_.size();
     try {
       result = run(c, objects, reader, attempt);
     } catch (const ReadingStopped&) {
+      if (early_ && reader.sensed() == kNone) --made_;
       return open(reader.sensed());
     } catch (const LimitExceeded&) {
       throw;

@@ -42,6 +42,9 @@ class ExternalCalls {
   ///         itself; LimitExceeded.
   Reply evaluate(Index call, const Word* state);
 
+  /// Asks functions that refuse early, as long as they read nothing but what their arguments name.
+  void ask_early(Index call, const Word* state);
+
   /// What is known of a call's answers: a node of `answers()`.
   [[nodiscard]] Index answers_of(Index call) const { return calls_[call].answers.node; }
   [[nodiscard]] const AnswerTree& answers() const { return answers_; }
@@ -150,6 +153,7 @@ class ExternalCalls {
   std::vector<std::uint8_t> sampled_;  ///< by external
   std::uint64_t seed_ = 0;
   unsigned attempts_ = 1, choice_ = 0, choices_ = 0;
+  bool early_ = false;    ///< functions are stopped where they read what no argument names
   Index missed_ = kNone;  ///< a leaf
   std::string missed_call_;
   std::map<Index, std::string> chosen_;  ///< handles that rest on a choice, and whose value it was

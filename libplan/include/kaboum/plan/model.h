@@ -181,8 +181,9 @@ struct ExternalResult {
 
 struct ExternalFunction {
   std::function<ExternalResult(std::span<const Index> arguments, ExternalContext& context)> call;
-  bool reads_state = false;  ///< it may read more than its arguments
-  bool takes_seed = false;   ///< it may read seed and attempt
+  bool reads_state = false;    ///< it may read more than its arguments
+  bool takes_seed = false;     ///< it may read seed and attempt
+  bool refuses_early = false;  ///< ExternalBinding::refuses_early
 };
 
 struct Model {
