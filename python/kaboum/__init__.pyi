@@ -405,7 +405,13 @@ class World:
     def variables(self, robot: str | None = None) -> list[str]: ...
     def home(self, robot: str | None = None) -> NDArray[np.float64]: ...
     def check(
-        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False, progress: _Progress | None = None
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        # options of check
+        # end of options
+        progress: _Progress | None = None,
     ) -> Any: ...
     def are_free(
         self, q: ArrayLike, *, robot: str | None = None, progress: _Progress | None = None
@@ -415,8 +421,8 @@ class World:
         path: ArrayLike,
         *,
         robot: str | None = None,
-        resolution: float = 1e-5,
-        max_intervals: int = 1000000,
+        # options of check_motion
+        # end of options
         progress: _Progress | None = None,
     ) -> MotionCheck: ...
     def find_path(
@@ -425,11 +431,8 @@ class World:
         goals: ArrayLike,
         *,
         robot: str | None = None,
-        seed: int = 1,
-        max_work: float = 10.0,
-        max_nodes: int = 100000,
-        shortcuts: int = 60,
-        resolution: float = 1e-5,
+        # options of find_path
+        # end of options
         progress: _Progress | None = None,
     ) -> Path: ...
     def nearest(
@@ -451,16 +454,16 @@ class World:
         path: ArrayLike,
         *,
         robot: str | None = None,
-        resolution: float = 1e-5,
-        max_intervals: int = 1000000,
+        # options of check_motion
+        # end of options
         progress: _Progress | None = None,
     ) -> Inclusion: ...
     def link_pairs(
         self,
         *,
         robot: str | None = None,
-        max_boxes: int = 20000,
-        timeout: float | None = None,
+        # options of link_pairs
+        # end of options
         progress: _Progress | None = None,
     ) -> LinkPairs: ...
 
@@ -604,11 +607,8 @@ def hausdorff(
     a: _Mesh | _Set,
     b: _Mesh | _Set,
     *,
-    solid: bool = False,
-    gap: float = 0.001,
-    samples: int = 100000,
-    seed: int = 1,
-    backend: Literal["embree", "own"] = "embree",
+    # options of hausdorff
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Distances: ...
@@ -678,9 +678,8 @@ def verify_robot(
 def certify_robot(
     robot: _Robot,
     *,
-    links: Sequence[str] | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
+    # options of shapes
+    # end of options
     epsilons: Mapping[str, _Length] | None = None,
     robot_bodies: int | None = None,
     robot_vertices: int | None = None,
@@ -711,9 +710,8 @@ def certify_robot(
 def decimate_robot(
     robot: _Robot,
     *,
-    links: Sequence[str] | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
+    # options of shapes
+    # end of options
     epsilons: Mapping[str, _Length] | None = None,
     output_format: Literal["stl", "obj"] | None = None,
     partial: bool = False,
@@ -749,12 +747,8 @@ def inverse_kinematics(
     base: str | None = None,
     pose_of: ArrayLike | None = None,
     reference: ArrayLike | None = None,
-    numeric: bool = False,
-    ignore_limits: bool = False,
-    copies: bool = False,
-    free_heading: bool = False,
-    starts: int = 100,
-    seed: int = 1,
+    # options of inverse_kinematics
+    # end of options
     progress: _Progress | None = None,
 ) -> InverseKinematics: ...
 def wrap(
@@ -780,15 +774,8 @@ def make_scene(
     regions: Mapping[str, _Path] | None = None,
     at: Mapping[str, Sequence[float]] | None = None,
     scale: Mapping[str, float] = {},
-    inner: bool = False,
-    inner_links: bool = False,
-    geometry: _Geometry = "collision",
-    epsilon: _Length = "1%",
-    effort: _Effort = "normal",
-    drop_sheets: bool = False,
-    unit: str = "m",
-    package_path: _Path | Sequence[_Path] = (),
-    force: bool = False,
+    # options of make_scene
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
@@ -806,16 +793,11 @@ def solve(
     problem: _Path | None = None,
     *,
     scene: _Path | None = None,
-    search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
     assume: Mapping[str, bool | str] | _Path | None = None,
-    timeout: float | None = None,
-    max_memory: int | None = None,
-    seed: int = 1,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
-    process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    # options of solve
+    # end of options
+    # options of task
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
@@ -826,11 +808,8 @@ def check_plan(
     plan: Solution | dict[str, Any] | _Path,
     *,
     scene: _Path | None = None,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
-    process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    # options of task
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> PlanCheck: ...
@@ -841,19 +820,11 @@ def run_plan(
     *,
     scene: _Path,
     outcomes: int | Mapping[str, bool | str] | _Path = "all",
-    replan: int = 100,
-    timeout: float | None = None,
-    seed: int = 1,
-    rate: float = 1000.0,
-    max_acceleration: float = 5.0,
-    time_optimal: bool = False,
     trajectories: _Path | None = None,
-    package_path: _Path | Sequence[_Path] = (),
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
-    process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    # options of run_plan
+    # end of options
+    # options of task
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> PlanRun: ...
@@ -865,11 +836,8 @@ def draw_plan(
     format: Literal["text", "dot", "svg"] = "svg",
     tree: bool = False,
     scene: _Path | None = None,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
-    process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    # options of task
+    # end of options
 ) -> str: ...
 def convert_domain(
     domain: _Path,
