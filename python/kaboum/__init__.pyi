@@ -410,6 +410,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check
+        resting: bool = False,
         # end of options
         progress: _Progress | None = None,
     ) -> Any: ...
@@ -422,6 +423,8 @@ class World:
         *,
         robot: str | None = None,
         # options of check_motion
+        resolution: float = 1e-05,
+        max_intervals: int = 1000000,
         # end of options
         progress: _Progress | None = None,
     ) -> MotionCheck: ...
@@ -432,6 +435,12 @@ class World:
         *,
         robot: str | None = None,
         # options of find_path
+        max_work: float = 10.0,
+        max_nodes: int = 100000,
+        timeout: float | None = None,
+        shortcuts: int = 60,
+        seed: int = 1,
+        resolution: float = 1e-05,
         # end of options
         progress: _Progress | None = None,
     ) -> Path: ...
@@ -455,6 +464,8 @@ class World:
         *,
         robot: str | None = None,
         # options of check_motion
+        resolution: float = 1e-05,
+        max_intervals: int = 1000000,
         # end of options
         progress: _Progress | None = None,
     ) -> Inclusion: ...
@@ -463,6 +474,8 @@ class World:
         *,
         robot: str | None = None,
         # options of link_pairs
+        max_boxes: int = 20000,
+        timeout: float | None = None,
         # end of options
         progress: _Progress | None = None,
     ) -> LinkPairs: ...
@@ -608,6 +621,11 @@ def hausdorff(
     b: _Mesh | _Set,
     *,
     # options of hausdorff
+    solid: bool = False,
+    gap: float = 0.001,
+    samples: int = 100000,
+    seed: int = 1,
+    backend: Literal["embree", "own"] = "embree",
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -678,12 +696,15 @@ def verify_robot(
 def certify_robot(
     robot: _Robot,
     *,
-    # options of shapes
-    # end of options
     epsilons: Mapping[str, _Length] | None = None,
     robot_bodies: int | None = None,
     robot_vertices: int | None = None,
     partial: bool = False,
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
     # options of certify_robot
     epsilon: _Length | None = None,
     max_bodies: int | None = None,
@@ -710,11 +731,14 @@ def certify_robot(
 def decimate_robot(
     robot: _Robot,
     *,
-    # options of shapes
-    # end of options
     epsilons: Mapping[str, _Length] | None = None,
     output_format: Literal["stl", "obj"] | None = None,
     partial: bool = False,
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
     # options of decimate_robot, vertices: int | None = None
     vertices: int | None = None,
     ratio: float | None = None,
@@ -748,6 +772,12 @@ def inverse_kinematics(
     pose_of: ArrayLike | None = None,
     reference: ArrayLike | None = None,
     # options of inverse_kinematics
+    copies: bool = False,
+    ignore_limits: bool = False,
+    free_heading: bool = False,
+    numeric: bool = False,
+    starts: int = 100,
+    seed: int = 1,
     # end of options
     progress: _Progress | None = None,
 ) -> InverseKinematics: ...
@@ -775,6 +805,15 @@ def make_scene(
     at: Mapping[str, Sequence[float]] | None = None,
     scale: Mapping[str, float] = {},
     # options of make_scene
+    inner: bool = False,
+    inner_links: bool = False,
+    geometry: Literal["collision", "visual"] = "collision",
+    epsilon: _Length = "1%",
+    effort: Literal["fast", "normal", "best"] = "normal",
+    drop_sheets: bool = False,
+    unit: str = "m",
+    package_path: _Path | Sequence[_Path] | None = None,
+    force: bool = False,
     # end of options
     no_cache: bool = False,
     threads: int = 0,
@@ -795,8 +834,17 @@ def solve(
     scene: _Path | None = None,
     assume: Mapping[str, bool | str] | _Path | None = None,
     # options of solve
+    search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
+    timeout: float | None = None,
+    max_memory: int | str | None = None,
+    seed: int = 1,
     # end of options
     # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
     # end of options
     no_cache: bool = False,
     threads: int = 0,
@@ -809,6 +857,11 @@ def check_plan(
     *,
     scene: _Path | None = None,
     # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -822,8 +875,20 @@ def run_plan(
     outcomes: int | Mapping[str, bool | str] | _Path = "all",
     trajectories: _Path | None = None,
     # options of run_plan
+    replan: int = 100,
+    timeout: float | None = None,
+    seed: int = 1,
+    rate: float = 1000.0,
+    max_acceleration: float = 5.0,
+    time_optimal: bool = False,
+    package_path: _Path | Sequence[_Path] | None = None,
     # end of options
     # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -837,6 +902,11 @@ def draw_plan(
     tree: bool = False,
     scene: _Path | None = None,
     # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
     # end of options
 ) -> str: ...
 def convert_domain(

@@ -121,10 +121,10 @@ kinematics::Transform target_of(const py::object& pose) {
 InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
                                 const std::optional<std::string>& tip,
                                 const std::optional<std::string>& base, const py::object& pose_of,
-                                const py::object& reference, const py::kwargs& given) {
+                                const py::object& reference, const py::kwargs& keywords) {
   kinematics::InverseRequest request;
   const RunKeywords running = take_keywords("inverse_kinematics", kinematics::inverse_options(),
-                                            given, request, Runs::Alone);
+                                            keywords, request, Runs::Alone);
   if (pose.is_none() == pose_of.is_none())
     throw Error(ErrorCode::InvalidArgument, "give pose, or pose_of");
   const RobotValue value = robot_of(robot, "robot");

@@ -51,7 +51,7 @@ std::string whole_number(const std::string& text) {
 void describe(CLI::App& app, Options& o) {
   app.add_option("A", o.a, "Mesh or convex set (- for stdin)")->required()->type_name("A");
   app.add_option("B", o.b, "The other one")->required()->type_name("B");
-  add_request_options(app, distance::compare_options(), o.compare, o.stated);
+  tools::add_request_options(app, distance::compare_options(), o.compare, o.stated);
   app.get_option("--samples")->transform(whole_number);
   const std::string kinds = "auto|mesh|set";
   for (auto* kind : {&o.a_as, &o.b_as})
