@@ -99,6 +99,8 @@ class BoundingMesh:
     @property
     def distances(self) -> dict[str, _Bracket] | None: ...
     @property
+    def certificate(self) -> dict[str, Any]: ...
+    @property
     def claims(self) -> list[dict[str, Any]]: ...
     @property
     def notes(self) -> list[str]: ...
@@ -118,6 +120,8 @@ class ConvexSet:
     def __len__(self) -> int: ...
 
 class CertifiedSet:
+    @property
+    def certificate(self) -> dict[str, Any]: ...
     @property
     def bodies(self) -> list[Mesh]: ...
     @property
@@ -140,6 +144,8 @@ class CertifiedSet:
     def __len__(self) -> int: ...
 
 class SweptSet:
+    @property
+    def certificate(self) -> dict[str, Any]: ...
     @property
     def set(self) -> ConvexSet: ...
     @property
@@ -350,6 +356,8 @@ class InverseKinematics:
     def __len__(self) -> int: ...
 
 class Wrap:
+    @property
+    def certificate(self) -> dict[str, Any]: ...
     @property
     def vertices(self) -> NDArray[np.float64]: ...
     @property
@@ -667,6 +675,7 @@ def verify_sweep(
     claims: Literal["all", "surface"] = "all",
     joint: Mapping[str, float] = {},
     degrees: bool = False,
+    base_pose: str = "",
     links: Sequence[str] | None = None,
     geometry: _Geometry = "collision",
     package_path: _Path | Sequence[_Path] = (),
@@ -674,6 +683,7 @@ def verify_sweep(
     drop_sheets: bool = False,
     gap: float | None = None,
     max_cells: int = 20000,
+    exact_points: int = 17,
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

@@ -1,6 +1,7 @@
 // Convex sets: kaboum.decompose, as bcd-decompose; sets from files.
 
 #include "convex_set.h"
+#include "answers.h"
 
 #include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
@@ -120,6 +121,9 @@ It may be given wherever a ConvexSet is expected.)")
       .def_property_readonly(
           "record", [](const Value& s) { return record_of(s.made.artefact().provenance); },
           "What the container says of itself: source, parameters, claims.")
+      .def_property_readonly(
+          "certificate", [](const Value& s) { return dict_of(certify::certificate_of(s.made)); },
+          kCertificateDoc)
       .def_property_readonly(
           "report", [](const Value& s) { return parsed(certify::to_json(s.made)); },
           "As the report of bcd-decompose (docs/reports.md).")

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
 #include "request_options.h"
@@ -55,7 +56,7 @@ std::string direction_of(const BoundingMesh& m) {
 
 py::list claims_of(const BoundingMesh& m) {
   py::list out;
-  for (const certify::MeshClaim& claim : certify::claims(m.made)) {
+  for (const certify::Claim& claim : certify::certificate_of(m.made).claims) {
     py::dict d;
     d["claim"] = certify::name_of(claim.kind);
     d["answer"] = verify::name_of(claim.answer);
@@ -145,6 +146,10 @@ It may be given wherever a mesh is expected.)")
                              "Certified brackets (lower, upper) of the largest distances "
                              "'original_to_result', 'result_to_original' and 'hausdorff', surface "
                              "to surface, or None where they were not measured. [length]")
+      .def_property_readonly(
+          "certificate",
+          [](const BoundingMesh& m) { return dict_of(certify::certificate_of(m.made)); },
+          kCertificateDoc)
       .def_property_readonly("claims", &claims_of,
                              "All that is claimed: dicts of 'claim', 'answer', 'basis' (what the "
                              "answer rests on), 'reason' and 'distance'.")

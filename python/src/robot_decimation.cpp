@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "answers.h"
 #include "mesh.h"
 #include "request_options.h"
 #include "robot.h"
@@ -75,6 +76,7 @@ py::list meshes_of(const EnclosedValue& r) {
     one["flaw"] = mesh.flaw;
     if (mesh.flaw.empty()) {
       one["mesh"] = MeshValue{{r.made, &mesh.made.enclosure.artefact()}};
+      one["certificate"] = dict_of(certify::certificate_of(mesh.made.enclosure));
       one["report"] = loads(certify::to_json(mesh.made.enclosure));
       one["cached"] = mesh.made.cached;
     }

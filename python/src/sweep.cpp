@@ -2,11 +2,8 @@
 
 #include <kaboum/certify/sweep_options.h>
 #include <kaboum/robot/base_pose.h>
-#include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/path_file.h>
-#include <kaboum/verify/moving_robot.h>
-
-#include <algorithm>
+#include <kaboum/verify/motion_verdict.h>
 
 #include "answers.h"
 #include "convex_set.h"
@@ -73,6 +70,9 @@ void bind_class(py::module_& module) {
       .def_property_readonly(
           "margin", [](const SweptSet& s) { return s.made.certificate().margin; },
           "By which the bodies have to be enlarged. [length]")
+      .def_property_readonly(
+          "certificate", [](const SweptSet& s) { return dict_of(certify::certificate_of(s.made)); },
+          kCertificateDoc)
       .def_property_readonly(
           "claim", [](const SweptSet& s) { return claim_of(s.made.certificate()); },
           "'decided', exactly and from the bodies; 'proved', by the steps; "
@@ -145,77 +145,74 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, bool verify
   });
 }
 
-/// The shapes of the links that are judged.
-struct Shapes {
-  std::vector<verify::MovingShape> shapes;
-  std::vector<std::uint32_t> links;
-};
-
-Shapes shapes_of(const robot::RobotFile& robot, const robot::ShapeChoice& choice, bool prepare,
-                 bool drop_sheets) {
-  robot::require_links(robot, choice.links);
-  Shapes out;
-  for (std::uint32_t l = 0; l < robot.robot.links.size(); ++l) {
-    const robot::Link& link = robot.robot.links[l];
-    if (!choice.links.empty() &&
-        std::find(choice.links.begin(), choice.links.end(), link.name) == choice.links.end())
-      continue;
-    std::size_t count = 0;
-    for (const robot::Geometry& g : choice.shapes_of(link)) {
-      geom::Mesh mesh;
-      if (g.shape == robot::Geometry::Shape::Mesh) {
-        mesh = io::read_mesh(robot::find_only_mesh(g.mesh, robot.path, choice.packages)).mesh;
-        if (prepare)
-          mesh = geom::prepare(mesh, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill})
-                     .solid.mesh();
-      }
-      auto shape = verify::moving_shape(robot.robot, l, g, std::move(mesh));
-      if (!shape) continue;
-      shape->name = link.name + "/" + std::to_string(count++);
-      out.shapes.push_back(std::move(*shape));
-      out.links.push_back(l);
-    }
+/// Bodies that are to hold a motion.
+std::shared_ptr<const geom::ConvexSet> swept_of(const py::object& swept,
+                                                const std::vector<std::string>& packages,
+                                                std::vector<std::string>& notes) {
+  if (py::isinstance<SweptSet>(swept)) return swept.cast<SweptSet>().set();
+  if (const auto path = path_of(swept)) {
+    verify::SweptBodies read = verify::read_swept_bodies(*path, {}, packages);
+    for (const std::string& note : read.notes) notes.push_back(*path + ": " + note);
+    return std::make_shared<geom::ConvexSet>(std::move(read.set));
   }
-  if (out.shapes.empty())
-    throw Error(ErrorCode::InvalidInput, robot.path.string() + ": no link has a shape");
+  if (const auto set = set_of(swept)) return set;
+  throw Error(ErrorCode::InvalidArgument, "swept must be a SweptSet or ConvexSet, or its file");
+}
+
+py::dict claims_of(const verify::MotionVerdict& found, const verify::MotionShapes& shapes,
+                   verify::Claims deciding) {
+  py::dict out;
+  out["convex"] = dict_of(found.claims.convex);
+  out["surface"] = dict_of(found.claims.surface);
+  if (deciding == verify::Claims::All) out["solid"] = dict_of(found.claims.solid);
+  if (const auto& exact = found.exact) {
+    py::dict claim = dict_of(exact->points);
+    claim["configurations"] = exact->configurations;
+    if (exact->points.outside > 0) {
+      claim["shape"] = shapes.exact[exact->shape].name;
+      claim["segment"] = exact->segment;
+      claim["s"] = exact->s;
+    }
+    out["exact_points"] = claim;
+  } else if (shapes.cad) {
+    out["exact_points"] = exact_points_not_looked_at();
+  }
   return out;
 }
 
 Verdict verify_sweep(const py::object& robot, const py::object& path, const py::object& swept,
                      const std::string& claims, const robot::FixedJoints& joint, bool degrees,
-                     const py::object& links, const std::string& geometry,
-                     const py::object& package_path, bool prepare, bool drop_sheets,
-                     const py::object& gap, std::size_t max_cells, int threads,
-                     const py::object& progress) {
-  const RobotValue value = robot_of(robot, "robot");
+                     const std::string& base_pose, const py::object& links,
+                     const std::string& geometry, const py::object& package_path, bool prepare,
+                     bool drop_sheets, const py::object& gap, std::size_t max_cells,
+                     std::size_t exact_points, int threads, const py::object& progress) {
+  robot::RobotFile placed = *robot_of(robot, "robot").file;
+  if (!base_pose.empty())
+    placed.robot = robot::placed(placed.robot, robot::parse_pose(base_pose, "base_pose"));
   Verdict out;
-  const robot::Path waypoints =
-      path_from(path, value.file->robot, {false, degrees, joint}, out.notes);
-  const auto set = py::isinstance<SweptSet>(swept) ? swept.cast<SweptSet>().set() : set_of(swept);
-  if (!set)
-    throw Error(ErrorCode::InvalidArgument, "swept must be a SweptSet or ConvexSet, or its file");
+  const robot::Path waypoints = path_from(path, placed.robot, {false, degrees, joint}, out.notes);
+  const verify::MotionShapeOptions reading{
+      {links_of(links), is_visual(geometry), packages_of(package_path)},
+      prepare,
+      drop_sheets,
+      exact_points};
+  const auto set = swept_of(swept, reading.choice.packages, out.notes);
   const verify::Claims deciding = value_of(kClaims, claims, "claims");
   if (deciding == verify::Claims::Solid)
     throw Error(ErrorCode::InvalidArgument,
                 "claims 'solid': it follows from the surface claim; use 'all'");
-  const robot::ShapeChoice choice{links_of(links), is_visual(geometry), packages_of(package_path)};
   const auto finest = plain_length_of(gap, "gap");
   Watch watch(progress);
-  const verify::SweepClaims found = run(threads, [&] {
-    const Shapes shapes = shapes_of(*value.file, choice, prepare, drop_sheets);
-    ensure(verify::same_poses(value.file->robot, shapes.shapes, shapes.links, waypoints),
-           "two ways to compute a link's pose disagree");
-    verify::SweepOptions options;
-    options.gap = finest.value_or(verify::default_gap(*set));
-    options.max_cells = max_cells;
-    options.solids = deciding != verify::Claims::Surface;
-    options.progress = watch.hook();
-    return verify::verify_sweep(shapes.shapes, waypoints, *set, options);
+  verify::MotionShapes shapes;
+  const verify::MotionVerdict found = run(threads, [&] {
+    shapes = verify::read_motion_shapes(placed, reading);
+    return verify::decide(
+        {placed.robot, shapes, waypoints, *set, deciding, finest, max_cells, watch.hook()});
   });
-  out.answer = verify::answer_of(found, deciding);
-  out.claims["convex"] = dict_of(found.convex);
-  out.claims["surface"] = dict_of(found.surface);
-  if (deciding == verify::Claims::All) out.claims["solid"] = dict_of(found.solid);
+  for (const auto& more : {shapes.notes, shapes.mesh_notes.lines()})
+    out.notes.insert(out.notes.end(), more.begin(), more.end());
+  out.answer = found.answer;
+  out.claims = claims_of(found, shapes, deciding);
   return out;
 }
 
@@ -248,16 +245,20 @@ robot : Robot or path
 path : path or array
     As for `sweep`.
 swept : SweptSet, ConvexSet, name of a file or folder, or list of meshes
+    A file may be a URDF as sweep-approx writes it.
 claims : str
     'all' or 'surface'.
-joint, degrees, links, geometry, package_path
+joint, degrees, base_pose, links, geometry, package_path
     As for `sweep`.
 prepare, drop_sheets : bool
-    Judge the links' meshes as `prepare` gives them.
+    Judge the links' meshes as `prepare` gives them; one that it refuses, as it is.
 gap : float, optional
     Parts that move and measure less are not divided further. [length]
 max_cells : int
     Give up, 'undecided', beyond so many parts of a triangle per segment.
+exact_points : int
+    Of links read from STEP or IGES: how densely points of their exact faces are looked at along the
+    path, which refute where they stick out; 0: the triangles alone are judged.
 threads, progress
     As for `decimate`.
 
@@ -283,11 +284,12 @@ void bind_sweeps(py::module_& module) {
 void bind_sweep_verification(py::module_& module) {
   module.def("verify_sweep", &verify_sweep, py::arg("robot"), py::arg("path"), py::arg("swept"),
              py::kw_only(), py::arg("claims") = "all", py::arg("joint") = py::dict(),
-             py::arg("degrees") = false, py::arg("links") = py::none(),
+             py::arg("degrees") = false, py::arg("base_pose") = "", py::arg("links") = py::none(),
              py::arg("geometry") = "collision", py::arg("package_path") = py::tuple(),
              py::arg("prepare") = false, py::arg("drop_sheets") = false,
              py::arg("gap") = py::none(), py::arg("max_cells") = verify::SweepOptions{}.max_cells,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kVerifyDoc);
+             py::arg("exact_points") = verify::kPointDensity, py::arg("threads") = 0,
+             py::arg("progress") = py::none(), kVerifyDoc);
 }
 
 }  // namespace kaboum::python

@@ -72,19 +72,7 @@ py::dict claims_of(const verify::MeshVerdict& found) {
     out[verify::name_of(d.between)] = distance;
   }
   if (found.depth) out["depth"] = dict_of(*found.depth);
-  if (const auto& points = found.exact_points) {
-    py::dict exact;
-    exact["answer"] = verify::name_of(points->answer);
-    exact["reason"] = points->reason;
-    exact["points"] = points->points;
-    exact["outside"] = points->outside;
-    if (points->outside > 0) {
-      exact["farthest"] = points->farthest;
-      exact["at"] = array_of(points->at);
-      exact["face"] = points->face + 1;
-    }
-    out["exact_points"] = exact;
-  }
+  if (found.exact_points) out["exact_points"] = dict_of(*found.exact_points);
   return out;
 }
 
@@ -117,23 +105,45 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
   });
   out.answer = found.answer;
   out.claims = claims_of(found);
-  if (original.exact_faces > 0 && !found.exact_points) {
-    py::dict exact;
-    exact["answer"] = verify::name_of(verify::Answer::Undefined);
-    exact["reason"] = "points of the exact faces were not looked at: this is about the triangles";
-    out.claims["exact_points"] = exact;
-  }
+  if (original.exact_faces > 0 && !found.exact_points)
+    out.claims["exact_points"] = exact_points_not_looked_at();
   return out;
 }
 
-Verdict verify_mesh(const py::object& original, const py::object& approximation,
-                    const std::string& relation, const std::string& claims,
-                    const py::object& epsilon, bool prepare, bool drop_sheets,
-                    std::size_t max_contacts, const std::optional<double>& max_work,
-                    std::size_t exact_points, int threads, const py::object& progress) {
-  static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
-      {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
-  const Question asked{value_of(kRelations, relation, "relation"),
+/// What approximation stands for, as a mesh and as a set.
+struct Approximation {
+  geom::Mesh sum;
+  MeshValue mesh;
+  std::shared_ptr<const geom::ConvexSet> set;
+
+  [[nodiscard]] const geom::Mesh& triangles() const { return set ? sum : *mesh.mesh; }
+};
+
+Approximation approximation_of(const py::object& value, verify::Relation relation) {
+  Approximation out;
+  if (relation == verify::Relation::Cover) {
+    out.set = set_of(value);
+    if (!out.set)
+      throw Error(ErrorCode::InvalidArgument,
+                  "set: a set is a ConvexSet, the name of a file or folder, or a list of meshes");
+  } else if (py::isinstance<SetValue>(value) || py::isinstance<CertifiedSetValue>(value)) {
+    if (relation == verify::Relation::Outer)
+      throw Error(ErrorCode::InvalidArgument,
+                  "approximation is a set of convex bodies: ask verify_cover whether it covers");
+    out.set = set_of(value);
+  } else {
+    out.mesh = mesh_of(value, "approximation");
+  }
+  if (out.set) out.sum = verify::sum_of(*out.set);
+  return out;
+}
+
+Verdict verify_relation(verify::Relation relation, const py::object& original,
+                        const py::object& approximation, const std::string& claims,
+                        const py::object& epsilon, bool prepare, bool drop_sheets,
+                        std::size_t max_contacts, const std::optional<double>& max_work,
+                        std::size_t exact_points, int threads, const py::object& progress) {
+  const Question asked{relation,
                        value_of(kClaims, claims, "claims"),
                        length_of(epsilon, "epsilon"),
                        prepare,
@@ -143,38 +153,19 @@ Verdict verify_mesh(const py::object& original, const py::object& approximation,
                        threads,
                        exact_points};
   const MeshValue first = mesh_of(original, "original");
-  const bool is_set =
-      py::isinstance<SetValue>(approximation) || py::isinstance<CertifiedSetValue>(approximation);
-  if (!is_set) {
-    const MeshValue second = mesh_of(approximation, "approximation");
-    return decide(first, *second.mesh, nullptr, asked, progress);
-  }
-  if (asked.relation == verify::Relation::Outer)
-    throw Error(ErrorCode::InvalidArgument,
-                "approximation is a set of convex bodies: ask verify_cover whether it covers");
-  const auto set = set_of(approximation);
-  return decide(first, verify::sum_of(*set), set.get(), asked, progress);
+  const Approximation second = approximation_of(approximation, relation);
+  return decide(first, second.triangles(), second.set.get(), asked, progress);
 }
 
-Verdict verify_cover(const py::object& original, const py::object& set, const std::string& claims,
-                     const py::object& epsilon, bool prepare, bool drop_sheets,
-                     std::size_t max_contacts, const std::optional<double>& max_work,
-                     std::size_t exact_points, int threads, const py::object& progress) {
-  const Question asked{verify::Relation::Cover,
-                       value_of(kClaims, claims, "claims"),
-                       length_of(epsilon, "epsilon"),
-                       prepare,
-                       drop_sheets,
-                       max_contacts,
-                       max_work,
-                       threads,
-                       exact_points};
-  const auto bodies = set_of(set);
-  if (!bodies)
-    throw Error(ErrorCode::InvalidArgument,
-                "set: a set is a ConvexSet, the name of a file or folder, or a list of meshes");
-  return decide(mesh_of(original, "original"), verify::sum_of(*bodies), bodies.get(), asked,
-                progress);
+/// Binds a question about a mesh with the keywords that all of them have.
+template <class Function, class... Arguments>
+void bind_question(py::module_& module, const char* name, const Function& function,
+                   const char* text, const Arguments&... first) {
+  module.def(name, function, first..., py::arg("claims") = "all", py::arg("epsilon") = py::none(),
+             py::arg("prepare") = false, py::arg("drop_sheets") = false,
+             py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts,
+             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
+             py::arg("threads") = 0, py::arg("progress") = py::none(), text);
 }
 
 void bind_class(py::module_& module) {
@@ -259,20 +250,55 @@ py::dict dict_of(const verify::Claim& claim) {
   return out;
 }
 
+py::dict dict_of(const verify::PointClaim& claim) {
+  py::dict out;
+  out["answer"] = verify::name_of(claim.answer);
+  out["reason"] = claim.reason;
+  out["points"] = claim.points;
+  out["outside"] = claim.outside;
+  if (claim.outside > 0) {
+    out["farthest"] = claim.farthest;
+    out["at"] = array_of(claim.at);
+    out["face"] = claim.face + 1;
+  }
+  return out;
+}
+
+py::dict exact_points_not_looked_at() {
+  py::dict out;
+  out["answer"] = verify::name_of(verify::Answer::Undefined);
+  out["reason"] = "points of the exact faces were not looked at: this is about the triangles";
+  return out;
+}
+
 void bind_verification(py::module_& module) {
-  const std::size_t contacts = verify::InclusionOptions{}.max_contacts;
   bind_class(module);
-  module.def("verify_mesh", &verify_mesh, py::arg("original"), py::arg("approximation"),
-             py::kw_only(), py::arg("relation") = "outer", py::arg("claims") = "all",
-             py::arg("epsilon") = py::none(), py::arg("prepare") = false,
-             py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kMeshDoc);
-  module.def("verify_cover", &verify_cover, py::arg("original"), py::arg("set"), py::kw_only(),
-             py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("prepare") = false,
-             py::arg("drop_sheets") = false, py::arg("max_contacts") = contacts,
-             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kCoverDoc);
+  using Optional = std::optional<double>;
+  bind_question(
+      module, "verify_mesh",
+      [](const py::object& original, const py::object& approximation, const std::string& relation,
+         const std::string& claims, const py::object& epsilon, bool prepare, bool drop_sheets,
+         std::size_t max_contacts, const Optional& max_work, std::size_t exact_points, int threads,
+         const py::object& progress) {
+        static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
+            {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
+        return verify_relation(value_of(kRelations, relation, "relation"), original, approximation,
+                               claims, epsilon, prepare, drop_sheets, max_contacts, max_work,
+                               exact_points, threads, progress);
+      },
+      kMeshDoc, py::arg("original"), py::arg("approximation"), py::kw_only(),
+      py::arg("relation") = "outer");
+  bind_question(
+      module, "verify_cover",
+      [](const py::object& original, const py::object& set, const std::string& claims,
+         const py::object& epsilon, bool prepare, bool drop_sheets, std::size_t max_contacts,
+         const Optional& max_work, std::size_t exact_points, int threads,
+         const py::object& progress) {
+        return verify_relation(verify::Relation::Cover, original, set, claims, epsilon, prepare,
+                               drop_sheets, max_contacts, max_work, exact_points, threads,
+                               progress);
+      },
+      kCoverDoc, py::arg("original"), py::arg("set"), py::kw_only());
 }
 
 }  // namespace kaboum::python

@@ -88,6 +88,9 @@ py::dict dict_of(const world::World& world, const world::Contact& contact) {
   out["certain"] = contact.certain;
   out["epsilon"] = contact.epsilon;
   out["place"] = array_of(contact.place);
+  out["depth"] = contact.depth
+                     ? py::object(py::make_tuple(contact.depth->lower, contact.depth->upper))
+                     : py::object(py::none());
   return out;
 }
 
@@ -129,7 +132,10 @@ std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
     world::Scratch scratch;
     std::vector<ContactList> out;
     for_rows(rows, watch, [&](const std::vector<double>& q) {
-      out.push_back({in, in.checker->find_contacts(state_at(in, robot, q), scratch, options)});
+      const world::WorldState state = state_at(in, robot, q);
+      std::vector<world::Contact> contacts = in.checker->find_contacts(state, scratch, options);
+      for (world::Contact& contact : contacts) in.checker->measure_depth(contact, state, scratch);
+      out.push_back({in, std::move(contacts)});
     });
     return out;
   });
@@ -395,7 +401,9 @@ void bind_answers(py::module_& module) {
               out.append(dict_of(c.in.world(), contact));
             return out;
           },
-          "Dicts of 'pair', 'certain' (else they are within 'epsilon'), 'epsilon' and 'place'. "
+          "Dicts of 'pair', 'certain' (else they are within 'epsilon'), 'epsilon', 'place', and "
+          "'depth': a "
+          "bracket of the penetration depth of the sets, or None. "
           "[length]")
       .def("__repr__", [](const ContactList& c) {
         return "<kaboum.Contacts: " +

@@ -2,6 +2,7 @@
 
 #include <kaboum/certify/wrap.h>
 
+#include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
 #include "running.h"
@@ -77,6 +78,10 @@ void bind_wraps(py::module_& module) {
       .def_property_readonly(
           "faces", [](const WrapValue& w) { return faces_of(w.mesh()); },
           "m x 3 uint32, a view that cannot be written.")
+      .def_property_readonly(
+          "certificate",
+          [](const WrapValue& w) { return dict_of(certify::certificate_of(*w.made)); },
+          kCertificateDoc)
       .def_property_readonly(
           "report",
           [](const WrapValue& w) {

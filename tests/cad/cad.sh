@@ -108,6 +108,22 @@ expect 0 '' "$BIN/bcd-decompose" mm.urdf -o strict-mm --prepare strict --epsilon
 shows 1 'points of exact faces: refuted: [1-9][0-9]* of ' "$BIN/bound-verify" sweep mm.urdf still.csv strict-mm/links/base.glb --prepare
 shows 0 '^verified: .*exact faces: of these nothing is said' \
   "$BIN/bound-verify" sweep mm.urdf still.csv strict-mm/links/base.glb --prepare --exact-points 0
+# Python's verdict on a motion is the program's.
+if PYTHONPATH="$BIN/../python" python3 -c 'import numpy, kaboum' 2>/dev/null; then
+  PYTHONPATH="$BIN/../python" python3 - <<'END' || fail "motions of exact faces in Python"
+import kaboum
+
+held = kaboum.verify_sweep("arm.urdf", "path.csv", "swept.glb", prepare=True)
+assert held and held.claims["exact_points"]["answer"] == "verified", held.claims
+assert held.claims["exact_points"]["configurations"] > 1
+own = kaboum.verify_sweep("mm.urdf", "still.csv", "strict-mm/links/base.glb", prepare=True)
+assert own.answer == "refuted", own.claims
+points = own.claims["exact_points"]
+assert points["outside"] > 0 and points["farthest"] > 0 and points["shape"] == "base/0", points
+triangles = kaboum.verify_sweep("mm.urdf", "still.csv", "strict-mm/links/base.glb", prepare=True, exact_points=0)
+assert triangles and triangles.claims["exact_points"]["answer"] == "undefined", triangles.claims
+END
+fi
 expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --no-cache
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001
 head -c 2000 parts/vase.step >cut.step

@@ -53,6 +53,25 @@ def test_sweep_holds_the_robot_at_every_instant(arm):
     assert 0 < stated.margin <= 0.02 and (stated.set.radii == stated.margin).all()
 
 
+def test_motions_are_judged_as_the_program_judges_them(arm, tmp_path):
+    """Where the robot stands, bodies in a URDF, and a mesh that cannot be prepared."""
+    tool = os.environ["KABOUM_BIN"] + "/sweep-approx"
+    (tmp_path / "p.csv").write_text("shoulder,slide\n0,0\n0.5,0.1\n")
+    away = "1,2,3,0,0,1"
+    subprocess.run([tool, arm, "--path", tmp_path / "p.csv", "-o", tmp_path / "swept.urdf", "--base-pose", away, "--epsilon", "0.02", "--quiet"],
+                   check=True)
+    judge = lambda **k: kaboum.verify_sweep(arm, tmp_path / "p.csv", tmp_path / "swept.urdf", **k)
+    assert judge(base_pose=away)
+    assert judge().answer == "refuted"
+    with pytest.raises(kaboum.Error, match="base_pose"):
+        judge(base_pose="1,2")
+    vertices, faces = cube(0.1)
+    kaboum.write((vertices, np.concatenate([faces[:1], faces[:1, ::-1]])), tmp_path / "tool.ply")  # a sheet
+    found = judge(base_pose=away, prepare=True)
+    assert any("judged as it is, for it cannot be prepared" in note for note in found.notes), found.notes
+    assert "exact_points" not in found.claims
+
+
 def test_parts_that_are_inside_out_are_not_called_held(tmp_path):
     """A large cube and a small one whose normals point inwards: as it is, its inside is in no solid."""
     vertices, faces = cube()

@@ -4,13 +4,14 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
-#include <kaboum/verify/moving_robot.h>
 
-#include <algorithm>
 #include <iostream>
+#include <optional>
+#include <sstream>
 
 #include "common/motion_options.h"
 #include "common/verdict.h"
+#include "mesh_input.h"
 #include "sweep_report.h"
 #include "witness_file.h"
 
@@ -19,9 +20,25 @@ namespace {
 
 using verify::Answer;
 
+std::vector<std::string> listed(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream list(text);
+  for (std::string name; std::getline(list, name, ',');)
+    if (!name.empty()) names.push_back(name);
+  return names;
+}
+
+/// A container, a mesh file, a folder, or a URDF as sweep-approx writes it.
+verify::SweptBodies read_swept(const std::string& path, const VerifySweepOptions& o) {
+  std::optional<io::Format> format;
+  const bool urdf = o.set_format.empty() && std::filesystem::path(path).extension() == ".urdf";
+  if (!urdf && !is_folder(path)) format = format_for(path, o.set_format, "--approximation-format");
+  return verify::read_swept_bodies(path, format, o.packages);
+}
+
 /// Reads everything, and says what is to be known of it.
 SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
-  SweepCase run{o, robot::read_robot(o.files[0]), {}, {}, {}, 0, {}};
+  SweepCase run{o, robot::read_robot(o.files[0]), {}, {}, {}, {}};
   if (!o.base_pose.empty())
     naming(o.files[0], [&] {
       run.robot.robot =
@@ -31,10 +48,12 @@ SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
   std::vector<std::string> notes;
   run.path = robot::read_path(o.files[1], run.robot.robot,
                               {false, o.degrees, fixed_joints(o.joints)}, notes);
-  run.shapes = read_shapes(run.robot, o);
+  run.shapes =
+      verify::read_motion_shapes(run.robot, {{listed(o.links), o.geometry == "visual", o.packages},
+                                             o.prepare,
+                                             o.drop_sheets,
+                                             o.exact_points});
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, run.shapes.files);
-  ensure(verify::same_poses(run.robot.robot, run.shapes.shapes, run.shapes.links, run.path),
-         "two ways to compute a link's pose disagree");
   run.swept = read_swept(o.files[2], o);
   for (const auto& more : {run.shapes.notes, run.shapes.mesh_notes.lines()})
     notes.insert(notes.end(), more.begin(), more.end());
@@ -45,18 +64,36 @@ SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
 
 void decide(SweepCase& run, Progress& progress) {
   const VerifySweepOptions& o = run.asked;
-  run.gap = o.gap.empty() ? verify::default_gap(run.swept.set) : parse_length(o.gap)->value;
-  verify::SweepOptions options;
-  options.gap = run.gap;
-  options.max_cells = o.max_cells;
-  options.solids = o.claims != "surface";
-  options.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
-  run.claims = verify::verify_sweep(run.shapes.shapes, run.path, run.swept.set, options);
-  run.answer = answer_of(run.claims, claims_of(o.claims));
-  if (run.shapes.exact.empty()) return;
-  progress.show("deciding: points of exact faces");
-  run.exact = verify::verify_moving_points(run.shapes.exact, run.path, run.swept.set);
-  if (run.exact) run.answer = verify::worse(run.answer, run.exact->points.answer);
+  verify::MotionQuestion question{run.robot.robot, run.shapes, run.path, run.swept.set,
+                                  claims_of(o.claims)};
+  if (!o.gap.empty()) question.gap = parse_length(o.gap)->value;
+  question.max_cells = o.max_cells;
+  question.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
+  run.verdict = verify::decide(question);
+}
+
+/// What to try where the meshes as they are were not found within the set; empty if nothing.
+std::string preparing_hint(const verify::MotionShapes& shapes) {
+  std::string changed;
+  for (const std::string& path : shapes.files) {
+    const geom::Mesh mesh = io::read_mesh(path).mesh;
+    const auto prepared = [&](bool drop_sheets) -> std::optional<geom::Prepared> {
+      try {
+        return prepare_original(mesh, drop_sheets, true);
+      } catch (const Error&) {
+        return std::nullopt;
+      }
+    };
+    if (const auto plain = prepared(false)) {
+      if (changed.empty() && !plain->report.notes.empty()) changed = path;
+    } else if (prepared(true)) {
+      return path +
+             ": sweep-approx takes it with --drop-sheets only, and as prepared; --prepare "
+             "--drop-sheets judges that";
+    }
+  }
+  if (changed.empty()) return {};
+  return changed + ": sweep-approx speaks of the mesh as prepared; --prepare judges that";
 }
 
 }  // namespace
@@ -70,16 +107,17 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   decide(run, progress);
   progress.show("");
   if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
-  if (!o.witness.empty() && run.claims.refuting)
-    write_witness(o.witness, {run.claims.refuting->triangle, {{0, 1, 2}}},
+  const verify::MotionVerdict& found = run.verdict;
+  if (!o.witness.empty() && found.claims.refuting)
+    write_witness(o.witness, {found.claims.refuting->triangle, {{0, 1, 2}}},
                   "a part of the robot that is outside the swept set");
-  if (common.quiet) return exit_code(run.answer);
+  if (common.quiet) return exit_code(found.answer);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   for (const std::string& line : lines_of(run)) out << line << '\n';
-  if (run.answer != Answer::Verified && !o.prepare)
+  if (found.answer != Answer::Verified && !o.prepare)
     if (const std::string hint = preparing_hint(run.shapes); !hint.empty())
       log(common.quiet, "note: " + hint);
-  return exit_code(run.answer);
+  return exit_code(found.answer);
 }
 
 }  // namespace kaboum::tools

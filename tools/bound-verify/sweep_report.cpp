@@ -44,7 +44,7 @@ std::string line_of(const verify::MovingPointClaim& exact, const SweepCase& run)
 
 std::vector<std::string> lines_of(const SweepCase& run) {
   std::vector<std::string> lines;
-  const verify::SweepClaims& claims = run.claims;
+  const verify::SweepClaims& claims = run.verdict.claims;
   const std::string radii = text_of_radii(run.swept.set);
   lines.push_back(
       line("convexity", claims.convex,
@@ -67,15 +67,16 @@ std::vector<std::string> lines_of(const SweepCase& run) {
   if (claims.open_meshes > 0)
     lines.push_back(std::to_string(claims.open_meshes) +
                     " meshes are not closed: their surfaces alone are judged");
-  const SweepShapes& shapes = run.shapes;
-  if (run.exact) lines.push_back(line_of(*run.exact, run));
-  lines.push_back(std::string(name_of(run.answer)) + ": " +
+  const verify::MotionShapes& shapes = run.shapes;
+  if (run.verdict.exact) lines.push_back(line_of(*run.verdict.exact, run));
+  lines.push_back(std::string(name_of(run.verdict.answer)) + ": " +
                   robot::links_judged(shapes.judged, shapes.asked, shapes.bare) +
                   except_sheets(shapes.dropped) +
-                  (!shapes.cad || run.answer != Answer::Verified ? ""
-                   : run.exact ? "; of the triangles, which stand for exact faces; no point of "
-                                 "these that was looked at sticks out"
-                               : kOfTriangles));
+                  (!shapes.cad || run.verdict.answer != Answer::Verified ? ""
+                   : run.verdict.exact
+                       ? "; of the triangles, which stand for exact faces; no point of "
+                         "these that was looked at sticks out"
+                       : kOfTriangles));
   return lines;
 }
 
@@ -103,11 +104,11 @@ Json to_json(const verify::Claim& claim) {
 
 Json report_of(const SweepCase& run) {
   const VerifySweepOptions& o = run.asked;
-  const verify::SweepClaims& claims = run.claims;
-  const SweepShapes& shapes = run.shapes;
+  const verify::SweepClaims& claims = run.verdict.claims;
+  const verify::MotionShapes& shapes = run.shapes;
   Json json{
       {"relation", "sweep"},
-      {"verdict", name_of(run.answer)},
+      {"verdict", name_of(run.verdict.answer)},
       {"deciding_claims", o.claims},
       {"robot", {{"file", o.files[0]}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
       {"path", {{"file", o.files[1]}, {"waypoints", run.path.size()}}},
@@ -116,7 +117,7 @@ Json report_of(const SweepCase& run) {
         {"sha256", run.swept.sha256},
         {"bodies", run.swept.set.bodies.size()},
         {"margin", margin_json(run.swept.set)}}},
-      {"gap", run.gap},
+      {"gap", run.verdict.gap},
       {"claims",
        {{"convex", to_json(claims.convex)},
         {"surface", to_json(claims.surface)},
@@ -124,7 +125,7 @@ Json report_of(const SweepCase& run) {
   if (claims.refuting) json["claims"]["surface"]["place"] = to_json(*claims.refuting, run);
   if (claims.undecided)
     json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, run);
-  if (const auto& exact = run.exact) {
+  if (const auto& exact = run.verdict.exact) {
     Json& claim = json["claims"]["exact_points"];
     claim = {{"answer", name_of(exact->points.answer)}, {"reason", exact->points.reason},
              {"points", exact->points.points},          {"outside", exact->points.outside},

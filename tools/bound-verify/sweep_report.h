@@ -1,13 +1,12 @@
 #pragma once
 
 #include <kaboum/robot/path.h>
-#include <kaboum/verify/sweep.h>
+#include <kaboum/verify/motion_verdict.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "sweep_input.h"
+#include "sweep.h"
 
 /// What is said of a motion that was judged, in words and as a report.
 namespace kaboum::tools {
@@ -17,16 +16,14 @@ struct SweepCase {
   const VerifySweepOptions& asked;
   robot::RobotFile robot;
   robot::Path path;
-  SweepShapes shapes;
-  SweptInput swept;
-  double gap = 0;  ///< verify::SweepOptions::gap
-  verify::SweepClaims claims;
-  std::optional<verify::MovingPointClaim> exact = {};  ///< they refute, and prove nothing
-  verify::Answer answer = verify::Answer::Undefined;   ///< of those that decide
+  verify::MotionShapes shapes;
+  verify::SweptBodies swept;
+  verify::MotionVerdict verdict;
 
   /// Whether a distance from the bodies was measured that is to be told.
   [[nodiscard]] bool knows_farthest() const {
-    return claims.convex.answer == verify::Answer::Verified && claims.farthest.distance >= 0;
+    return verdict.claims.convex.answer == verify::Answer::Verified &&
+           verdict.claims.farthest.distance >= 0;
   }
 };
 

@@ -47,11 +47,19 @@ void say(const tools::CheckOptions& o, const std::string& line) {
   if (!o.common.quiet) std::cout << line << '\n';
 }
 
+std::vector<double> configuration_at(const robot::Path& path, std::size_t segment, double share) {
+  const std::vector<double>&from = path[segment],
+        &to = path[std::min(segment + 1, path.size() - 1)];
+  std::vector<double> out = from;
+  for (std::size_t i = 0; i < from.size(); ++i) out[i] += share * (to[i] - from[i]);
+  return out;
+}
+
 int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std::size_t robot,
                const robot::Path& path, tools::Json& report) {
   const world::Checker checker(scene.world);
   const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
-  const world::MotionAnswer answer = [&] {
+  world::MotionAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
@@ -59,21 +67,20 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
   }();
   report["waypoints"] = path.size();
   report["resolution"] = o.motion.resolution;
+  world::WorldState at = initial_state(scene.world);
+  at.q[robot] = path.back();
+  std::vector<world::Contact> contacts;
+  if (answer.contact) {
+    at.q[robot] = configuration_at(path, answer.contact_segment, answer.contact_share);
+    if (answer.meets) {
+      world::Scratch scratch;
+      checker.measure_depth(*answer.contact, at, scratch);
+    }
+    contacts.push_back(*answer.contact);
+  }
   report["motion"] = tools::to_json(scene.world, answer);
   say(o, tools::describe(scene.world, answer));
-  if (!o.preview.empty()) {
-    world::WorldState state = initial_state(scene.world);
-    std::vector<world::Contact> contacts;
-    state.q[robot] = path.back();
-    if (answer.contact) {
-      contacts.push_back(*answer.contact);
-      const std::vector<double>&from = path[answer.contact_segment],
-            &to = path[std::min(answer.contact_segment + 1, path.size() - 1)];
-      for (std::size_t i = 0; i < from.size(); ++i)
-        state.q[robot][i] = from[i] + answer.contact_share * (to[i] - from[i]);
-    }
-    io::write_file(o.preview, tools::picture_of(checker, state, contacts));
-  }
+  if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(checker, at, contacts));
   const collide::Inclusion inside = tools::decide_inside(
       checker, initial_state(scene.world), robot, path, o.motion, wanted,
       [&](const std::string& line) { say(o, line); }, report);
@@ -100,7 +107,8 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
   for (std::size_t i = 0; i < values.size(); ++i) {
     world::WorldState state = initial_state(scene.world);
     if (robot) state.q[*robot] = values[i];
-    const std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, o.state);
+    std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, o.state);
+    for (world::Contact& contact : contacts) checker.measure_depth(contact, state, scratch);
     tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
     const std::string before =
         values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
@@ -127,8 +135,11 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
             {"pair", {scene.world.name_of(items[0]), scene.world.name_of(items[1])}}};
         std::ostringstream line;
         line << before << "nearest: " << scene.world.name_of(items[0]) << " and "
-             << scene.world.name_of(items[1]) << ", sets " << clearance.lower << " to "
-             << clearance.upper << " apart";
+             << scene.world.name_of(items[1]) << ", sets ";
+        if (clearance.upper < 0)
+          line << -clearance.upper << " to " << -clearance.lower << " deep in each other";
+        else
+          line << clearance.lower << " to " << clearance.upper << " apart";
         say(o, line.str());
       }
     }

@@ -37,7 +37,7 @@ class SceneDraft {
   ~SceneDraft();
 
   [[nodiscard]] std::string unit() const;
-  /// Where it was read or written last; empty: nowhere.
+  /// The file that it was read from or written to last; empty: none.
   [[nodiscard]] std::filesystem::path file() const;
 
   /// @throws Error{InvalidArgument} where the name is taken, `members` is no object or names what

@@ -24,7 +24,7 @@ struct ToolFrame {
   Transform pose;  ///< from the frame to the link's
 };
 
-/// Which links may touch what a tool holds.
+/// The links that may touch what a tool holds.
 struct Gripper {
   std::string name;
   std::size_t tool = 0;              ///< index of a tool frame
