@@ -6,7 +6,8 @@
 
 namespace kaboum::bcd {
 
-struct InnerOptions : SetOptions {
+/// Request for find_inner.
+struct InnerOptions : SearchSettings, SearchRun {
   /// Triangles of the input that bound what an exact check of the result found outside the solid.
   /// Where they meet others, more is kept clear of.
   std::vector<std::uint32_t> doubtful;

@@ -26,6 +26,9 @@ struct InnerLinkCertificate {
 /// bytes are a GLB container.
 using CertifiedInnerLink = Certified<geom::ConvexSet, InnerLinkCertificate>;
 
+/// What is claimed of it: convex bodies that lie in the link's shapes.
+Certificate certificate_of(const CertifiedInnerLink& link);
+
 struct InnerLinks {
   std::vector<CertifiedInnerLink> links;  ///< those that were asked for and have bodies, in order
   std::vector<CertifiedLinkMesh> meshes;

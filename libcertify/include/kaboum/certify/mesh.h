@@ -70,8 +70,9 @@ struct MeshPlan {
 /// it triangle by triangle.
 using CertifiedMesh = Certified<geom::Mesh, MeshCertificate>;
 
-/// All that is claimed; nothing of Direction::Any.
-std::vector<MeshClaim> claims(const CertifiedMesh& mesh);
+/// All that is claimed; nothing of Direction::Any. The distance is Hausdorff's, where it was
+/// measured.
+Certificate certificate_of(const CertifiedMesh& mesh);
 
 /// One result or a series.
 struct MeshSeries {
