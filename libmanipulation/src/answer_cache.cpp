@@ -93,7 +93,8 @@ json to_json(const std::string& place, const Entry& entry) {
           {"reason", entry.answer.reason},
           {"chosen", entry.answer.chosen},
           {"choices", entry.answer.choices},
-          {"fixed", entry.answer.fixed}};
+          {"fixed", entry.answer.fixed},
+          {"listed", entry.answer.listed}};
 }
 
 Entry entry_of(const json& j) {
@@ -110,6 +111,7 @@ Entry entry_of(const json& j) {
   out.answer.chosen = j.at("chosen").get<bool>();
   out.answer.choices = j.at("choices").get<unsigned>();
   out.answer.fixed = j.at("fixed").get<bool>();
+  out.answer.listed = j.at("listed").get<bool>();
   return out;
 }
 

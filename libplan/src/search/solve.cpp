@@ -116,6 +116,12 @@ void search(Task& task, const SolveOptions& options, unsigned choice, Limits& li
     if (solution.outcome != Outcome::Unsolvable) break;
     if (proved || calls.missed().empty()) {
       solution.refused = calls.refused();
+      if (!calls.listed().empty()) {
+        solution.outcome = Outcome::Limit;
+        solution.limit =
+            "with what the scene lists there is none, others may do: " + calls.listed();
+        return;
+      }
       if (proved || calls.chosen().empty()) break;
       solution.outcome = Outcome::Limit;
       solution.limit = "with the value that was chosen for " + calls.chosen() +

@@ -226,6 +226,8 @@ void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const
   if (result.kind == Answer::Kind::NotFound) return;
   if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
     refused_ = text(c, objects) + ": " + result.reason;
+  if (result.kind == Answer::Kind::Impossible && result.listed && listed_.empty())
+    listed_ = text(c, objects) + ": " + result.reason;
   std::vector<Index> read = objects;
   for (const auto& [item, content] : path) {
     if (is_call(item))

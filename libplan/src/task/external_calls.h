@@ -73,6 +73,8 @@ class ExternalCalls {
   /// A call whose value was chosen among several, when a failure may be due to that choice: some
   /// final answer rests on it. Empty: there is none.
   [[nodiscard]] std::string chosen() const;
+  /// A call that was impossible by what is listed only, as "g(a): reason"; empty: there is none.
+  [[nodiscard]] const std::string& listed() const { return listed_; }
   /// The first call that was impossible, as "g(a): reason", and how many others were; empty: none
   /// gave a reason.
   [[nodiscard]] std::string refused() const;
@@ -160,7 +162,7 @@ class ExternalCalls {
   std::set<Index> final_;                ///< handles that final answers rest on
   std::set<Index> chosen_types_;
   std::string any_choice_;  ///< a choice that anything may rest on
-  std::string refused_;
+  std::string refused_, listed_;
   std::size_t refusals_ = 0;
   std::size_t bytes_told_ = 0;
   std::uint64_t made_ = 0;

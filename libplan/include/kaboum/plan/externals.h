@@ -55,6 +55,9 @@ struct Answer {
   /// Among how many things `Question::choice` decides which one is preferred; 0: there is nothing
   /// to choose. Where the search fails it begins anew with other choices.
   unsigned choices = 0;
+  /// True where it is impossible by what somebody has listed only, as grasps are: others might do.
+  /// Where a search fails by that, there may be a plan all the same.
+  bool listed = false;
   /// True of a value that is the only one, whatever the state; only the arguments decide it.
   bool fixed = false;
 

@@ -175,7 +175,7 @@ struct ExternalResult {
   Index value = 0;  ///< an object, or a handle; of a truth value 0
   std::string payload;
   std::string reason;
-  bool chosen = false, fixed = false;  ///< as in Answer
+  bool chosen = false, fixed = false, listed = false;  ///< as in Answer
   unsigned choices = 0;
 };
 
