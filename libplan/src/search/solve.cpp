@@ -90,7 +90,8 @@ Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& 
     limits.never_pause();
     if (out == Outcome::Solved) solution.plan = planner.plan();
     if (!paused) return out;
-    if (is_hopeless()) return Outcome::Unsolvable;
+    const bool failed = !task.calls().refused().empty() || !task.calls().missed().empty();
+    if (failed && is_hopeless()) return Outcome::Unsolvable;
     steps *= kLaterLook;
   }
 }

@@ -138,7 +138,12 @@ ExternalCalls::Reply ExternalCalls::evaluate(Index call, const Word* state) {
     return make(call, state, l.attempts);
   if (l.kind == Answer::Kind::NotFound && missed_ == kNone) {
     missed_ = leaf;
-    missed_call_ = model_.externals[calls_[call].external].name;
+    const Call c = calls_[call];
+    Reply why;
+    Footprint path;
+    std::vector<Index> objects;
+    arguments(c, state, objects, path, why);
+    missed_call_ = text(c, objects);
   }
   return reply(leaf);
 }
