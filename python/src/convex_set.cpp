@@ -139,7 +139,8 @@ It may be given wherever a ConvexSet is expected.)")
           "Certified bracket of the largest distance from a point of the set to the solid (outer), "
           "or of the depth of what is left out (inner). [length]")
       .def_readonly("cached", &Value::cached, "Whether an earlier call's result was used.")
-      .def_readonly("notes", &Value::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&Value::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const Value& s) { return py::bytes(s.made.bytes().data(), s.made.bytes().size()); },

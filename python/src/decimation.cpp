@@ -153,7 +153,8 @@ It may be given wherever a mesh is expected.)")
       .def_property_readonly("claims", &claims_of,
                              "All that is claimed: dicts of 'claim', 'answer', 'basis' (what the "
                              "answer rests on), 'reason' and 'distance'.")
-      .def_readonly("notes", &BoundingMesh::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&BoundingMesh::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const BoundingMesh& m) {
@@ -232,8 +233,8 @@ py::object decimate(const py::object& mesh, const py::kwargs& given) {
   const bool several = !vertices.is_none() && !whole_number(vertices);
   DecimateOptions options;
   const std::set<std::string> stated = take_options(decimate_options(), keywords, options);
-  const RunKeywords running = take_run_keywords(keywords, false);
-  require_all_taken("decimate", keywords, keywords_of(decimate_options()), false);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
+  require_all_taken("decimate", keywords, keywords_of(decimate_options()), Runs::Threads);
   require_none(certify::contradiction(options.mesh, stated));
   options.mesh.request.format = *format_of(options.format, "output_format");
   options.mesh.request.comment = "bmesh-decimate " KABOUM_VERSION;
@@ -271,8 +272,8 @@ void bind_decimation(py::module_& module) {
   bind_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text =
-      document("decimate", "mesh: object", keywords_of(decimate_options()), "object", kDoc, false);
+  const std::string text = document("decimate", "mesh: object", keywords_of(decimate_options()),
+                                    "object", kDoc, Runs::Threads);
   module.def("decimate", &decimate, py::arg("mesh"), text.c_str());
 }
 

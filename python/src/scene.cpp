@@ -5,14 +5,15 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/scene/scene_draft.h>
+#include <kaboum/scene/scene_options.h>
 #include <kaboum/scene/scene_update.h>
 
 #include <memory>
 
 #include "convex_set.h"
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
-#include "set_options.h"
 
 namespace kaboum::python {
 namespace {
@@ -109,7 +110,7 @@ py::dict dict_of(const scene::MadeScene& made) {
   out["inputs"] = made.inputs;
   out["sizes"] = made.sizes;
   out["bad_links"] = made.bad_links;
-  out["notes"] = made.notes;
+  out["notes"] = spelled(made.notes);
   return out;
 }
 
@@ -199,12 +200,10 @@ std::vector<scene::NamedFile> files_of(const py::object& given, const char* argu
 
 py::dict make_scene(const py::object& path, const py::object& robots, const py::object& objects,
                     const py::object& regions, const py::object& at,
-                    const std::map<std::string, double>& scale, bool inner, bool inner_links,
-                    const std::string& geometry, const py::object& epsilon,
-                    const std::string& effort, bool drop_sheets, const std::string& unit,
-                    const py::object& package_path, bool force, bool no_cache, int threads,
-                    const py::object& progress) {
+                    const std::map<std::string, double>& scale, const py::kwargs& given) {
   scene::SceneMaker maker;
+  const RunKeywords running =
+      take_keywords("make_scene", scene::scene_options(), given, maker, Runs::Cached);
   maker.scene = path_text(path, "path");
   maker.robots = files_of(robots, "robots");
   maker.objects = files_of(objects, "objects");
@@ -223,20 +222,11 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
                   "scale of '" + name + "' must be a number from 1e-9 to 1e9");
     maker.scales.emplace(name, factor);
   }
-  maker.inner = inner;
-  maker.replace = force;
-  if (inner_links) maker.options.inner_links.emplace();  // all
-  maker.options.visual = is_visual(geometry);
-  maker.options.sets.epsilon = length_of(epsilon, "epsilon");
-  maker.options.sets.effort = value_of(kSetEfforts, effort, "effort");
-  maker.options.sets.preparation.drop_sheets = drop_sheets;
-  maker.options.sets.unit = unit;
-  maker.options.packages = packages_of(package_path);
-  Watch watch(progress);
+  Watch watch(running.progress);
   maker.options.progress = watch.hook();
-  return dict_of(run(threads, [&] {
+  return dict_of(run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
-    if (!no_cache) maker.options.cache = &cache;
+    if (!running.no_cache) maker.options.cache = &cache;
     return scene::make_scene(maker);
   }));
 }
@@ -321,21 +311,7 @@ at : dict, optional
     By name, where things stand: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 scale : dict
     By name, what the coordinates of an object's or region's mesh are multiplied by.
-inner, inner_links : bool
-    Inner sets of objects, of robots' links: contacts can be certain.
-geometry : str
-    Of robots: 'collision' or 'visual'.
-epsilon : float or str
-    Largest distance of the sets from their meshes.
-effort : str
-drop_sheets : bool
-unit : str
-    Of all meshes; with robots m.
-package_path : str or sequence of str
-force : bool
-    Replace a scene that exists.
-no_cache, threads, progress
-    As for `decompose`.
+{keywords}
 
 Returns
 -------
@@ -434,17 +410,20 @@ std::optional<world::SceneFile> scene_file_of(const py::object& value) {
 
 void bind_scenes(py::module_& module) {
   bind_scene(module);
-  module.def(
-      "make_scene", &make_scene, py::arg("path"), py::kw_only(), py::arg("robots") = py::none(),
-      py::arg("objects") = py::none(), py::arg("regions") = py::none(), py::arg("at") = py::none(),
-      py::arg("scale") = py::dict(), py::arg("inner") = false, py::arg("inner_links") = false,
-      py::arg("geometry") = "collision", py::arg("epsilon") = "1%", py::arg("effort") = "normal",
-      py::arg("drop_sheets") = false, py::arg("unit") = "m", py::arg("package_path") = py::tuple(),
-      py::arg("force") = false, py::arg("no_cache") = false, py::arg("threads") = 0,
-      py::arg("progress") = py::none(), kMakeDoc);
   module.def("update_scene", &update_scene, py::arg("path"), py::kw_only(),
              py::arg("package_path") = py::tuple(), py::arg("no_cache") = false,
              py::arg("threads") = 0, py::arg("progress") = py::none(), kUpdateDoc);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document(
+      "make_scene",
+      "path: object, *, robots: object = None, objects: object = None, regions: object = None, "
+      "at: object = None, scale: dict = {}",
+      keywords_of(scene::scene_options()), "dict", kMakeDoc);
+  module.def("make_scene", &make_scene, py::arg("path"), py::kw_only(),
+             py::arg("robots") = py::none(), py::arg("objects") = py::none(),
+             py::arg("regions") = py::none(), py::arg("at") = py::none(),
+             py::arg("scale") = py::dict(), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -84,7 +84,8 @@ void bind_class(py::module_& module) {
       .def_property_readonly(
           "bodies_distance", [](const SweptSet& s) { return s.made.certificate().bodies_distance; },
           "Nor are the robot's bodies farther from its shapes. [length]")
-      .def_readonly("notes", &SweptSet::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&SweptSet::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const SweptSet& s) { return py::bytes(s.made.bytes().data(), s.made.bytes().size()); },

@@ -97,8 +97,7 @@ void bind_wraps(py::module_& module) {
           },
           "Certified bracket of the largest distance of its points from the "
           "triangles. [length]")
-      .def_property_readonly(
-          "notes", [](const WrapValue& w) { return w.notes; }, "What a user should know.")
+      .def_property_readonly("notes", notes_of(&WrapValue::notes), "What a user should know.")
       .def("__repr__", [](const WrapValue& w) {
         return "<kaboum.Wrap of " + std::to_string(w.made->artefact().vertices.size()) +
                " vertices, " + std::to_string(w.made->artefact().triangles.size()) + " faces>";

@@ -10,7 +10,6 @@
 
 #include "command.h"
 #include "common/cli.h"
-#include "common/memory_size.h"
 #include "pool.h"
 #include "result.h"
 #include "summary.h"

@@ -19,7 +19,7 @@ namespace {
 /// The scene's exact meshes; without them, and a line on stderr, where one cannot be read.
 std::vector<execution::ExactMesh> meshes_of(const SceneFile& scene, const PlanOptions& o) {
   try {
-    return execution::exact_meshes(scene.world, o.scene, o.packages);
+    return execution::exact_meshes(scene.world, o.task.scene, o.run.packages);
   } catch (const Error& error) {
     log(o.common.quiet, std::string("only bounding sets are shown: ") + error.what());
     return {};
@@ -29,12 +29,12 @@ std::vector<execution::ExactMesh> meshes_of(const SceneFile& scene, const PlanOp
 }  // namespace
 
 int write_page(const PlanOptions& o) {
-  if (o.scene.empty())
+  if (o.task.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   const execution::PlanningTask task = read_task(o);
   const SceneFile& scene = *task.scene();
   std::vector<std::string> inputs = scene.inputs;
-  inputs.insert(inputs.end(), {o.plan, o.domain, o.problem});
+  inputs.insert(inputs.end(), {o.plan, o.task.domain, o.task.problem});
   require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = task.load();
   plan::Plan plan = read_plan_file(model, o.plan);
@@ -44,7 +44,7 @@ int write_page(const PlanOptions& o) {
   options.unplanned = [&](const plan::Unplanned&) { recording.end_unplanned(); };
   plan::run(model, plan, options, [&](const plan::RunStep& step) { recording.carry_out(step); });
   const std::string name =
-      model.name.empty() ? std::filesystem::path(o.domain).filename().string() : model.name;
+      model.name.empty() ? std::filesystem::path(o.task.domain).filename().string() : model.name;
   io::write_file(
       o.html,
       page::filled("plan.html", {{"title", escape_xml("Plan " + name)},

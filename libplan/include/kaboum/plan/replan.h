@@ -22,7 +22,7 @@ struct TaskTexts {
 struct ReplanOptions {
   RunOptions run = {};      ///< `unplanned` is not looked at
   SolveOptions solve = {};  ///< how it is planned again
-  unsigned most = 100;      ///< new plans; those that are needed beyond are not made
+  std::size_t most = 100;   ///< new plans; those that are needed beyond are not made
 };
 
 /// A plan that was made during a run.

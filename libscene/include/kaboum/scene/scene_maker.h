@@ -42,6 +42,8 @@ struct SceneSetOptions {
 
 /// Request for a scene.
 struct SceneMaker {
+  SceneMaker() { options.sets.epsilon = Length{1, true}; }
+
   std::filesystem::path scene;                    ///< to be written
   std::vector<NamedFile> robots;                  ///< URDF
   std::vector<NamedFile> objects, regions;        ///< meshes

@@ -3,6 +3,7 @@
 #include <kaboum/world/world.h>
 
 #include <functional>
+#include <limits>
 
 namespace kaboum::world {
 
@@ -16,6 +17,8 @@ std::vector<AllowedPair> connected_links(const RobotModel& robot);
 struct PairOptions {
   std::size_t most_boxes = 20'000;  ///< of joint values that are looked at for one pair
   std::size_t samples = 2'000;      ///< places at which contacts of a pair are looked for at first
+  /// After so long nothing more is proved. [s]
+  double most_seconds = std::numeric_limits<double>::infinity();
   std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
 };
 
