@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "clusters.h"
-#include "excess.h"
 #include "finish.h"
 #include "options.h"
 #include "pre_step.h"
@@ -74,21 +73,6 @@ std::vector<Body> by_voxels(SearchState& state, std::size_t target) {
   return state.merged(state.leaf_bodies(), target, kUnbounded, kVoxelVolumeWeight);
 }
 
-/// Brackets the distance of the result to the mesh that was not simplified.
-void measure_anew(CoverCandidate& result, const Mesh& closed) {
-  const SolidField solid(closed, kMeasuringGrid, 0);
-  std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
-  ExcessOptions options;
-  options.absolute_gap = kMeasuredGap * solid.diagonal();
-  options.worth_measuring = kWorthMeasuring;
-  result.excess_lower = result.excess_upper = 0;
-  for (const Excess& r : measure(hulls, solid, options)) {
-    result.excess_lower = std::max(result.excess_lower, r.lower);
-    result.excess_upper = std::max(result.excess_upper, r.upper);
-  }
-}
-
 /// Bodies round a closed mesh, simplified and measured.
 CoverCandidate search(ComparedMethod method, const Mesh& closed, const CoverOptions& options,
                       double work) {
@@ -98,7 +82,7 @@ CoverCandidate search(ComparedMethod method, const Mesh& closed, const CoverOpti
   std::vector<Body> bodies = method == ComparedMethod::Clusters
                                  ? by_clusters(state, *options.max_bodies)
                                  : by_voxels(state, *options.max_bodies);
-  const double free_cost = kFreeShare * options.simplify * worst_of(bodies);
+  const double free_cost = kFreeShare * options.simplify_share() * worst_of(bodies);
   CoverCandidate result;
   for (Finished& f : finisher.finish(bodies, free_cost)) {
     result.excess_lower = std::max(result.excess_lower, f.excess.lower);
@@ -123,7 +107,7 @@ CoverCandidate find_cover_by(ComparedMethod method, const geom::SolidMesh& input
     throw Error(ErrorCode::InvalidArgument,
                 "methods are compared by a number of bodies, with no other limits");
   CoverCandidate result;
-  if (too_coarse(input.mesh(), options)) {
+  if (too_coarse(input.mesh(), options.epsilon)) {
     result.stop = Stop::TooCoarse;
     return result;
   }

@@ -14,7 +14,7 @@ int main() {
   if (!made) return 1;  // float32 numbers would be too coarse
   std::cout << made->artefact().vertices.size() << " vertices, " << made->bytes().size()
             << " bytes\n";
-  for (const certify::MeshClaim& claim : certify::claims(*made)) {
+  for (const certify::Claim& claim : certify::certificate_of(*made).claims) {
     std::cout << name_of(claim.kind) << ": " << name_of(claim.answer) << ", "
               << name_of(claim.basis);
     if (claim.distance) std::cout << ", at most " << *claim.distance;

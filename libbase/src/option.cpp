@@ -77,6 +77,7 @@ std::string limits_flaw(const OptionDescription& option, const std::string& valu
          (range.empty()                    ? ""
           : range.starts_with("at least ") ? ", " + range
           : range.starts_with("between ")  ? " " + range
+          : range.starts_with("above ")    ? " " + range
                                            : " from " + range) +
          (whole ? "" : ", without a unit") + ", not " + value;
 }
@@ -122,6 +123,8 @@ std::string value_words(const OptionDescription& option) {
       return "N";
     case Kind::Counts:
       return "N[,N...]";
+    case Kind::Memory:
+      return "SIZE";
     case Kind::Number:
       return "X";
     case Kind::Length:
@@ -147,6 +150,7 @@ std::string range_words(const OptionDescription& option) {
     return whole ? std::to_string(static_cast<std::size_t>(limit)) : number_text(limit);
   };
   if (std::isinf(option.low)) return {};
+  if (option.between && std::isinf(option.high)) return "above " + digits(option.low);
   if (option.between) return "between " + digits(option.low) + " and " + digits(option.high);
   if (std::isinf(option.high)) return "at least " + digits(option.low);
   return digits(option.low) + " to " + digits(option.high);
@@ -219,6 +223,8 @@ std::string flaw_of(const OptionDescription& option, const std::string& value) {
                                          : *number >= option.low && *number <= option.high);
       return sound ? "" : limits_flaw(option, value, false);
     }
+    case Kind::Memory:
+      return parse_memory(value) ? "" : "must be a size such as 500M or 2G, not " + value;
     case Kind::Length:
       return length_flaw(option, value);
     case Kind::Choice:
@@ -245,6 +251,19 @@ std::map<std::string, double> numbers_by_name(const std::vector<std::string>& se
   for (const std::string& text : settings)
     if (const auto setting = parsed_setting(text)) out.insert(*setting);
   return out;
+}
+
+std::optional<std::size_t> parse_memory(const std::string& text) {
+  std::string_view digits = text;
+  double unit = 1;
+  if (const auto at = std::string_view("kKMG").find(digits.empty() ? ' ' : digits.back());
+      at != std::string_view::npos) {
+    unit = at <= 1 ? 0x1p10 : at == 2 ? 0x1p20 : 0x1p30;
+    digits.remove_suffix(1);
+  }
+  const double bytes = parsed<double>(digits).value_or(0) * unit;
+  if (!(bytes >= 1 && bytes <= 1e15)) return std::nullopt;
+  return static_cast<std::size_t>(bytes);
 }
 
 namespace option_text {

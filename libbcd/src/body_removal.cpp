@@ -122,7 +122,7 @@ bool redistribute(SearchState& state, Finisher& finisher, std::vector<Finished>&
     place.push_back(origin[i]);
   }
   std::vector<Finished> finished =
-      finisher.finish(fresh, state.options().simplify * limit, epsilon);
+      finisher.finish(fresh, state.options().simplify_share() * limit, epsilon);
   if (!are_within(finished, epsilon)) return false;
   for (std::size_t i = 0; i < place.size(); ++i) bodies[place[i]] = std::move(finished[i]);
   bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(which));

@@ -71,7 +71,7 @@ std::vector<Body> CountSearch::gather(std::size_t target, double epsilon) {
 
 std::vector<Finished> CountSearch::at_most(std::size_t target) {
   std::vector<Body> bodies = gather(target);
-  const double free_cost = kFreeShare * state_.options().simplify * worst_of(bodies);
+  const double free_cost = kFreeShare * state_.options().simplify_share() * worst_of(bodies);
   std::vector<Finished> finished;
   // What measuring finds is refined once more.
   for (int round = 0; round < state_.tuning().rounds; ++round) {

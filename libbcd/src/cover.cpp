@@ -15,21 +15,6 @@
 namespace kaboum::bcd {
 namespace {
 
-/// The distance that counts is the one to the mesh that was not simplified.
-void measure_anew(CoverCandidate& result, const Mesh& closed) {
-  const SolidField solid(closed, kMeasuringGrid, 0);
-  std::vector<Mesh> hulls;
-  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
-  ExcessOptions options;
-  options.absolute_gap = kMeasuredGap * solid.diagonal();
-  options.worth_measuring = kWorthMeasuring;
-  result.excess_lower = result.excess_upper = 0;
-  for (const Excess& r : measure(hulls, solid, options)) {
-    result.excess_lower = std::max(result.excess_lower, r.lower);
-    result.excess_upper = std::max(result.excess_upper, r.upper);
-  }
-}
-
 /// Work that is left, but not less than a share of all. [ns]
 class Allowance {
  public:
@@ -108,7 +93,7 @@ CoverCandidate cover_closed(const geom::SolidMesh& input, const CoverOptions& op
 
 CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& options) {
   require_sound(options);
-  if (too_coarse(input.mesh(), options)) {
+  if (too_coarse(input.mesh(), options.epsilon)) {
     CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

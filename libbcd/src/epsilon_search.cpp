@@ -17,7 +17,7 @@ std::vector<Finished> EpsilonSearch::hull_within(double epsilon) {
   std::vector<Body> whole{body_of(state_.tree(), 0)};
   if (whole[0].concavity.worst > epsilon) return {};
   std::vector<Finished> out =
-      finisher_.finish(whole, options.simplify * kAimedShare * epsilon, epsilon);
+      finisher_.finish(whole, options.simplify_share() * kAimedShare * epsilon, epsilon);
   if (!are_within(out, epsilon)) out.clear();
   return out;
 }
@@ -74,7 +74,7 @@ std::vector<Finished> EpsilonSearch::finish_until_within(std::vector<Body> bodie
        round < kSplitRounds && !bodies.empty() && bodies.size() + out.size() <= most_bodies;
        ++round) {
     std::vector<Finished> tried =
-        finisher_.finish(bodies, state_.options().simplify * aim, epsilon);
+        finisher_.finish(bodies, state_.options().simplify_share() * aim, epsilon);
     bodies.clear();
     std::vector<Body> misjudged;  // leaves of bodies that were thought to be nearer
     for (Finished& f : tried) {

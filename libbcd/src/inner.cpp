@@ -53,7 +53,7 @@ InnerTuning tuning_inside(Effort effort) {
 void require_inside(const geom::SolidMesh& input, const InnerOptions& options) {
   if (!options.epsilon && !options.max_bodies)
     throw Error(ErrorCode::InvalidArgument, "neither epsilon nor max_bodies is given");
-  require_sound(options);
+  require_sound(options, options);
   const std::size_t triangles = input.mesh().triangles.size();
   for (const std::uint32_t t : options.doubtful)
     if (t >= triangles)
@@ -153,7 +153,7 @@ class InnerSearch {
 
 InnerCandidate find_inner(const geom::SolidMesh& input, const InnerOptions& options) {
   require_inside(input, options);
-  if (too_coarse(input.mesh(), options)) {
+  if (too_coarse(input.mesh(), options.epsilon)) {
     InnerCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

@@ -26,35 +26,35 @@ double default_work(std::size_t triangles) {
          kWorkPerTriangle * std::max(0.0, static_cast<double>(triangles) - kManyTriangles);
 }
 
-double work_allowed(const SetOptions& options, std::size_t triangles) {
-  return options.max_work.value_or(options.effort == Effort::Best
-                                       ? std::numeric_limits<double>::infinity()
-                                       : default_work(triangles));
+double work_allowed(const SearchSettings& settings, std::size_t triangles) {
+  return settings.max_work.value_or(settings.effort == Effort::Best
+                                        ? std::numeric_limits<double>::infinity()
+                                        : default_work(triangles));
 }
 
-void require_sound(const SetOptions& options) {
-  if (options.epsilon && !(*options.epsilon > 0))
+void require_sound(const SearchSettings& settings, const SearchRun& run) {
+  if (run.epsilon && !(*run.epsilon > 0))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
-  if (options.max_bodies && *options.max_bodies == 0)
+  if (settings.max_bodies && *settings.max_bodies == 0)
     throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
-  if (options.max_vertices < 8)
+  if (settings.max_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "fewer than 8 vertices per body");
-  if (options.max_work && !(*options.max_work > 0))
+  if (settings.max_work && !(*settings.max_work > 0))
     throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
-  if (options.improve_work && !(*options.improve_work >= 0))
-    throw Error(ErrorCode::InvalidArgument, "improve_work must not be negative");
 }
 
 void require_sound(const CoverOptions& options) {
   if (!options.epsilon && !options.max_bodies && !options.max_total_vertices)
     throw Error(ErrorCode::InvalidArgument,
                 "neither epsilon nor max_bodies nor max_total_vertices is given");
-  require_sound(static_cast<const SetOptions&>(options));
+  require_sound(options, options);
+  if (options.improve_work && !(*options.improve_work >= 0))
+    throw Error(ErrorCode::InvalidArgument, "improve_work must not be negative");
   if (options.max_total_vertices && *options.max_total_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices must be at least 8");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
-  if (!(options.simplify >= 0 && options.simplify <= 1))
+  if (!(options.simplify_share() >= 0 && options.simplify_share() <= 1))
     throw Error(ErrorCode::InvalidArgument, "the share for simplification must be from 0 to 1");
   if (options.max_total_vertices && options.min_thickness > 0)
     throw Error(ErrorCode::InvalidArgument,
@@ -62,15 +62,14 @@ void require_sound(const CoverOptions& options) {
                 "simplified after they are thickened");
 }
 
-bool too_coarse(const geom::Mesh& mesh, const SetOptions& options) {
+bool too_coarse(const geom::Mesh& mesh, const std::optional<double>& epsilon) {
   double magnitude = 0;
   for (const geom::Vec3& p : mesh.vertices)
     magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   const double spacing = geom::float32_spacing(magnitude);
   const double diagonal = geom::bounding_box(mesh).diagonal();
-  return spacing > (options.epsilon ? std::min(kSpacingWithEpsilon * diagonal,
-                                               kSpacingOfEpsilon * *options.epsilon)
-                                    : kSpacingOfDiagonal * diagonal);
+  return spacing > (epsilon ? std::min(kSpacingWithEpsilon * diagonal, kSpacingOfEpsilon * *epsilon)
+                            : kSpacingOfDiagonal * diagonal);
 }
 
 }  // namespace kaboum::bcd

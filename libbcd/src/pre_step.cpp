@@ -6,7 +6,11 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/distance.h>
 
+#include <algorithm>
 #include <vector>
+
+#include "excess.h"
+#include "tuning.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -64,6 +68,20 @@ std::optional<Simpler> pre_step(const geom::SolidMesh& input, const CoverOptions
     if (distance <= epsilon) return Simpler{std::move(mesh), distance};
   }
   return std::nullopt;
+}
+
+void measure_anew(CoverCandidate& result, const geom::Mesh& closed) {
+  const SolidField solid(closed, kMeasuringGrid, 0);
+  std::vector<geom::Mesh> hulls;
+  for (const geom::ConvexBody& body : result.bodies) hulls.push_back(body.core);
+  ExcessOptions options;
+  options.absolute_gap = kMeasuredGap * solid.diagonal();
+  options.worth_measuring = kWorthMeasuring;
+  result.excess_lower = result.excess_upper = 0;
+  for (const Excess& r : measure(hulls, solid, options)) {
+    result.excess_lower = std::max(result.excess_lower, r.lower);
+    result.excess_upper = std::max(result.excess_upper, r.upper);
+  }
 }
 
 }  // namespace kaboum::bcd

@@ -17,4 +17,7 @@ struct Simpler {
 /// limited), if the options ask for it and it is worth while. Source: [gaschler2016] §4.4.2.
 std::optional<Simpler> pre_step(const geom::SolidMesh& closed, const CoverOptions& options);
 
+/// The bracket of a result's distance, made anew from the mesh that was not simplified.
+void measure_anew(CoverCandidate& result, const geom::Mesh& closed);
+
 }  // namespace kaboum::bcd

@@ -1,132 +1,180 @@
-// Certificates of convex sets as JSON: the record in the cache, and the report, which has the
-// claims.
+// Certificates of all artefacts in one shape, and as JSON.
 
-#include <kaboum/base/error.h>
-#include <kaboum/certify/convex_set.h>
+#include <kaboum/certify/certificate.h>
+#include <kaboum/certify/enclosure.h>
+#include <kaboum/certify/inner_links.h>
+#include <kaboum/certify/robot.h>
+#include <kaboum/certify/sweep.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-
-#include "record_count.h"
-#include "request.h"
-#include "set_record.h"
-#include "wrap_record.h"
+#include <utility>
 
 namespace kaboum::certify {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Kind = Claim::Kind;
+using verify::Answer;
 
-struct StopName {
-  bcd::Stop stop;
-  const char* name;
-};
-constexpr std::array<StopName, 5> kStops{{{bcd::Stop::Done, "done"},
-                                          {bcd::Stop::TooManyBodies, "limits"},
-                                          {bcd::Stop::TooCoarse, "float32 too coarse"},
-                                          {bcd::Stop::Stuck, "stuck"},
-                                          {bcd::Stop::OutOfWork, "out of work"}}};
-
-Json record_of(const SetCertificate& c) {
-  Json j;
-  for (const StopName& s : kStops)
-    if (s.stop == c.stop) j["stop"] = s.name;
-  j["direction"] = name_of(c.direction);
-  j["bodies"] = c.bodies;
-  j["vertices"] = c.vertices;
-  j["largest_body_vertices"] = c.largest_body_vertices;
-  j["reach"] = {{"lower", c.distance_lower},
-                {"upper", c.distance_upper},
-                {"upper_percent", c.diagonal > 0 ? 100 * c.distance_upper / c.diagonal : 0.0}};
-  j["closed"] = c.subject.holes == 0;
-  j["holes"] = c.subject.holes;
-  j["largest_hole"] = c.largest_hole;
-  j["turned_triangles"] = c.subject.reversed_triangles;
-  j["dropped_copies"] = c.subject.dropped_copies;
-  j["dropped_sheets"] = c.subject.dropped_sheets;
-  j["filled_triangles"] = c.filled_triangles;
-  j["pieces"] = c.pieces;
-  j["pre_step_triangles"] = c.pre_step_triangles;
-  j["out_of_work"] = c.out_of_work;
-  j["safety"] = c.safety;
-  j["diagonal"] = c.diagonal;
-  j["notes"] = c.notes;
-  if (c.min_thickness > 0)
-    j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
-  if (!c.undecided.empty()) j["undecided"] = c.undecided;
-  if (c.wrap) j["wrap"] = record_of(*c.wrap);
-  return j;
+Claim verified(Kind kind, Basis basis = Basis::Bytes) {
+  return {.kind = kind, .basis = basis, .answer = Answer::Verified};
 }
 
-std::string text_of(const Json& j) {
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+Claim distance_claim(Kind kind, double bound) {
+  return {.kind = kind, .basis = Basis::Measured, .answer = Answer::Verified, .distance = bound};
 }
 
 }  // namespace
 
-std::string to_json(const CertifiedSet& set) {
+const char* name_of(Basis basis) {
+  switch (basis) {
+    case Basis::Bytes:
+      return "decided from the bytes";
+    case Basis::Meshes:
+      return "decided from the meshes";
+    case Basis::Steps:
+      return "by exact tests of every step";
+    case Basis::Measured:
+      break;
+  }
+  return "measured";
+}
+
+const char* name_of(Claim::Kind kind) {
+  switch (kind) {
+    case Kind::Solid:
+      return "solid";
+    case Kind::Winding:
+      return "winding number";
+    case Kind::Surface:
+      return "surface";
+    case Kind::Nested:
+      return "nested";
+    case Kind::OriginalToResult:
+      return "distance from original to result";
+    case Kind::ResultToOriginal:
+      return "distance from result to original";
+    case Kind::Convex:
+      return "convex bodies";
+    case Kind::Motion:
+      return "motion";
+    case Kind::Depth:
+      break;
+  }
+  return "depth of what is left out";
+}
+
+bool Certificate::holds() const {
+  return std::ranges::all_of(claims, [](const Claim& claim) {
+    return claim.answer == Answer::Verified || claim.answer == Answer::Undefined;
+  });
+}
+
+std::string to_json(const Certificate& certificate) {
+  Json j;
+  j["direction"] = certificate.direction == Certificate::Direction::Outer ? "outer" : "inner";
+  j["of"] = certificate.subject;
+  j["claims"] = Json::array();
+  for (const Claim& claim : certificate.claims) {
+    Json one{{"claim", name_of(claim.kind)},
+             {"answer", verify::name_of(claim.answer)},
+             {"basis", name_of(claim.basis)}};
+    if (!claim.reason.empty()) one["reason"] = claim.reason;
+    if (claim.distance) one["distance"] = *claim.distance;
+    j["claims"].push_back(std::move(one));
+  }
+  j["distance"] = certificate.distance ? Json{{"lower", certificate.distance->lower},
+                                              {"upper", certificate.distance->upper}}
+                                       : Json();
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Certificate certificate_of(const CertifiedSet& set) {
   const SetCertificate& c = set.certificate();
-  Json j = record_of(c);
-  if (c.direction == SetRequest::Direction::Outer) {
-    j["cover"] = {
-        {"of", in_words(c.subject)},
-        {"surface", c.subject.dropped_sheets == 0 ? "verified" : "verified, without the sheets"},
-        {"solid", !c.undecided.empty()   ? "undecided"
-                  : c.subject.holes == 0 ? "verified"
-                                         : "verified, of the closed mesh"}};
-  } else {
-    j["inside_of"] = in_words(c.subject);
-    j["inside"] = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
+  Certificate out;
+  out.subject = in_words(c.subject);
+  out.distance = {c.distance_lower, c.distance_upper};
+  out.claims.push_back(verified(Kind::Convex));
+  Claim solid = verified(Kind::Solid);
+  if (c.direction == SetRequest::Direction::Inner) {
+    out.direction = Certificate::Direction::Inner;
+    out.claims.push_back(std::move(solid));
+    out.claims.push_back(distance_claim(Kind::Depth, c.distance_upper));
+    return out;
   }
-  return text_of(j);
+  if (!c.undecided.empty()) {
+    solid.answer = Answer::Undecided;
+    solid.reason = c.undecided;
+  }
+  out.claims.push_back(std::move(solid));
+  out.claims.push_back(verified(Kind::Surface));
+  out.claims.push_back(distance_claim(Kind::ResultToOriginal, c.distance_upper));
+  return out;
 }
 
-std::string write_record(const SetCertificate& certificate) {
-  return text_of(record_of(certificate));
+Certificate certificate_of(const CertifiedEnclosure& enclosure) {
+  const EnclosureCertificate& c = enclosure.certificate();
+  Certificate out;
+  out.subject = in_words(c.subject);
+  out.distance = {0, c.distance_upper};
+  for (const Claim& claim : c.claims)
+    if (claim.kind != Kind::Surface) out.claims.push_back(claim);
+  out.claims.push_back({.kind = Kind::Surface,
+                        .basis = Basis::Bytes,
+                        .answer = c.inside.answer,
+                        .reason = c.inside.reason});
+  return out;
 }
 
-SetCertificate read_record(std::string_view text) {
-  try {
-    const Json j = Json::parse(text);
-    SetCertificate c;
-    const std::string stop = j.at("stop").get<std::string>();
-    bool known = false;
-    for (const StopName& s : kStops)
-      if (stop == s.name) {
-        c.stop = s.stop;
-        known = true;
-      }
-    if (!known) throw Error(ErrorCode::InvalidInput, "no certificate: unknown stop");
-    c.direction = j.at("direction").get<std::string>() == "outer" ? SetRequest::Direction::Outer
-                                                                  : SetRequest::Direction::Inner;
-    c.bodies = count_at(j, "bodies");
-    c.vertices = count_at(j, "vertices");
-    c.largest_body_vertices = count_at(j, "largest_body_vertices");
-    j.at("reach").at("lower").get_to(c.distance_lower);
-    j.at("reach").at("upper").get_to(c.distance_upper);
-    c.subject.holes = count_at(j, "holes");
-    c.subject.reversed_triangles = count_at(j, "turned_triangles");
-    c.subject.dropped_copies = count_at(j, "dropped_copies");
-    c.subject.dropped_sheets = count_at(j, "dropped_sheets");
-    j.at("largest_hole").get_to(c.largest_hole);
-    c.filled_triangles = count_at(j, "filled_triangles");
-    c.pieces = count_at(j, "pieces");
-    c.pre_step_triangles = count_at(j, "pre_step_triangles");
-    j.at("out_of_work").get_to(c.out_of_work);
-    j.at("safety").get_to(c.safety);
-    j.at("diagonal").get_to(c.diagonal);
-    j.at("notes").get_to(c.notes);
-    if (j.contains("min_thickness")) {
-      j.at("min_thickness").at("wished").get_to(c.min_thickness);
-      c.thickened = count_at(j.at("min_thickness"), "thickened");
-    }
-    if (j.contains("undecided")) j.at("undecided").get_to(c.undecided);
-    if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));
-    c.subject.wrapped = c.wrap.has_value();
-    return c;
-  } catch (const nlohmann::json::exception&) {
-    throw Error(ErrorCode::InvalidInput, "no certificate of a convex set");
+Certificate certificate_of(const CertifiedWrap& wrap) {
+  const WrapCertificate& c = wrap.certificate();
+  Certificate out;
+  out.subject = "all triangles of the input";
+  out.distance = {c.farthest_lower, c.farthest_upper};
+  out.claims = {verified(Kind::Surface), distance_claim(Kind::ResultToOriginal, c.farthest_upper)};
+  return out;
+}
+
+Certificate certificate_of(const CertifiedSweep& sweep) {
+  const SweepCertificate& c = sweep.certificate();
+  Certificate out;
+  out.subject = c.margin > 0
+                    ? "what the robot's links sweep along the path, by the bodies with their margin"
+                    : "what the robot's links sweep along the path";
+  const double distance = (c.excess + c.bodies_distance) * (1 + 0x1p-50);  // rounded up
+  out.distance = {0, distance};
+  out.claims.push_back(verified(Kind::Convex));
+  Claim motion =
+      verified(Kind::Motion, c.motion == MotionClaim::Decided ? Basis::Bytes : Basis::Steps);
+  if (c.motion == MotionClaim::None) {
+    motion.answer = Answer::Undecided;
+    motion.reason = "the rule of steps has no proof";
   }
+  out.claims.push_back(std::move(motion));
+  out.claims.push_back(distance_claim(Kind::ResultToOriginal, distance));
+  return out;
+}
+
+Certificate certificate_of(const CertifiedLink& link) {
+  const double distance = link.certificate().distance;
+  Certificate out;
+  out.subject = "the link's shapes";
+  out.distance = {0, distance};
+  out.claims = {verified(Kind::Convex), verified(Kind::Solid),
+                distance_claim(Kind::ResultToOriginal, distance)};
+  return out;
+}
+
+Certificate certificate_of(const CertifiedInnerLink& link) {
+  const double depth = link.certificate().depth;
+  Certificate out;
+  out.direction = Certificate::Direction::Inner;
+  out.subject = "the link's shapes";
+  out.distance = {0, depth};
+  out.claims = {verified(Kind::Convex), verified(Kind::Solid), distance_claim(Kind::Depth, depth)};
+  return out;
 }
 
 }  // namespace kaboum::certify

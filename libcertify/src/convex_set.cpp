@@ -31,30 +31,14 @@ constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
 constexpr double kSumUp = 1 + 0x1p-50;
 
-/// What both searches are asked for.
-bcd::SetOptions search_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
-  bcd::SetOptions options;
-  if (const auto epsilon = r.wanted_epsilon()) options.epsilon = epsilon->of(diagonal);
-  options.max_bodies = r.max_bodies;
-  options.max_vertices = r.max_vertices;
-  options.effort = r.effort;
-  options.max_work = r.max_work;
+bcd::SearchRun run_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  bcd::SearchRun run;
+  if (const auto epsilon = r.wanted_epsilon()) run.epsilon = epsilon->of(diagonal);
   if (hooks.progress)
-    options.progress = [&](const bcd::Progress& p) {
+    run.progress = [&](const bcd::Progress& p) {
       hooks.progress(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
     };
-  return options;
-}
-
-bcd::CoverOptions cover_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
-  bcd::CoverOptions options;
-  static_cast<bcd::SetOptions&>(options) = search_of(r, diagonal, hooks);
-  options.max_total_vertices = r.max_total_vertices;
-  options.min_thickness = r.min_thickness;
-  if (r.simplify) options.simplify = *r.simplify;
-  options.improve_work = r.improve_work;
-  options.pre_step = r.pre_step;
-  return options;
+  return run;
 }
 
 /// @throws Error{InvalidArgument} on what only bodies that cover can be asked
@@ -68,7 +52,7 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
   refuse(r.simplify.has_value(), "are not simplified");
   refuse(r.improve_work.has_value(), "are not fewer for more work");
-  return {search_of(r, diagonal, hooks), {}};
+  return {r, run_of(r, diagonal, hooks), {}};
 }
 
 /// Why a set does not do what it should, decided exactly.
@@ -125,7 +109,7 @@ class Search {
          const Hooks& hooks)
       : solid_(solid) {
     if (request.direction == SetRequest::Direction::Outer)
-      cover_ = cover_of(request, diagonal, hooks);
+      cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks)};
     else
       inner_ = inner_of(request, diagonal, hooks);
   }

@@ -165,7 +165,7 @@ std::optional<CertifiedEnclosure> certify(const geom::Mesh& mesh, const Enclosur
   made.out_of_work = c.out_of_work;
   made.subject = c.subject;
   made.subject.wrapped = made.wrap.has_value();
-  made.claims = claims(*result);
+  made.claims = certificate_of(*result).claims;
   if (!given.why.empty()) made.notes.push_back(why_wrapped(given.why));
   if (made.wrap) made.notes.push_back(in_words(*made.wrap));
   made.notes.insert(made.notes.end(), solid.report.notes.begin(), solid.report.notes.end());

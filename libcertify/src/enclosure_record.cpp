@@ -21,8 +21,8 @@ constexpr std::array kStopNames{std::pair{bmesh::Stop::VertexTarget, "vertices"}
                                 std::pair{bmesh::Stop::OutOfWork, "out of work"},
                                 std::pair{bmesh::Stop::Exhausted, "exhausted"}};
 constexpr std::array kClaimKinds{
-    MeshClaim::Kind::Solid,  MeshClaim::Kind::Winding,          MeshClaim::Kind::Surface,
-    MeshClaim::Kind::Nested, MeshClaim::Kind::OriginalToResult, MeshClaim::Kind::ResultToOriginal};
+    Claim::Kind::Solid,  Claim::Kind::Winding,          Claim::Kind::Surface,
+    Claim::Kind::Nested, Claim::Kind::OriginalToResult, Claim::Kind::ResultToOriginal};
 constexpr std::array kBases{Basis::Bytes, Basis::Meshes, Basis::Steps, Basis::Measured};
 constexpr std::array kAnswers{Answer::Verified, Answer::Refuted, Answer::Undecided,
                               Answer::Undefined};
@@ -35,7 +35,7 @@ auto named(const Values& values, const std::string& name) {
   throw Error(ErrorCode::InvalidInput, "no certificate of a mesh: unknown word '" + name + "'");
 }
 
-Json record_of(const MeshClaim& claim) {
+Json record_of(const Claim& claim) {
   Json j{{"claim", name_of(claim.kind)},
          {"basis", name_of(claim.basis)},
          {"answer", name_of(claim.answer)}};
@@ -65,7 +65,7 @@ Json record_of(const EnclosureCertificate& c) {
                                 {"outside", c.inside.outside}};
   if (c.inside.farther) j["every_triangle_inside"]["sticks_out_upper"] = *c.inside.farther;
   j["claims"] = Json::array();
-  for (const MeshClaim& claim : c.claims) j["claims"].push_back(record_of(claim));
+  for (const Claim& claim : c.claims) j["claims"].push_back(record_of(claim));
   if (c.wrap) j["wrap"] = record_of(*c.wrap);
   j["notes"] = c.notes;
   return j;
@@ -118,7 +118,7 @@ EnclosureCertificate read_enclosure(std::string_view text) {
     if (inside.contains("sticks_out_upper"))
       c.inside.farther = inside.at("sticks_out_upper").get<double>();
     for (const Json& claim : j.at("claims")) {
-      MeshClaim& out = c.claims.emplace_back();
+      Claim& out = c.claims.emplace_back();
       out.kind = named(kClaimKinds, claim.at("claim").get<std::string>());
       out.basis = named(kBases, claim.at("basis").get<std::string>());
       out.answer = named(kAnswers, claim.at("answer").get<std::string>());

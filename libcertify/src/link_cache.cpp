@@ -20,7 +20,7 @@
 namespace kaboum::certify {
 namespace {
 
-constexpr std::string_view kKind = "KABOUM-LINK 1";
+constexpr std::string_view kLinkKind = "KABOUM-LINK 1";
 /// Of fewer points, sets are made in the time of finding them.
 constexpr std::size_t kFewPoints = 200;
 
@@ -105,7 +105,7 @@ class Reader {
 std::string key_of(const LinkCase& link) {
   Writer w;
   for (const std::string_view word :
-       {kKind, std::string_view(KABOUM_VERSION), cache_words::kLinks, cache_words::kDecisions})
+       {kLinkKind, std::string_view(KABOUM_VERSION), cache_words::kLinks, cache_words::kDecisions})
     w.text(word);
   w.value(std::endian::native);
   w.value(std::uint64_t{link.certificate.link});
@@ -139,7 +139,7 @@ LinkCache::LinkCache(const CacheFolder* folder, const LinkCase& link)
 std::optional<CertifiedLink> LinkCache::find(std::string& flaw) const {
   flaw.clear();
   if (folder_ == nullptr) return std::nullopt;
-  const auto content = folder_->find(kKind, key_, flaw);
+  const auto content = folder_->find(kLinkKind, key_, flaw);
   if (!content) return std::nullopt;
   try {
     Reader r(*content);
@@ -177,7 +177,7 @@ void LinkCache::store(const CertifiedLink& made) const {
     w.list(body.core.triangles);
   }
   w.list(made.bytes());
-  folder_->store(kKind, key_, w.bytes());
+  folder_->store(kLinkKind, key_, w.bytes());
 }
 
 }  // namespace kaboum::certify

@@ -7,15 +7,15 @@
 namespace kaboum::certify {
 namespace {
 
-using Kind = MeshClaim::Kind;
+using Kind = Claim::Kind;
 using verify::Answer;
 
-MeshClaim surface_claim(const MeshCertificate& c) {
+Claim surface_claim(const MeshCertificate& c) {
   return {Kind::Surface, c.decided ? Basis::Bytes : Basis::Meshes, c.surface->claim.answer,
           c.surface->claim.reason};
 }
 
-void add_distances(const MeshCertificate& c, std::vector<MeshClaim>& claims) {
+void add_distances(const MeshCertificate& c, std::vector<Claim>& claims) {
   if (c.decided) {
     claims.push_back({Kind::OriginalToResult,
                       Basis::Bytes,
@@ -43,38 +43,6 @@ void add_distances(const MeshCertificate& c, std::vector<MeshClaim>& claims) {
 
 }  // namespace
 
-const char* name_of(Basis basis) {
-  switch (basis) {
-    case Basis::Bytes:
-      return "decided from the bytes";
-    case Basis::Meshes:
-      return "decided from the meshes";
-    case Basis::Steps:
-      return "by exact tests of every step";
-    case Basis::Measured:
-      break;
-  }
-  return "measured";
-}
-
-const char* name_of(MeshClaim::Kind kind) {
-  switch (kind) {
-    case Kind::Solid:
-      return "solid";
-    case Kind::Winding:
-      return "winding number";
-    case Kind::Surface:
-      return "surface";
-    case Kind::Nested:
-      return "nested";
-    case Kind::OriginalToResult:
-      return "distance from original to result";
-    case Kind::ResultToOriginal:
-      break;
-  }
-  return "distance from result to original";
-}
-
 double MeshCertificate::hausdorff_upper() const {
   return std::max(original_to_result->max_upper, result_to_original->max_upper);
 }
@@ -88,10 +56,17 @@ bool MeshCertificate::reached() const {
          vertices <= *requested;
 }
 
-std::vector<MeshClaim> claims(const CertifiedMesh& mesh) {
+Certificate certificate_of(const CertifiedMesh& mesh) {
   const MeshCertificate& c = mesh.certificate();
-  std::vector<MeshClaim> all;
-  if (c.direction == bmesh::Direction::Any) return all;
+  Certificate out;
+  out.direction = c.direction == bmesh::Direction::Inner ? Certificate::Direction::Inner
+                                                         : Certificate::Direction::Outer;
+  out.subject = in_words(c.subject);
+  if (c.original_to_result && c.result_to_original)
+    out.distance = {std::max(c.original_to_result->max_lower, c.result_to_original->max_lower),
+                    c.hausdorff_upper()};
+  if (c.direction == bmesh::Direction::Any) return out;
+  std::vector<Claim>& all = out.claims;
   const Kind kind = c.closed ? Kind::Solid : Kind::Winding;
   if (c.decided) {
     const verify::Claim& solid = c.decided->inclusion.solid;
@@ -106,7 +81,7 @@ std::vector<MeshClaim> claims(const CertifiedMesh& mesh) {
   }
   if (c.surface) all.push_back(surface_claim(c));
   add_distances(c, all);
-  return all;
+  return out;
 }
 
 }  // namespace kaboum::certify

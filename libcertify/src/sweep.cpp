@@ -12,8 +12,8 @@
 namespace kaboum::certify {
 namespace {
 
-SweepCertificate certificate_of(const sweep::SweepResult& made, const CertifiedBodies& bodies,
-                                const geom::ConvexSet& set) {
+SweepCertificate sweep_certificate(const sweep::SweepResult& made, const CertifiedBodies& bodies,
+                                   const geom::ConvexSet& set) {
   SweepCertificate c;
   c.motion = made.certified ? MotionClaim::Proved : MotionClaim::None;
   c.bodies = set.bodies.size();
@@ -70,7 +70,7 @@ std::optional<CertifiedSweep> certify_sweep(const robot::RobotFile& robot,
   geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
   ensure(geom::margin_of(set) == geom::margin_of(made.set), "the margin does not survive writing");
   ensure(set.bodies.size() == made.set.bodies.size(), "a body does not survive writing");
-  SweepCertificate certificate = certificate_of(made, bodies, set);
+  SweepCertificate certificate = sweep_certificate(made, bodies, set);
   decide(set, certificate, robot, bodies, path, request);
   return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
 }

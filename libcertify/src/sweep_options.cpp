@@ -3,6 +3,8 @@
 #include <kaboum/base/length_unit.h>
 #include <kaboum/certify/sweep_options.h>
 #include <kaboum/robot/base_pose.h>
+#include <kaboum/robot/path_options.h>
+#include <kaboum/robot/shape_options.h>
 
 #include <array>
 #include <utility>
@@ -11,7 +13,6 @@ namespace kaboum::certify {
 namespace {
 
 using R = SweptSetOptions;
-using Kind = OptionDescription::Kind;
 
 constexpr std::array<std::pair<const char*, sweep::StepRule>, 6> kRules{
     {{"baginski", sweep::StepRule::Baginski},
@@ -61,49 +62,32 @@ void add_bodies(std::vector<Option<R>>& out) {
   out.push_back(with_its_digits(epsilon));
   out.push_back(of_bodies("max-vertices-per-body", "Most vertices of a link's body"));
   out.push_back(of_bodies("effort", "How long to search for the links' bodies"));
-  constexpr std::array<std::pair<const char*, bool>, 2> kGeometries{
-      {{"collision", false}, {"visual", true}}};
+  const std::vector<std::pair<const char*, bool>> geometries{{"collision", false},
+                                                             {"visual", true}};
+  OptionDescription geometry = option_named(robot::shape_options(), "geometry");
+  geometry.always_recorded = true;
   out.push_back(choice<R>(
-      {.name = "geometry", .text = "Which shapes of a URDF", .always_recorded = true},
-      [](auto& r) -> auto& { return r.visual; }, kGeometries));
+      geometry, [](auto& r) -> auto& { return r.visual; }, geometries));
 }
 
 void add_motion(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
-      {.name = "links", .text = "Only these links", .otherwise = "all", .kind = Kind::Names},
-      [](auto& r) -> auto& { return r.links; }));
+      option_named(robot::shape_options(), "links"), [](auto& r) -> auto& { return r.links; }));
   out.push_back(option<R>(
-      {.name = "joint",
-       .text = "Value of a joint that does not move and has no column in the path, in radians or "
-               "metres; for each such joint",
-       .kind = Kind::Settings},
-      [](auto& r) -> auto& { return r.joints; }));
+      option_named(robot::path_options(), "joint"), [](auto& r) -> auto& { return r.joints; }));
   out.push_back(option<R>(
-      {.name = "degrees", .text = "Angles of the path and of {joint} are in degrees, not radians"},
-      [](auto& r) -> auto& { return r.degrees; }));
+      option_named(robot::path_options(), "degrees"), [](auto& r) -> auto& { return r.degrees; }));
   out.push_back(option<R>(
-      {.name = "base-pose",
-       .text = "Where the robot's root stands in the world, in the robot's unit of length and "
-               "radians: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or X,Y,Z,QX,QY,QZ,QW or X,Y,Z and a "
-               "matrix, row by row",
-       .values = "POSE",
-       .otherwise = "the origin"},
-      [](auto& r) -> auto& { return r.base_pose; }));
+      robot::base_pose_option(), [](auto& r) -> auto& { return r.base_pose; }));
 }
 
 /// What no record's line has.
 void add_unrecorded(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
-      {.name = "ignore-limits",
-       .text = "Allow waypoints outside the joints' limits",
-       .unrecorded = true},
+      option_named(robot::path_options(), "ignore-limits"),
       [](auto& r) -> auto& { return r.ignore_limits; }));
   out.push_back(option<R>(
-      {.name = "package-path",
-       .text = "A package of package:// or a folder that holds it, besides $ROS_PACKAGE_PATH, "
-               "$AMENT_PREFIX_PATH and the folders above the robot's file; there may be several",
-       .values = "DIR",
-       .unrecorded = true},
+      option_named(robot::shape_options(), "package-path"),
       [](auto& r) -> auto& { return r.packages; }));
   std::vector<std::pair<std::string, std::string>> units;
   units.reserve(kLengthUnits.size());

@@ -34,6 +34,10 @@ std::vector<ExactMesh> exact_meshes(const world::World& world, const fs::path& s
     }
   }
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    if (world.objects[o].primitive) {
+      out.push_back({{world::Item::kObject, o}, world::mesh_of(*world.objects[o].primitive)});
+      continue;
+    }
     const json& outer = description.at("objects").at(o).at("outer");
     if (!outer.contains("made_from") || outer["made_from"].empty())
       throw Error(ErrorCode::InvalidInput,

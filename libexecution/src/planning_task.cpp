@@ -12,14 +12,16 @@ namespace {
 
 constexpr const char* kAnswers = "KABOUM-ANSWERS 5";
 
-plan::Text read_text(const std::string& file, const std::optional<plan::Language>& given) {
+/// @param option  that states the language
+plan::Text read_text(const std::string& file, const std::optional<plan::Language>& given,
+                     const char* option) {
   const auto language = given ? given : plan::language_from_name(file);
   if (!language)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        file +
-            ": cannot tell the language from the name, which ends with .kpl or .pddl, and none is "
-            "given");
+    throw Error(ErrorCode::InvalidArgument,
+                file +
+                    ": cannot tell the language from the name, which ends with .kpl or .pddl; "
+                    "state it («" +
+                    option + "»)");
   const std::vector<char> bytes = io::read_file(file);
   return {file == "-" ? "stdin" : file, std::string(bytes.begin(), bytes.end()), *language};
 }
@@ -49,10 +51,11 @@ struct PlanningTask::Data {
 };
 
 plan::TaskTexts read_texts(const TaskFiles& files) {
-  plan::TaskTexts out{read_text(files.domain, files.language), {}};
+  plan::TaskTexts out{read_text(files.domain, files.language, "input-format"), {}};
   if (!files.problem.empty())
     out.problem =
-        read_text(files.problem, files.problem_language ? files.problem_language : files.language);
+        read_text(files.problem, files.problem_language ? files.problem_language : files.language,
+                  "problem-format");
   return out;
 }
 

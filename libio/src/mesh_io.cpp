@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "formats.h"
 #include "output.h"
@@ -12,37 +13,87 @@
 namespace kaboum::io {
 namespace {
 
-struct FormatInfo {
-  std::string_view name;
-  Format format;
-  bool writable;
-  bool (*available)();
-  bool canonical;  ///< listed; the others are further spellings
-};
-
 bool always() { return true; }
 
-constexpr std::array kFormats = {
-    FormatInfo{"3mf", Format::ThreeMf, false, always, true},
-    FormatInfo{"collada", Format::Collada, false, always, false},
-    FormatInfo{"dae", Format::Collada, false, always, true},
-    FormatInfo{"fbx", Format::Fbx, false, has_assimp, true},
-    FormatInfo{"glb", Format::Glb, true, always, true},
-    FormatInfo{"gltf", Format::Gltf, false, always, true},
-    FormatInfo{"iges", Format::Iges, false, has_cad, true},
-    FormatInfo{"igs", Format::Iges, false, has_cad, false},
-    FormatInfo{"obj", Format::Obj, true, always, true},
-    FormatInfo{"off", Format::Off, true, always, true},
-    FormatInfo{"ply", Format::Ply, true, always, true},
-    FormatInfo{"ply-ascii", Format::PlyAscii, true, always, true},
-    FormatInfo{"step", Format::Step, false, has_cad, true},
-    FormatInfo{"stl", Format::Stl, true, always, true},
-    FormatInfo{"stl-ascii", Format::StlAscii, true, always, true},
-    FormatInfo{"stp", Format::Step, false, has_cad, false},
-    FormatInfo{"vrml", Format::Vrml, false, always, false},
-    FormatInfo{"wrl", Format::Vrml, false, always, true},
-    FormatInfo{"x3d", Format::X3d, false, always, true},
+/// A reader as the table has it, of one that knows its format or is told.
+template <auto kRead>
+ReadResult read(const Source& source, Format format) {
+  if constexpr (std::is_invocable_v<decltype(kRead), const Source&, Format>) {
+    return kRead(source, format);
+  } else {
+    return kRead(source);
+  }
+}
+
+using Writer = std::vector<char> (*)(const geom::Mesh&, const WriteOptions&);
+
+/// A format of mesh files: all that is said of it here.
+struct MeshFormat {
+  Format format;
+  std::string_view name;        ///< the extension of its files; what messages call it
+  std::string_view other_name;  ///< another extension; empty: none
+  ReadResult (*read)(const Source&, Format);
+  Writer write = nullptr;        ///< null: it is only read
+  bool doubles = false;          ///< its files can hold doubles exactly
+  std::string_view floats = {};  ///< in messages, where it is written with floats alone
+  bool listed = true;            ///< where messages list formats
+  bool (*available)() = always;
 };
+
+// Listed in this order.
+constexpr std::array kFormats = {
+    MeshFormat{Format::ThreeMf, "3mf", "", read<read_three_mf>},
+    MeshFormat{Format::Collada, "dae", "collada", read<read_collada>},
+    MeshFormat{.format = Format::Fbx,
+               .name = "fbx",
+               .other_name = "",
+               .read = read<read_fbx>,
+               .available = has_assimp},
+    MeshFormat{.format = Format::Glb,
+               .name = "glb",
+               .other_name = "",
+               .read = read<read_gltf>,
+               .write = write_glb,
+               .floats = "GLB"},
+    MeshFormat{.format = Format::Gltf,
+               .name = "gltf",
+               .other_name = "",
+               .read = read<read_gltf>,
+               .listed = false},
+    MeshFormat{.format = Format::Iges,
+               .name = "iges",
+               .other_name = "igs",
+               .read = read<read_cad>,
+               .available = has_cad},
+    MeshFormat{Format::Obj, "obj", "", read<read_obj>, write_obj, true},
+    MeshFormat{Format::Off, "off", "", read<read_off>, write_off, true},
+    MeshFormat{Format::Ply, "ply", "", read<read_ply>, write_ply_binary, true},
+    MeshFormat{Format::PlyAscii, "ply-ascii", "", read<read_ply>, write_ply_ascii, true},
+    MeshFormat{.format = Format::Step,
+               .name = "step",
+               .other_name = "stp",
+               .read = read<read_cad>,
+               .available = has_cad},
+    MeshFormat{.format = Format::Stl,
+               .name = "stl",
+               .other_name = "",
+               .read = read<read_stl>,
+               .write = write_stl_binary,
+               .floats = "binary STL"},
+    MeshFormat{Format::StlAscii, "stl-ascii", "", read<read_stl>, write_stl_ascii, true},
+    MeshFormat{.format = Format::Vrml,
+               .name = "wrl",
+               .other_name = "vrml",
+               .read = read<read_scene>,
+               .doubles = true},
+    MeshFormat{Format::X3d, "x3d", "", read<read_scene>},
+};
+
+const MeshFormat& format_of(Format format) {
+  for (const MeshFormat& known : kFormats)
+    if (known.format == format) return known;
+  throw Error(ErrorCode::InvalidArgument, "unknown format");
+}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string list;
@@ -53,40 +104,9 @@ std::string joined(const std::vector<std::string>& names) {
 template <typename Accept>
 std::vector<std::string> names_of(const Accept& accept) {
   std::vector<std::string> names;
-  for (const FormatInfo& info : kFormats)
-    if (info.canonical && accept(info)) names.emplace_back(info.name);
+  for (const MeshFormat& known : kFormats)
+    if (known.listed && accept(known)) names.emplace_back(known.name);
   return names;
-}
-
-ReadResult read_as(const Source& source, Format format) {
-  switch (format) {
-    case Format::Stl:
-    case Format::StlAscii:
-      return read_stl(source);
-    case Format::Obj:
-      return read_obj(source);
-    case Format::Ply:
-    case Format::PlyAscii:
-      return read_ply(source);
-    case Format::Off:
-      return read_off(source);
-    case Format::Vrml:
-    case Format::X3d:
-      return read_scene(source, format);
-    case Format::ThreeMf:
-      return read_three_mf(source);
-    case Format::Collada:
-      return read_collada(source);
-    case Format::Glb:
-    case Format::Gltf:
-      return read_gltf(source, format);
-    case Format::Fbx:
-      return read_fbx(source);
-    case Format::Step:
-    case Format::Iges:
-      return read_cad(source, format);
-  }
-  throw Error(ErrorCode::InvalidArgument, "unknown format");
 }
 
 /// A mesh without unused vertices and −0, and where its vertices are in the caller's mesh.
@@ -126,59 +146,25 @@ CleanMesh cleaned(const geom::Mesh& mesh) {
   return clean;
 }
 
-using Writer = std::vector<char> (*)(const geom::Mesh&, const WriteOptions&);
-
-Writer writer_of(Format format) {
-  switch (format) {
-    case Format::Stl:
-      return write_stl_binary;
-    case Format::StlAscii:
-      return write_stl_ascii;
-    case Format::Obj:
-      return write_obj;
-    case Format::Ply:
-      return write_ply_binary;
-    case Format::PlyAscii:
-      return write_ply_ascii;
-    case Format::Off:
-      return write_off;
-    case Format::Glb:
-      return write_glb;
-    default:
-      return nullptr;
-  }
-}
-
 }  // namespace
 
 std::optional<Format> format_from_name(std::string_view text) {
   if (text.starts_with('.')) text.remove_prefix(1);
-  for (const FormatInfo& info : kFormats)
-    if (same_word(text, info.name)) return info.format;
+  if (text.empty()) return std::nullopt;
+  for (const MeshFormat& known : kFormats)
+    if (same_word(text, known.name) || same_word(text, known.other_name)) return known.format;
   return std::nullopt;
 }
 
 std::vector<std::string> readable_formats() {
-  return names_of([](const FormatInfo& info) { return info.available(); });
+  return names_of([](const MeshFormat& known) { return known.available(); });
 }
 
 std::vector<std::string> writable_formats() {
-  return names_of([](const FormatInfo& info) { return info.writable; });
+  return names_of([](const MeshFormat& known) { return known.write != nullptr; });
 }
 
-bool holds_double(Format format) {
-  switch (format) {
-    case Format::StlAscii:
-    case Format::Obj:
-    case Format::Ply:
-    case Format::PlyAscii:
-    case Format::Off:
-    case Format::Vrml:
-      return true;
-    default:
-      return false;
-  }
-}
+bool holds_double(Format format) { return format_of(format).doubles; }
 
 bool is_cad(Format format) { return format == Format::Step || format == Format::Iges; }
 
@@ -188,7 +174,7 @@ ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::str
   if (bytes.empty()) fail(source, "the file is empty; get it again");
   if (source.bytes.starts_with("\x1F\x8B"))
     fail(source, "the file is compressed with gzip; decompress it first (gunzip)");
-  return read_as(source, format);
+  return format_of(format).read(source, format);
 }
 
 ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> format,
@@ -209,16 +195,15 @@ ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> fo
 
 std::vector<char> serialise_mesh(const geom::Mesh& mesh, Format format,
                                  const WriteOptions& options) {
-  const Writer write = writer_of(format);
-  if (write == nullptr)
+  const MeshFormat& as = format_of(format);
+  if (as.write == nullptr)
     throw Error(ErrorCode::InvalidArgument, "meshes cannot be written in this format; use one of " +
                                                 joined(writable_formats()));
   const CleanMesh clean = cleaned(mesh);
-  if (format == Format::Stl) require_float(clean.mesh, clean.original, "binary STL");
-  if (format == Format::Glb) require_float(clean.mesh, clean.original, "GLB");
+  if (!as.floats.empty()) require_float(clean.mesh, clean.original, std::string(as.floats));
   if (format == Format::Ply && !options.double_precision)
     require_float(clean.mesh, clean.original, "PLY in single precision");
-  return write(clean.mesh, options);
+  return as.write(clean.mesh, options);
 }
 
 }  // namespace kaboum::io

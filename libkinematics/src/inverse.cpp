@@ -27,12 +27,12 @@ struct InverseSearch {
 
 void InverseSearch::add_row(const std::vector<double>& q, Row row) {
   std::vector<std::vector<double>> choices;
-  if (request.copies && request.limits) {
+  if (request.copies && !request.ignore_limits) {
     choices = copies(arm, q);
   } else if (auto nearest = nearest_copy(arm, q, reference)) {
     choices.push_back(std::move(*nearest));
   }
-  if (choices.empty() && !request.limits) {
+  if (choices.empty() && request.ignore_limits) {
     choices.push_back(q);
     row.within = false;
   }
@@ -46,7 +46,7 @@ void InverseSearch::find_in_closed_form() {
   const auto joints = static_cast<long>(arm.axes.size());
   SolutionSetOptions options;
   std::copy(reference.begin(), reference.end(), options.solve.reference.begin());
-  options.limits = request.limits;
+  options.limits = !request.ignore_limits;
   options.representatives = request.representatives;
   std::vector<Transform> targets{request.target};
   if (request.free_heading) {
@@ -79,8 +79,8 @@ void InverseSearch::find_numerically() {
   answer.incomplete = "a numeric search finds no proof";
   NumericOptions options;
   options.seed = request.seed;
-  options.starts = request.starts;
-  options.limits = request.limits;
+  options.starts = static_cast<int>(request.starts);
+  options.limits = !request.ignore_limits;
   options.first = request.reference;
   options.progress = request.progress;
   for (const NumericSolution& s : solve_numeric_all(arm, request.target, options)) {

@@ -93,7 +93,8 @@ json to_json(const std::string& place, const Entry& entry) {
           {"reason", entry.answer.reason},
           {"chosen", entry.answer.chosen},
           {"choices", entry.answer.choices},
-          {"fixed", entry.answer.fixed}};
+          {"fixed", entry.answer.fixed},
+          {"listed", entry.answer.listed}};
 }
 
 Entry entry_of(const json& j) {
@@ -110,6 +111,7 @@ Entry entry_of(const json& j) {
   out.answer.chosen = j.at("chosen").get<bool>();
   out.answer.choices = j.at("choices").get<unsigned>();
   out.answer.fixed = j.at("fixed").get<bool>();
+  out.answer.listed = j.at("listed").get<bool>();
   return out;
 }
 
@@ -173,10 +175,13 @@ AnswerCache::~AnswerCache() = default;
 
 plan::ExternalBindings AnswerCache::wrap(const plan::ExternalBindings& bindings) {
   plan::ExternalBindings out;
-  for (const auto& [name, function] : bindings)
-    out[name] = [kept = kept_.get(), name = name, function = function](const Question& question) {
+  for (const auto& [name, function] : bindings) {
+    plan::ExternalBinding& binding = out[name];
+    binding = [kept = kept_.get(), name = name, function = function](const Question& question) {
       return kept->ask(name, function, question);
     };
+    if (function.refuses_early()) binding.refuse_early();
+  }
   return out;
 }
 

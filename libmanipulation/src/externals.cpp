@@ -14,12 +14,13 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
     const char* name;
     std::size_t arguments;
     plan::Answer (*function)(Geometry&, const plan::Question&);
+    bool refuses_early = false;
   };
-  constexpr Entry kEntries[] = {{"reach", 2, reach},
+  constexpr Entry kEntries[] = {{"reach", 2, reach, true},
                                 {"grasp", 3, grasp},
                                 {"place", 3, place},
-                                {"transfer", 4, transfer},
-                                {"fetch", 3, fetch},
+                                {"transfer", 4, transfer, true},
+                                {"fetch", 3, fetch, true},
                                 {"put", 4, put},
                                 {"putUpright", 4, put_upright},
                                 {"lift", 2, lift},
@@ -32,14 +33,17 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"collides", 2, collides},
                                 {"sweptCollides", 3, swept_collides}};
   plan::ExternalBindings out;
-  for (const Entry& entry : kEntries)
-    out[entry.name] = [geometry, entry](const plan::Question& question) {
+  for (const Entry& entry : kEntries) {
+    plan::ExternalBinding& binding = out[entry.name];
+    binding = [geometry, entry](const plan::Question& question) {
       if (question.arguments.size() != entry.arguments)
         throw Error(ErrorCode::InvalidInput, std::string(entry.name) + " takes " +
                                                  std::to_string(entry.arguments) +
                                                  " arguments in the library of the scene");
       return entry.function(*geometry, question);
     };
+    if (entry.refuses_early) binding.refuse_early();
+  }
   return out;
 }
 

@@ -24,7 +24,7 @@ constexpr std::size_t kEnough = 4;
 
 /// One robot holds the object at q; the other one takes it there, and both go home.
 bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
-                    const std::vector<double>& q) {
+                    const std::vector<double>& q, Grasps grasps) {
   world::WorldState then = state_;
   then.q[from] = q;
   if (!is_free(then)) return false;
@@ -32,7 +32,9 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
   const std::vector<Motion> motions = motions_;
   state_ = then;
   Goals goals;
-  for (const std::vector<double>& goal : goals_of_reach(to, object).configurations) {
+  const Goals reaching = grasps == Grasps::All ? goals_of_reach(to, object)
+                                               : preferred_goals(to, object).value_or(Goals{});
+  for (const std::vector<double>& goal : reaching.configurations) {
     world::WorldState both = then;
     both.q[to] = goal;
     if (is_free(both)) goals.configurations.push_back(goal);
@@ -50,7 +52,7 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
 }
 
 /// Tries places at random. @return whether it was done at one.
-bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t to) {
+bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t to, Grasps grasps) {
   const std::vector<world::RobotModel>& robots = geometry_.world.robots;
   const world::Attachment held = *held_by(from, object);
   const geom::Vec3 middle = 0.5 * (robots[from].base.translation + robots[to].base.translation);
@@ -67,7 +69,7 @@ bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t 
     Goals goals;
     add_goals(goals, from, held.link, pose * inverse(held.pose));
     for (const std::vector<double>& q : goals.configurations)
-      if (meet(from, object, to, q)) return true;
+      if (meet(from, object, to, q, grasps)) return true;
   }
   return false;
 }
@@ -78,7 +80,9 @@ bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
   if (!held_by(from, object))
     return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
   if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
-  if (meet_somewhere(from, object, to)) {
+  preferred_goals(to, object);  // says among how many grasps it chooses
+  if ((question_.choice > 0 && meet_somewhere(from, object, to, Grasps::Preferred)) ||
+      meet_somewhere(from, object, to, Grasps::All)) {
     chosen_ = true;
     return true;
   }

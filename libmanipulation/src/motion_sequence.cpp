@@ -37,12 +37,14 @@ MotionSequence::MotionSequence(const Geometry& geometry, const plan::Question& q
 bool MotionSequence::fail(Answer::Kind kind, std::string reason) {
   failed_ = kind;
   reason_ = std::move(reason);
+  listed_ = false;
   return false;
 }
 
 Answer MotionSequence::failure() const {
   Answer out{motions_.empty() ? failed_ : Answer::Kind::NotFound, "", "", reason_};
   out.choices = choices_;
+  out.listed = listed_ && out.kind == Answer::Kind::Impossible;
   return out;
 }
 

@@ -62,6 +62,7 @@ class MotionSequence {
   std::vector<Motion> motions_;
   plan::Answer::Kind failed_ = plan::Answer::Kind::Impossible;
   std::string reason_;
+  bool listed_ = false;   ///< a failure is impossible among what the scene lists
   bool chosen_ = false;   ///< something was chosen among several things that might do
   unsigned choices_ = 0;  ///< among how many a question's choice decides
   Random random_;

@@ -117,7 +117,9 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals) {
       if (!goals.listed.empty())
         where = (all ? goals.none() : "no configuration that was tried for " + goals.listed) +
                 " is free of contact";
-      return none(all, where + ": " + name_of(geometry_.world, answer.contact->items));
+      none(all, where + ": " + name_of(geometry_.world, answer.contact->items));
+      listed_ = !goals.listed.empty();
+      return false;
     }
     case Outcome::StartInContact:
       return none(true, "the robot cannot start: contact of " +

@@ -6,6 +6,7 @@
 #include <kaboum/manipulation/words.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -18,6 +19,8 @@ using world::Transform;
 
 /// Turns that are tried when an object is put down; more with each attempt.
 constexpr int kTurns = 8;
+/// More than sums of lengths lose. [1]
+constexpr double kRounding = 1e-9;
 
 /// All of 0 … n − 1 for the choices 1 … n, what is near in the list far apart in time.
 std::size_t spread(unsigned choice, std::size_t n) {
@@ -74,6 +77,33 @@ std::optional<Goals> Sequence::preferred_goals(std::size_t robot, std::size_t ob
   return goals;
 }
 
+bool Sequence::is_beyond_reach(std::size_t robot, std::size_t object) const {
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  const world::Object& thing = geometry_.world.objects[object];
+  const auto& ball = thing.outer.ball();
+  const double distance =
+      (inverse(model.base) * (pose_of_object(object) * ball.center)).norm() - ball.radius;
+  double aside =
+      0;  // how far from the ball tools may be, as they are at the grasps that are listed
+  for (const world::Grasp& grasp : thing.grasps)
+    aside = std::max(aside, (grasp.pose.translation - ball.center).norm() - ball.radius);
+  const robot::Robot& robot_of = model.kinematics;
+  return std::ranges::all_of(model.tools, [&](const world::ToolFrame& tool) {
+    const kinematics::Arm arm =
+        kinematics::arm_of(robot_of, robot_of.links[0].name, robot_of.links[tool.link].name);
+    // From one axis to the next nothing but sliding changes how far their points are apart.
+    double longest = tool.pose.translation.norm() + aside;
+    geom::Vec3 at = geom::Vec3::Zero();
+    for (const kinematics::Axis& axis : arm.axes) {
+      longest += (axis.point - at).norm();
+      at = axis.point;
+      if (!axis.turns) longest += axis.rate * std::max(std::abs(axis.lower), std::abs(axis.upper));
+    }
+    longest += (arm.tool.translation - at).norm();
+    return distance > longest * (1 + kRounding);
+  });
+}
+
 std::string Sequence::name_with_grasp(std::size_t object, const world::Attachment& held) const {
   const world::Object& thing = geometry_.world.objects[object];
   for (const world::ToolFrame& tool : geometry_.world.robots[held.robot].tools)
@@ -104,9 +134,12 @@ std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t obj
     return none(Answer::Kind::Impossible, thing.name + " is held already");
   Goals goals = goals_of_reach(robot, object);
   if (!goals.configurations.empty()) return goals;
-  if (goals.all)
-    return none(Answer::Kind::Impossible, thing.name + " is out of reach: " + goals.none() +
-                                              " can be reached by " + model.name);
+  if (goals.all) {
+    none(Answer::Kind::Impossible,
+         thing.name + " is out of reach: " + goals.none() + " can be reached by " + model.name);
+    listed_ = !is_beyond_reach(robot, object);
+    return std::nullopt;
+  }
   return none(Answer::Kind::NotFound,
               thing.name + " was not found to be in reach: nothing was found for " + goals.listed);
 }

@@ -45,7 +45,17 @@ class Sequence : public MotionSequence {
     double depth = 0;        ///< how far the tool has to withdraw [length]
   };
 
+  /// A place on a support: where the object's point `bottom` is to stand, in the support's frame,
+  /// and the object's turn about the vertical.
+  struct Footing {
+    geom::Vec3 point;
+    double angle = 0;
+  };
+  std::vector<Footing> footings(std::size_t object, std::size_t support);
   [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object) const;
+  /// Whether no tool comes as near to the object as the grasps that are listed have it, however the
+  /// robot stretches: then no other grasp is in reach either.
+  [[nodiscard]] bool is_beyond_reach(std::size_t robot, std::size_t object) const;
   /// By the one grasp that the question's choice prefers; nullopt: it prefers none.
   std::optional<Goals> preferred_goals(std::size_t robot, std::size_t object);
   /// "o1, held by its grasp 'side'"
@@ -57,8 +67,11 @@ class Sequence : public MotionSequence {
   [[nodiscard]] std::vector<double> turns();
   bool go_upright(std::size_t robot, std::size_t object, const world::Attachment& held,
                   const Goals& goals, const world::Transform& link_pose);
-  bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q);
-  bool meet_somewhere(std::size_t from, std::size_t object, std::size_t to);
+  /// Which grasps of the object the robot that takes it may use.
+  enum class Grasps : std::uint8_t { Preferred, All };
+  bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q,
+            Grasps grasps);
+  bool meet_somewhere(std::size_t from, std::size_t object, std::size_t to, Grasps grasps);
 
   std::optional<Target> target_;
 };

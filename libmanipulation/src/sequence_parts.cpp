@@ -7,6 +7,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "sequence.h"
 
@@ -21,6 +24,77 @@ using world::Transform;
 constexpr double kStep = 0.01, kUprightStep = 0.02;
 /// How far things are lifted before they are carried upright. [m]
 constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
+/// How far from one plane points of an upper face may be, with the sets' ε. [m]
+constexpr double kFlat = 1e-4;
+/// How far above or below a face a point may be that is meant to be on it. [m]
+constexpr double kOfFace = 0.01;
+/// How far from level a support may lie. [1 - cosine]
+constexpr double kLevel = 1e-9;
+/// Places on a face that are drawn, in each attempt more.
+constexpr std::size_t kPlaces = 64;
+
+/// What of a convex body is at its top, seen from above: in the object's frame.
+class UpperFace {
+ public:
+  UpperFace(const geom::ConvexBody& body, double close) {
+    for (const geom::Vec3& v : body.core.vertices) height_ = std::max(height_, v.z());
+    for (const geom::Vec3& v : body.core.vertices)
+      if (v.z() >= height_ - close) corners_.push_back(v);
+    height_ += body.radius;
+    for (const geom::Vec3& v : corners_) {
+      low_ = low_.cwiseMin(v);
+      high_ = high_.cwiseMax(v);
+    }
+    enclose();
+  }
+
+  [[nodiscard]] double height() const { return height_; }
+  /// Whether a point is above it, seen from above.
+  [[nodiscard]] bool holds(const geom::Vec3& p) const {
+    if (outline_.size() < 3) return false;
+    for (std::size_t i = 0; i < outline_.size(); ++i)
+      if (turn(outline_[i], outline_[(i + 1) % outline_.size()], p) < 0) return false;
+    return true;
+  }
+  /// A point of the box round it, by shares of its sides.
+  [[nodiscard]] geom::Vec3 at(double x, double y) const {
+    return {low_.x() + x * (high_.x() - low_.x()), low_.y() + y * (high_.y() - low_.y()), height_};
+  }
+
+ private:
+  static double turn(const geom::Vec3& a, const geom::Vec3& b, const geom::Vec3& p) {
+    return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+  }
+  /// The corners' outline, counterclockwise: Andrew's chains.
+  void enclose() {
+    std::ranges::sort(corners_, [](const geom::Vec3& a, const geom::Vec3& b) {
+      return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+    });
+    const auto chain = [&](const geom::Vec3& p, std::size_t from) {
+      while (outline_.size() >= from + 2 &&
+             turn(outline_[outline_.size() - 2], outline_.back(), p) <= 0)
+        outline_.pop_back();
+      outline_.push_back(p);
+    };
+    for (const geom::Vec3& p : corners_) chain(p, 0);
+    const std::size_t lower = outline_.empty() ? 0 : outline_.size() - 1;
+    for (auto p = corners_.rbegin(); p != corners_.rend(); ++p) chain(*p, lower);
+    if (!outline_.empty()) outline_.pop_back();
+  }
+
+  double height_ = -std::numeric_limits<double>::infinity();
+  geom::Vec3 low_ = geom::Vec3::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
+  std::vector<geom::Vec3> corners_, outline_;
+};
+
+/// Points of an object on which things are put.
+std::vector<geom::Vec3> tops_of(const world::Object& below) {
+  std::vector<geom::Vec3> out;
+  for (const world::Feature& feature : below.features)
+    if (feature.kind == world::Feature::Kind::Point && feature.name.starts_with("top"))
+      out.push_back(feature.point);
+  return out;
+}
 
 /// "seat/pipe" where there is one, else "seat".
 std::string for_part(const world::Object& below, const std::string& name,
@@ -114,39 +188,85 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
                 world.robots[robot].name + " does not hold " + thing.name);
   if (support == object || state_.absent[support])
     return fail(Answer::Kind::Impossible, below.name + " is not there to stand on");
-  using Kind = world::Feature::Kind;
-  feature_named(below, "top", Kind::Point, "putting something on it");
+  feature_named(below, "top", world::Feature::Kind::Point, "putting something on it");
   const double gap = geometry_.options.clearance + thing.outer.epsilon() + below.outer.epsilon();
-  const geom::Vec3 bottom = feature_named(thing, "bottom", Kind::Point, "putting it down").point;
+  const geom::Vec3 bottom =
+      feature_named(thing, "bottom", world::Feature::Kind::Point, "putting it down").point;
   // One after the other: an object that is put to the same place again is likely to be in the same
   // state again.
   fail(Answer::Kind::NotFound, "nothing was found to be in reach");
   const std::vector<double> angles = turns();
-  std::size_t points = 0;
-  for (const world::Feature& feature : below.features) {
-    if (feature.kind != Kind::Point || !feature.name.starts_with("top")) continue;
-    ++points;
-    const geom::Vec3 top = pose_of_object(support) * feature.point + gap * geom::Vec3::UnitZ();
-    for (const double angle : angles) {
-      Transform pose = turned(geom::Vec3::UnitZ(), angle);
-      pose.linear = pose.linear * thing.pose.linear;
-      pose.translation = top - pose.linear * bottom;
-      const Transform link = pose * inverse(held->pose);
-      Goals goals;
-      add_goals(goals, robot, held->link, link);
-      goals.all = false;  // there are other turns
-      if (goals.configurations.empty()) continue;
-      if (!(upright ? go_upright(robot, object, *held, goals, link) : go(robot, goals))) continue;
-      target_ = Target{object, pose, std::nullopt, held->link, 0};
-      chosen_ = true;
-      return true;
+  const auto stands = [&](const geom::Vec3& point, double angle) {
+    Transform pose = turned(geom::Vec3::UnitZ(), angle);
+    pose.linear = pose.linear * thing.pose.linear;
+    pose.translation = pose_of_object(support) * point + gap * geom::Vec3::UnitZ();
+    pose.translation -= pose.linear * bottom;
+    const Transform link = pose * inverse(held->pose);
+    Goals goals;
+    add_goals(goals, robot, held->link, link);
+    goals.all = false;  // there are other turns
+    if (goals.configurations.empty()) return false;
+    if (!(upright ? go_upright(robot, object, *held, goals, link) : go(robot, goals))) return false;
+    target_ = Target{object, pose, std::nullopt, held->link, 0};
+    chosen_ = true;
+    return true;
+  };
+  const std::vector<geom::Vec3> tops = tops_of(below);
+  for (const geom::Vec3& top : tops)
+    for (const double angle : angles)
+      if (stands(top, angle)) return true;
+  const std::vector<Footing> more = footings(object, support);
+  for (const Footing& footing : more)
+    if (stands(footing.point, footing.angle)) return true;
+  if (failed_ == Answer::Kind::NotFound)
+    reason_ = name_with_grasp(object, *held) + " on " + below.name + ": " +
+              std::to_string(tops.size()) +
+              (tops.size() == 1 ? " point 'top…'" : " points 'top…'") + " of the scene, " +
+              std::to_string(angles.size()) + " turns" +
+              (more.empty() ? std::string()
+                            : " and " + std::to_string(more.size()) + " other places there") +
+              " were tried; the last: " + reason_;
+  return false;
+}
+
+/// Places on the upper faces that the points 'top…' are on, evenly spread, on which an object
+/// stands with all of its base. The first attempt tries the points alone.
+std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_t support) {
+  const world::Object &thing = geometry_.world.objects[object],
+                      &below = geometry_.world.objects[support];
+  std::vector<Footing> out;
+  if (question_.attempt == 0) return out;
+  const Eigen::Matrix3d lies = pose_of_object(support).linear;
+  if (lies(2, 2) < 1 - kLevel) return out;
+  const geom::Vec3 bottom =
+      feature_named(thing, "bottom", world::Feature::Kind::Point, "putting it down").point;
+  const std::vector<geom::Vec3> tops = tops_of(below);
+  const double close = thing.outer.epsilon() + below.outer.epsilon() + kFlat;
+  // Its base as it stands, about the point 'bottom'.
+  std::vector<geom::Vec3> base;
+  for (std::size_t i = 0; i < thing.outer.size(); ++i)
+    for (const geom::Vec3& v : thing.outer.body(i).core.vertices) {
+      const geom::Vec3 at = thing.pose.linear * (v - bottom);
+      if (at.z() <= close + thing.outer.body(i).radius) base.push_back(at);
+    }
+  if (base.empty()) return out;
+  for (std::size_t i = 0; i < below.outer.size(); ++i) {
+    const UpperFace face(below.outer.body(i), close);
+    const bool meant = std::ranges::any_of(tops, [&](const geom::Vec3& point) {
+      return face.holds(point) && std::abs(point.z() - face.height()) <= kOfFace;
+    });
+    if (!meant) continue;
+    for (std::size_t n = 0; n < kPlaces * question_.attempt; ++n) {
+      Footing f;
+      f.point = face.at(random_.between(0, 1), random_.between(0, 1));
+      f.angle = random_.between(0, 2 * std::numbers::pi);
+      const Eigen::Matrix3d turn = lies.transpose() * turned(geom::Vec3::UnitZ(), f.angle).linear;
+      if (std::ranges::all_of(base,
+                              [&](const geom::Vec3& v) { return face.holds(f.point + turn * v); }))
+        out.push_back(f);
     }
   }
-  if (failed_ == Answer::Kind::NotFound)
-    reason_ = name_with_grasp(object, *held) + " on " + below.name + ": " + std::to_string(points) +
-              (points == 1 ? " point 'top…'" : " points 'top…'") + " of the scene and " +
-              std::to_string(angles.size()) + " turns were tried; the last: " + reason_;
-  return false;
+  return out;
 }
 
 bool Sequence::mount(std::size_t robot, std::size_t object, std::size_t onto) {

@@ -192,8 +192,7 @@ PathAnswer find_path(const world::Checker& checker, const world::WorldState& sta
                      std::size_t robot, const Values& start, std::span<const Values> goals,
                      const PathOptions& options) {
   if (goals.empty()) throw Error(ErrorCode::InvalidArgument, "a path without a goal");
-  if (!(options.most_work > 0) || !(options.most_seconds > 0) || options.most_nodes == 0 ||
-      options.shortcuts < 0)
+  if (!(options.most_work > 0) || !(options.most_seconds > 0) || options.most_nodes == 0)
     throw Error(ErrorCode::InvalidArgument, "limits of a search must be above 0");
   require_fits(checker, state, robot, start);
   for (const Values& goal : goals) require_fits(checker, state, robot, goal);

@@ -43,10 +43,10 @@ Place place_at(const std::vector<double>& lengths, double length) {
 
 }  // namespace
 
-robot::Path shorten(robot::Path path, SearchSpace& space, int shortcuts, Random& random) {
+robot::Path shorten(robot::Path path, SearchSpace& space, std::size_t shortcuts, Random& random) {
   if (path.size() < 3 || shortcuts == 0) return path;
   path = without_detours(path, space);
-  for (int k = 0; k < shortcuts && path.size() > 2 && !space.work_ended(); ++k) {
+  for (std::size_t k = 0; k < shortcuts && path.size() > 2 && !space.work_ended(); ++k) {
     std::vector<double> lengths;
     double whole = 0;
     for (std::size_t i = 0; i + 1 < path.size(); ++i) {

@@ -6,6 +6,6 @@ namespace kaboum::motion {
 
 /// A path between the same ends that is no longer: waypoints are left out, then random shortcuts
 /// are taken, each where it is free at every instant.
-robot::Path shorten(robot::Path path, SearchSpace& space, int shortcuts, Random& random);
+robot::Path shorten(robot::Path path, SearchSpace& space, std::size_t shortcuts, Random& random);
 
 }  // namespace kaboum::motion

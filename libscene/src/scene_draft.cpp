@@ -202,15 +202,33 @@ void SceneDraft::add_object(const std::string& name, SceneSet outer, std::option
   if (inner) require_one_scale(name, outer, *inner);
   const std::scoped_lock lock(state_->mutex);
   state_->require_new(name);
-  Json extra = object_of(members, "object '" + name + "'", {"name", "outer", "inner"});
+  Json extra = object_of(members, "object '" + name + "'", {"name", "shape", "outer", "inner"});
   state_->objects.push_back({name, std::move(outer), std::move(inner), std::move(extra)});
 }
 
 void SceneDraft::add_region(const std::string& name, SceneSet inner, const std::string& members) {
   const std::scoped_lock lock(state_->mutex);
   state_->require_new(name);
-  Json extra = object_of(members, "region '" + name + "'", {"name", "outer", "inner"});
+  Json extra = object_of(members, "region '" + name + "'", {"name", "shape", "outer", "inner"});
   state_->regions.push_back({name, std::nullopt, std::move(inner), std::move(extra)});
+}
+
+void SceneDraft::add_primitive_object(const std::string& name, const std::string& shape,
+                                      const std::string& members) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->require_new(name);
+  Json extra = object_of(members, "object '" + name + "'", {"name", "shape", "outer", "inner"});
+  extra["shape"] = parsed(shape, "the shape of '" + name + "'");
+  state_->objects.push_back({name, std::nullopt, std::nullopt, std::move(extra)});
+}
+
+void SceneDraft::add_primitive_region(const std::string& name, const std::string& shape,
+                                      const std::string& members) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->require_new(name);
+  Json extra = object_of(members, "region '" + name + "'", {"name", "shape", "outer", "inner"});
+  extra["shape"] = parsed(shape, "the shape of '" + name + "'");
+  state_->regions.push_back({name, std::nullopt, std::nullopt, std::move(extra)});
 }
 
 void SceneDraft::add_entry(const std::string& list, const std::string& entry) {

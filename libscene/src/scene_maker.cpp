@@ -57,7 +57,8 @@ Json pose_json(const SceneMaker& maker, const std::string& name) {
 
 /// Refuses what contradicts itself, or would replace something.
 void require_sound(const SceneMaker& maker) {
-  if (maker.robots.empty() && maker.objects.empty() && maker.regions.empty())
+  if (maker.robots.empty() && maker.objects.empty() && maker.regions.empty() &&
+      maker.primitives.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "nothing is asked for: give a robot, an object or a region");
   require_free_place(maker.scene, maker.replace);
@@ -95,6 +96,9 @@ void require_free_place(const fs::path& scene, bool replace) {
 MadeScene make_scene(const SceneMaker& maker) {
   require_sound(maker);
   std::set<std::string> names;
+  for (const NamedPrimitive& p : maker.primitives)
+    if (!names.insert(p.name).second)
+      throw Error(ErrorCode::InvalidArgument, "the name '" + p.name + "' is used twice");
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const NamedFile& file : *files)
       if (!names.insert(file.name).second)
@@ -140,6 +144,10 @@ MadeScene make_scene(const SceneMaker& maker) {
     }
     objects.push_back(std::move(out));
   }
+  for (const NamedPrimitive& p : maker.primitives)
+    objects.push_back({{"name", p.name},
+                       {"pose", pose_json(maker, p.name)},
+                       {"shape", Json::parse(world::to_json(p.primitive))}});
   for (const NamedFile& r : maker.regions) {
     Json inner = sets.mesh(r.name, r.file, Direction::Inner, container(r.name + "-inner"),
                            options_of(maker, r.name));

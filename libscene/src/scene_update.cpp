@@ -31,10 +31,12 @@ class Update {
   MadeScene run() try {
     for (Json& robot : list("robots")) bring_up_to_date(robot);
     for (Json& object : list("objects")) {
+      if (object.contains("shape")) continue;  // made of no file
       set(object, "outer", Direction::Outer);
       if (object.contains("inner")) set(object, "inner", Direction::Inner);
     }
-    for (Json& region : list("regions")) set(region, "inner", Direction::Inner);
+    for (Json& region : list("regions"))
+      if (!region.contains("shape")) set(region, "inner", Direction::Inner);
     return made_ ? sets_.write(scene_) : sets_.report();
   } catch (const Json::exception&) {
     fail("a part of it is missing, or of another kind; kaboum-check says where it is wrong");

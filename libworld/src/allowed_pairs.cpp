@@ -3,6 +3,8 @@
 #include <kaboum/world/allowed_pairs.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -85,7 +87,14 @@ std::vector<AllowedPair> connected_links(const RobotModel& robot) {
   return connected(robot.kinematics, shaped_links(robot));
 }
 
-std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& options) {
+std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& given) {
+  using Clock = std::chrono::steady_clock;
+  PairOptions options = given;
+  if (std::isfinite(given.most_seconds))
+    options.stop = [&, begin = Clock::now(),
+                    allowed = std::chrono::duration<double>(given.most_seconds)] {
+      return (given.stop && given.stop()) || Clock::now() - begin > allowed;
+    };
   std::map<std::pair<std::uint32_t, std::uint32_t>, LinkPair> found;
   const Shaped shaped = shaped_links(robot);
   for (const LinkShape& a : robot.shapes) {

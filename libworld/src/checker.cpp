@@ -248,6 +248,12 @@ std::vector<Contact> Checker::find_contacts(const WorldState& state, Scratch& sc
   return out;
 }
 
+void Checker::measure_depth(Contact& contact, const WorldState& state, Scratch& scratch) const {
+  const std::vector<PosedItem> at = places(state, {contact.items[0], contact.items[1]}, scratch);
+  const auto found = collide::penetration(at[0].place, at[1].place);
+  if (found) contact.depth = found->depth;
+}
+
 std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, Scratch& scratch,
                                                       const Options& options) const {
   place(state, scratch);
@@ -256,8 +262,17 @@ std::optional<Checker::Nearest> Checker::find_nearest(const WorldState& state, S
   double lower = 0;
   visit(state, options, kAllNear, [&](std::size_t i, std::size_t j) {
     if (options.progress) options.progress();
-    const auto distance = clearance(s.set(i), s.set(j));
+    auto distance = clearance(s.set(i), s.set(j));
     if (!distance) return false;
+    if (distance->lower == 0) {
+      if (const auto found = collide::penetration(s.set(i), s.set(j))) {
+        distance->lower = -found->depth.upper;
+        if (found->depth.lower > 0) {
+          distance->upper = -found->depth.lower;
+          distance->bodies = found->bodies;
+        }
+      }
+    }
     lower = best ? std::min(lower, distance->lower) : distance->lower;
     if (!best || distance->upper < best->clearance.upper)
       best = {{items_[i], items_[j]}, *distance};

@@ -53,11 +53,13 @@ class Parser : detail::SceneRobot {
   }
 
   void add_object(const Located& o) {
-    known(o, {"name", "pose", "outer", "inner", "features", "grasps"});
+    known(o, {"name", "pose", "shape", "outer", "inner", "features", "grasps"});
     const std::string name = new_name(o);
     const Transform pose_of_object = pose_member(o, "pose");
-    auto [outer, inner] = sets_of(o);
-    Object out{name, pose_of_object, std::move(outer), std::move(inner), {}, {}};
+    std::optional<Primitive> shape = shape_of(o);
+    auto [outer, inner] =
+        shape ? std::pair{outer_set(*shape), std::optional{inner_set(*shape)}} : sets_of(o);
+    Object out{name, pose_of_object, std::move(outer), std::move(inner), {}, {}, shape};
     std::set<std::string> taken;
     for (const Located& f : list(o, "features")) {
       known(f, {"name", "point", "line", "plane"});
@@ -71,8 +73,20 @@ class Parser : detail::SceneRobot {
   }
 
   void add_region(const Located& r) {
-    known(r, {"name", "pose", "inner"});
-    world_.regions.push_back({new_name(r), pose_member(r, "pose"), set(r, "inner", "inner")});
+    known(r, {"name", "pose", "shape", "inner"});
+    const std::optional<Primitive> shape = shape_of(r);
+    world_.regions.push_back({new_name(r), pose_member(r, "pose"),
+                              shape ? inner_set(*shape) : set(r, "inner", "inner")});
+  }
+
+  /// The primitive that a thing is; none: it has sets.
+  std::optional<Primitive> shape_of(const Located& thing) const {
+    const Located* shape = find(thing, "shape");
+    if (shape == nullptr) return std::nullopt;
+    for (const char* set : {"outer", "inner"})
+      if (const Located* given = find(thing, set))
+        fail(*given, "a thing with a 'shape' needs no sets; give one of them");
+    return primitive(*shape);
   }
 
   /// "OBJECT", "ROBOT/LINK", or all shapes of "ROBOT".

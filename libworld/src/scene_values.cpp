@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kaboum::world::detail {
@@ -91,6 +92,40 @@ Vec3 SceneValues::unit_vector(const Located& value) const {
   const Vec3 v = vector(value);
   if (!(v.norm() > 1e-100)) fail(value, "a direction of length 0");
   return v.normalized();
+}
+
+Primitive SceneValues::primitive(const Located& value) const {
+  using P = Primitive::Kind;
+  constexpr std::array kKinds{P::Box, P::Sphere, P::Cylinder, P::Capsule, P::Plane};
+  std::vector<std::string> names;
+  for (const P kind : kKinds) names.emplace_back(world::name_of(kind));
+  known(value, names);
+  if (value.names.size() != 1)
+    fail(value, "one of 'box', 'sphere', 'cylinder', 'capsule' and 'plane' is expected");
+  const Located& sizes = value.values.front();
+  const auto length = [&](const Located& at, double x) {
+    if (!(x > 0 && x <= kFarthest)) fail(at, "a length above 0, up to 1e9, is expected");
+    return x;
+  };
+  Primitive out;
+  for (const P kind : kKinds)
+    if (value.names.front() == world::name_of(kind)) out.kind = kind;
+  if (out.kind == P::Box || out.kind == P::Plane) {
+    known(sizes, {"size"});
+    const Located& size = need(sizes, "size");
+    out.size = vector(size);
+    for (std::size_t i = 0; i < 3; ++i) length(size.items[i], out.size[static_cast<int>(i)]);
+    return out;
+  }
+  known(sizes, out.kind == P::Sphere ? std::vector<std::string>{"radius"}
+                                     : std::vector<std::string>{"radius", "length"});
+  const auto member = [&](const char* name) {
+    const Located& at = need(sizes, name);
+    return length(at, number(at));
+  };
+  out.radius = member("radius");
+  if (out.kind != P::Sphere) out.length = member("length");
+  return out;
 }
 
 Transform SceneValues::pose(const Located& object) const {

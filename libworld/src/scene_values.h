@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/transform.h>
+#include <kaboum/world/primitive.h>
 
 #include <string>
 #include <string_view>
@@ -36,6 +37,9 @@ class SceneValues {
   std::vector<double> numbers(const Located& value, std::size_t count) const;
   Vec3 vector(const Located& value) const;
   Vec3 unit_vector(const Located& value) const;
+
+  /// The shape {"KIND": {sizes}}.
+  Primitive primitive(const Located& value) const;
 
   /// The pose in the members of an object.
   Transform pose(const Located& object) const;

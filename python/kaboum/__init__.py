@@ -65,7 +65,6 @@ from ._kaboum import (
     verify_sweep,
     wrap,
     write,
-    write_plan_page,
 )
 
 __all__ = [
@@ -122,5 +121,4 @@ __all__ = [
     "verify_sweep",
     "wrap",
     "write",
-    "write_plan_page",
 ]

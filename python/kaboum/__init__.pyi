@@ -99,6 +99,8 @@ class BoundingMesh:
     @property
     def distances(self) -> dict[str, _Bracket] | None: ...
     @property
+    def certificate(self) -> dict[str, Any]: ...
+    @property
     def claims(self) -> list[dict[str, Any]]: ...
     @property
     def notes(self) -> list[str]: ...
@@ -118,6 +120,8 @@ class ConvexSet:
     def __len__(self) -> int: ...
 
 class CertifiedSet:
+    @property
+    def certificate(self) -> dict[str, Any]: ...
     @property
     def bodies(self) -> list[Mesh]: ...
     @property
@@ -140,6 +144,8 @@ class CertifiedSet:
     def __len__(self) -> int: ...
 
 class SweptSet:
+    @property
+    def certificate(self) -> dict[str, Any]: ...
     @property
     def set(self) -> ConvexSet: ...
     @property
@@ -364,6 +370,8 @@ class InverseKinematics:
 
 class Wrap:
     @property
+    def certificate(self) -> dict[str, Any]: ...
+    @property
     def vertices(self) -> NDArray[np.float64]: ...
     @property
     def faces(self) -> NDArray[np.uint32]: ...
@@ -388,7 +396,7 @@ class Scene:
     def add_object(
         self,
         name: str,
-        shape: CertifiedSet | _Mesh,
+        shape: CertifiedSet | _Mesh | dict[str, Any],
         *,
         at: Sequence[float] | None = None,
         inner: CertifiedSet | _Mesh | None = None,
@@ -397,7 +405,7 @@ class Scene:
         **options: Any,
     ) -> None: ...
     def add_region(
-        self, name: str, shape: CertifiedSet | _Mesh, *, at: Sequence[float] | None = None, **options: Any
+        self, name: str, shape: CertifiedSet | _Mesh | dict[str, Any], *, at: Sequence[float] | None = None, **options: Any
     ) -> None: ...
     def allow_contact(self, a: str, b: str) -> None: ...
     def attach(self, **members: Any) -> None: ...
@@ -418,7 +426,14 @@ class World:
     def variables(self, robot: str | None = None) -> list[str]: ...
     def home(self, robot: str | None = None) -> NDArray[np.float64]: ...
     def check(
-        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False, progress: _Progress | None = None
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        # options of check
+        resting: bool = False,
+        # end of options
+        progress: _Progress | None = None,
     ) -> Any: ...
     def are_free(
         self, q: ArrayLike, *, robot: str | None = None, progress: _Progress | None = None
@@ -428,8 +443,10 @@ class World:
         path: ArrayLike,
         *,
         robot: str | None = None,
-        resolution: float = 1e-5,
+        # options of check_motion
+        resolution: float = 1e-05,
         max_intervals: int = 1000000,
+        # end of options
         progress: _Progress | None = None,
     ) -> MotionCheck: ...
     def find_path(
@@ -438,21 +455,19 @@ class World:
         goals: ArrayLike,
         *,
         robot: str | None = None,
-        seed: int = 1,
+        # options of find_path
         max_work: float = 10.0,
         max_nodes: int = 100000,
+        timeout: float | None = None,
         shortcuts: int = 60,
-        resolution: float = 1e-5,
+        seed: int = 1,
+        resolution: float = 1e-05,
+        # end of options
         progress: _Progress | None = None,
     ) -> Path: ...
     def nearest(
-        self,
-        q: ArrayLike,
-        *,
-        robot: str | None = None,
-        resting: bool = False,
-        progress: _Progress | None = None,
-    ) -> Any: ...
+        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False
+    ) -> dict[str, Any] | None: ...
     def is_inside(
         self,
         what: str,
@@ -469,16 +484,20 @@ class World:
         path: ArrayLike,
         *,
         robot: str | None = None,
-        resolution: float = 1e-5,
+        # options of check_motion
+        resolution: float = 1e-05,
         max_intervals: int = 1000000,
+        # end of options
         progress: _Progress | None = None,
     ) -> Inclusion: ...
     def link_pairs(
         self,
         *,
         robot: str | None = None,
+        # options of link_pairs
         max_boxes: int = 20000,
         timeout: float | None = None,
+        # end of options
         progress: _Progress | None = None,
     ) -> LinkPairs: ...
 
@@ -622,11 +641,13 @@ def hausdorff(
     a: _Mesh | _Set,
     b: _Mesh | _Set,
     *,
+    # options of hausdorff
     solid: bool = False,
     gap: float = 0.001,
     samples: int = 100000,
     seed: int = 1,
     backend: Literal["embree", "own"] = "embree",
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Distances: ...
@@ -698,13 +719,15 @@ def verify_robot(
 def certify_robot(
     robot: _Robot,
     *,
-    links: Sequence[str] | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
     epsilons: Mapping[str, _Length] | None = None,
     robot_bodies: int | None = None,
     robot_vertices: int | None = None,
     partial: bool = False,
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
     # options of certify_robot
     epsilon: _Length | None = None,
     max_bodies: int | None = None,
@@ -731,12 +754,14 @@ def certify_robot(
 def decimate_robot(
     robot: _Robot,
     *,
-    links: Sequence[str] | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
     epsilons: Mapping[str, _Length] | None = None,
     output_format: Literal["stl", "obj"] | None = None,
     partial: bool = False,
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
     # options of decimate_robot, vertices: int | None = None
     vertices: int | None = None,
     ratio: float | None = None,
@@ -769,12 +794,14 @@ def inverse_kinematics(
     base: str | None = None,
     pose_of: ArrayLike | None = None,
     reference: ArrayLike | None = None,
-    numeric: bool = False,
-    ignore_limits: bool = False,
+    # options of inverse_kinematics
     copies: bool = False,
+    ignore_limits: bool = False,
     free_heading: bool = False,
+    numeric: bool = False,
     starts: int = 100,
     seed: int = 1,
+    # end of options
     progress: _Progress | None = None,
 ) -> InverseKinematics: ...
 def wrap(
@@ -802,15 +829,17 @@ def make_scene(
     regions: Mapping[str, _Path] | None = None,
     at: Mapping[str, Sequence[float]] | None = None,
     scale: Mapping[str, float] = {},
+    # options of make_scene
     inner: bool = False,
     inner_links: bool = False,
-    geometry: _Geometry = "collision",
+    geometry: Literal["collision", "visual"] = "collision",
     epsilon: _Length = "1%",
-    effort: _Effort = "normal",
+    effort: Literal["fast", "normal", "best"] = "normal",
     drop_sheets: bool = False,
     unit: str = "m",
-    package_path: _Path | Sequence[_Path] = (),
+    package_path: _Path | Sequence[_Path] | None = None,
     force: bool = False,
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
@@ -845,16 +874,20 @@ def solve(
     problem: _Path | None = None,
     *,
     scene: _Path | None = None,
-    search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
     assume: Mapping[str, bool | str] | _Path | None = None,
+    # options of solve
+    search: Literal["dfs", "bfs", "ids", "greedy", "astar"] = "greedy",
     timeout: float | None = None,
-    max_memory: int | None = None,
+    max_memory: int | str | None = None,
     seed: int = 1,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
+    # end of options
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,
@@ -865,11 +898,13 @@ def check_plan(
     plan: Solution | dict[str, Any] | _Path,
     *,
     scene: _Path | None = None,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> PlanCheck: ...
@@ -880,19 +915,23 @@ def run_plan(
     *,
     scene: _Path,
     outcomes: int | Mapping[str, bool | str] | _Path = "all",
+    trajectories: _Path | None = None,
+    # options of run_plan
     replan: int = 100,
     timeout: float | None = None,
     seed: int = 1,
     rate: float = 1000.0,
     max_acceleration: float = 5.0,
     time_optimal: bool = False,
-    trajectories: _Path | None = None,
-    package_path: _Path | Sequence[_Path] = (),
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> PlanRun: ...
@@ -904,30 +943,14 @@ def draw_plan(
     format: Literal["text", "dot", "svg"] = "svg",
     tree: bool = False,
     scene: _Path | None = None,
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
-    progress: _Progress | None = None,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
 ) -> str: ...
-def write_plan_page(
-    domain: _Path,
-    problem: _Path | None,
-    plan: Solution | dict[str, Any] | _Path,
-    path: _Path,
-    *,
-    scene: _Path,
-    tree: bool = False,
-    package_path: _Path | Sequence[_Path] = (),
-    plugins: _Path | Sequence[_Path] = (),
-    processes: str | Sequence[str] = (),
-    process_timeout: float = 10.0,
-    input_format: _Language | None = None,
-    problem_format: _Language | None = None,
-    threads: int = 0,
-    progress: _Progress | None = None,
-) -> list[str]: ...
 def convert_domain(
     domain: _Path,
     problem: _Path | None = None,
@@ -935,5 +958,4 @@ def convert_domain(
     to: _Language,
     input_format: _Language | None = None,
     problem_format: _Language | None = None,
-    progress: _Progress | None = None,
 ) -> str: ...

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/certify/certificate.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/verify/points.h>
@@ -27,5 +28,16 @@ py::dict dict_of(const verify::Claim& claim);
 py::dict dict_of(const verify::PointClaim& claim);
 /// The claim about exact faces where the triangles alone were judged.
 py::dict exact_points_not_looked_at();
+
+inline constexpr const char* kCertificateDoc =
+    R"(What is certified, a dict of the same shape for all results.
+
+'direction', 'of' (what it holds, or lies in), 'claims' (each with 'claim', 'answer', 'basis', and where there is one 'reason'
+or 'distance'), and 'distance' ('lower', 'upper'), or None where it was not measured.)";
+
+/// A certificate as kCertificateDoc says.
+inline py::object dict_of(const certify::Certificate& certificate) {
+  return py::module_::import("json").attr("loads")(certify::to_json(certificate));
+}
 
 }  // namespace kaboum::python

@@ -2,6 +2,7 @@
 
 #include "arguments.h"
 
+#include <kaboum/base/option.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/base/similar_name.h>
 
@@ -142,6 +143,11 @@ std::optional<std::string> path_of(const py::object& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (!py::hasattr(value, "__fspath__")) return std::nullopt;
   return py::str(value.attr("__fspath__")()).cast<std::string>();
+}
+
+std::vector<std::string> spelled(std::vector<std::string> notes) {
+  for (std::string& note : notes) note = remedy_of_python(note);
+  return notes;
 }
 
 }  // namespace kaboum::python

@@ -62,6 +62,15 @@ py::array array_from(const py::object& value);
 /// @throws Error{InvalidArgument} naming the first that is none
 void require_doubles(const py::array& array, const std::string& name);
 
+/// Notes of libraries with options as Python names them.
+std::vector<std::string> spelled(std::vector<std::string> notes);
+
+/// The property of a value's notes.
+template <class Value>
+auto notes_of(std::vector<std::string> Value::*notes) {
+  return [notes](const Value& value) { return spelled(value.*notes); };
+}
+
 /// A str or os.PathLike as a path; nullopt: it is neither.
 std::optional<std::string> path_of(const py::object& value);
 

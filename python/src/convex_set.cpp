@@ -1,6 +1,7 @@
 // Convex sets: kaboum.decompose, as bcd-decompose; sets from files.
 
 #include "convex_set.h"
+#include "answers.h"
 
 #include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh_file.h>
@@ -121,6 +122,9 @@ It may be given wherever a ConvexSet is expected.)")
           "record", [](const Value& s) { return record_of(s.made.artefact().provenance); },
           "What the container says of itself: source, parameters, claims.")
       .def_property_readonly(
+          "certificate", [](const Value& s) { return dict_of(certify::certificate_of(s.made)); },
+          kCertificateDoc)
+      .def_property_readonly(
           "report", [](const Value& s) { return parsed(certify::to_json(s.made)); },
           "As the report of bcd-decompose (docs/reports.md).")
       .def_property_readonly(
@@ -135,7 +139,8 @@ It may be given wherever a ConvexSet is expected.)")
           "Certified bracket of the largest distance from a point of the set to the solid (outer), "
           "or of the depth of what is left out (inner). [length]")
       .def_readonly("cached", &Value::cached, "Whether an earlier call's result was used.")
-      .def_readonly("notes", &Value::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&Value::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const Value& s) { return py::bytes(s.made.bytes().data(), s.made.bytes().size()); },

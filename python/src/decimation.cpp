@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
 #include "request_options.h"
@@ -55,7 +56,7 @@ std::string direction_of(const BoundingMesh& m) {
 
 py::list claims_of(const BoundingMesh& m) {
   py::list out;
-  for (const certify::MeshClaim& claim : certify::claims(m.made)) {
+  for (const certify::Claim& claim : certify::certificate_of(m.made).claims) {
     py::dict d;
     d["claim"] = certify::name_of(claim.kind);
     d["answer"] = verify::name_of(claim.answer);
@@ -145,10 +146,15 @@ It may be given wherever a mesh is expected.)")
                              "Certified brackets (lower, upper) of the largest distances "
                              "'original_to_result', 'result_to_original' and 'hausdorff', surface "
                              "to surface, or None where they were not measured. [length]")
+      .def_property_readonly(
+          "certificate",
+          [](const BoundingMesh& m) { return dict_of(certify::certificate_of(m.made)); },
+          kCertificateDoc)
       .def_property_readonly("claims", &claims_of,
                              "All that is claimed: dicts of 'claim', 'answer', 'basis' (what the "
                              "answer rests on), 'reason' and 'distance'.")
-      .def_readonly("notes", &BoundingMesh::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&BoundingMesh::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const BoundingMesh& m) {
@@ -227,8 +233,8 @@ py::object decimate(const py::object& mesh, const py::kwargs& given) {
   const bool several = !vertices.is_none() && !whole_number(vertices);
   DecimateOptions options;
   const std::set<std::string> stated = take_options(decimate_options(), keywords, options);
-  const RunKeywords running = take_run_keywords(keywords, false);
-  require_all_taken("decimate", keywords, keywords_of(decimate_options()), false);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
+  require_all_taken("decimate", keywords, keywords_of(decimate_options()), Runs::Threads);
   require_none(certify::contradiction(options.mesh, stated));
   options.mesh.request.format = *format_of(options.format, "output_format");
   options.mesh.request.comment = "bmesh-decimate " KABOUM_VERSION;
@@ -266,8 +272,8 @@ void bind_decimation(py::module_& module) {
   bind_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text =
-      document("decimate", "mesh: object", keywords_of(decimate_options()), "object", kDoc, false);
+  const std::string text = document("decimate", "mesh: object", keywords_of(decimate_options()),
+                                    "object", kDoc, Runs::Threads);
   module.def("decimate", &decimate, py::arg("mesh"), text.c_str());
 }
 

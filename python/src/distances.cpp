@@ -1,17 +1,15 @@
 // Distances: kaboum.hausdorff, as hausdorff-eval.
 
-#include <kaboum/distance/compare.h>
+#include <kaboum/distance/compare_options.h>
 
 #include "arguments.h"
 #include "convex_set.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
 
 namespace kaboum::python {
 namespace {
-
-constexpr std::array<std::pair<const char*, distance::Backend>, 2> kBackends{
-    {{"embree", distance::Backend::Embree}, {"own", distance::Backend::Own}}};
 
 struct Distances {
   distance::Compared found;
@@ -43,21 +41,14 @@ distance::Shape shape_of(const py::object& value, const char* name) {
   return out;
 }
 
-Distances hausdorff(const py::object& a, const py::object& b, bool solid, double gap,
-                    std::uint64_t samples, std::uint64_t seed, const std::string& backend,
-                    int threads, const py::object& progress) {
+Distances hausdorff(const py::object& a, const py::object& b, const py::kwargs& given) {
   distance::CompareOptions options;
-  options.solid = solid;
-  if (!(gap >= 1e-9 && gap <= 1))
-    throw Error(ErrorCode::InvalidArgument, "gap must be from 1e-9 to 1");
-  options.relative_gap = gap;
-  options.samples = samples;
-  options.seed = seed;
-  options.backend = value_of(kBackends, backend, "backend");
+  const RunKeywords running =
+      take_keywords("hausdorff", distance::compare_options(), given, options, Runs::Threads);
   distance::Shape first = shape_of(a, "a"), second = shape_of(b, "b");
-  Watch watch(progress);
+  Watch watch(running.progress);
   options.progress = watch.hook();
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     const distance::Comparison comparison(std::move(first), std::move(second), options);
     return Distances{comparison.measure(), comparison.diagonal()};
   });
@@ -92,38 +83,29 @@ void bind_class(py::module_& module) {
       });
 }
 
-}  // namespace
-
-void bind_distances(py::module_& module) {
-  bind_class(module);
-  module.def("hausdorff", &hausdorff, py::arg("a"), py::arg("b"), py::kw_only(),
-             py::arg("solid") = false, py::arg("gap") = 1e-3, py::arg("samples") = 100000,
-             py::arg("seed") = 1, py::arg("backend") = "embree", py::arg("threads") = 0,
-             py::arg("progress") = py::none(),
-             R"(Distances between two surfaces, or two solids, both ways, as hausdorff-eval.
+constexpr const char* kDoc =
+    R"(Distances between two surfaces, or two solids, both ways, as hausdorff-eval.
 
 Parameters
 ----------
 a, b : mesh, or ConvexSet, whose union's boundary counts
-solid : bool
-    Solid to solid: 0 inside the other one. Both must be closed, or sets.
-gap : float
-    Wished relative width of the certified intervals, 1e-9 to 1.
-samples : int
-    Points for mean and rms, each way.
-seed : int
-    Of these points.
-backend : str
-    Search structure: 'embree' or 'own'.
-threads : int
-    0: one per core. The result is the same for any number.
-progress : callable, optional
-    Called with what is being done; what it raises ends the work, as Ctrl-C does.
+{keywords}
 
 Raises
 ------
 Error
-    'invalid_input': no triangles, numbers that are not finite, no solid.)");
+    'invalid_input': no triangles, numbers that are not finite, no solid.)";
+
+}  // namespace
+
+void bind_distances(py::module_& module) {
+  bind_class(module);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text =
+      document("hausdorff", "a: object, b: object", keywords_of(distance::compare_options()),
+               "kaboum.Distances", kDoc, Runs::Threads);
+  module.def("hausdorff", &hausdorff, py::arg("a"), py::arg("b"), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -1,12 +1,13 @@
 // Inverse kinematics: kaboum.inverse_kinematics, as kaboum-ik.
 
-#include <kaboum/kinematics/inverse.h>
+#include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/robot/base_pose.h>
 #include <pybind11/numpy.h>
 
 #include <cmath>
 #include <memory>
 
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
 
@@ -120,12 +121,12 @@ kinematics::Transform target_of(const py::object& pose) {
 InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
                                 const std::optional<std::string>& tip,
                                 const std::optional<std::string>& base, const py::object& pose_of,
-                                const py::object& reference, bool numeric, bool ignore_limits,
-                                bool copies, bool free_heading, int starts, std::uint64_t seed,
-                                const py::object& progress) {
+                                const py::object& reference, const py::kwargs& keywords) {
+  kinematics::InverseRequest request;
+  const RunKeywords running = take_keywords("inverse_kinematics", kinematics::inverse_options(),
+                                            keywords, request, Runs::Alone);
   if (pose.is_none() == pose_of.is_none())
     throw Error(ErrorCode::InvalidArgument, "give pose, or pose_of");
-  if (starts < 1) throw Error(ErrorCode::InvalidArgument, "starts must be at least 1");
   const RobotValue value = robot_of(robot, "robot");
   const robot::Robot& model = value.file->robot;
   auto arm = std::make_shared<kinematics::Arm>(kinematics::arm_of(
@@ -140,17 +141,10 @@ InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
           std::string(name) + " must have a value for each of " + robot::names_of(out.joints));
     return q;
   };
-  kinematics::InverseRequest request;
   request.target = pose_of.is_none() ? target_of(pose)
                                      : kinematics::forward(*arm, joints_of(pose_of, "pose_of"));
   if (!reference.is_none()) request.reference = joints_of(reference, "reference");
-  request.numeric = numeric;
-  request.limits = !ignore_limits;
-  request.copies = copies;
-  request.free_heading = free_heading;
-  request.starts = starts;
-  request.seed = seed;
-  Watch watch(progress);
+  Watch watch(running.progress);
   request.progress = watch.hook();
   out.answer = run(0, [&] { return kinematics::find_configurations(*arm, request); });
   return out;
@@ -176,15 +170,7 @@ pose_of : array, optional
     Instead of `pose`: the pose that these joint values reach.
 reference : array, optional
     Whole turns nearest to it are chosen; the numeric search starts there.
-numeric : bool
-    Search numerically even where there is a closed form.
-ignore_limits, copies, free_heading : bool
-    Also outside the joints' limits; all copies by whole turns within them; of arms with five axes,
-    poses with another heading.
-starts, seed : int
-    Of the numeric search.
-progress
-    As for `decimate`; told by the numeric search.
+{keywords}
 
 Raises
 ------
@@ -234,13 +220,17 @@ void bind_answer(py::module_& module) {
 
 void bind_inverse_kinematics(py::module_& module) {
   bind_answer(module);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document(
+      "inverse_kinematics",
+      "robot: object, pose: object = None, *, tip: object = None, base: object = None, "
+      "pose_of: object = None, reference: object = None",
+      keywords_of(kinematics::inverse_options()), "kaboum.InverseKinematics", kDoc, Runs::Alone);
   module.def("inverse_kinematics", &inverse_kinematics, py::arg("robot"),
              py::arg("pose") = py::none(), py::kw_only(), py::arg("tip") = py::none(),
              py::arg("base") = py::none(), py::arg("pose_of") = py::none(),
-             py::arg("reference") = py::none(), py::arg("numeric") = false,
-             py::arg("ignore_limits") = false, py::arg("copies") = false,
-             py::arg("free_heading") = false, py::arg("starts") = 100, py::arg("seed") = 1,
-             py::arg("progress") = py::none(), kDoc);
+             py::arg("reference") = py::none(), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -153,7 +153,8 @@ Error
       .def_readonly("deviation", &MeshValue::deviation,
                     "Of STEP and IGES: the exact faces, which the faces here stand for, are no "
                     "farther from them. Else 0. [length]")
-      .def_readonly("notes", &MeshValue::notes, "What a user should know of the reading.")
+      .def_property_readonly("notes", notes_of(&MeshValue::notes),
+                             "What a user should know of the reading.")
       .def_property_readonly(
           "volume", [](const MeshValue& m) { return geom::signed_volume(*m.mesh); },
           "Signed volume, rounded. [length^3]")

@@ -3,6 +3,14 @@
 #include <kaboum/certify/mesh_options.h>
 #include <kaboum/certify/set_options.h>
 #include <kaboum/certify/sweep_options.h>
+#include <kaboum/distance/compare_options.h>
+#include <kaboum/execution/task_options.h>
+#include <kaboum/kinematics/inverse_options.h>
+#include <kaboum/motion/path_options.h>
+#include <kaboum/plan/solve_options.h>
+#include <kaboum/robot/shape_options.h>
+#include <kaboum/scene/scene_options.h>
+#include <kaboum/world/check_options.h>
 
 #include "request_options.h"
 #include "robot.h"
@@ -18,7 +26,18 @@ void bind_option_tables(py::module_& module) {
         out["decompose"] = table_of(keywords_of(certify::set_options()));
         out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
+        out["shapes"] = table_of(keywords_of(robot::shape_options()));
         out["sweep"] = table_of(keywords_of(certify::swept_set_options()));
+        out["hausdorff"] = table_of(keywords_of(distance::compare_options()));
+        out["check"] = table_of(keywords_of(world::state_options()));
+        out["check_motion"] = table_of(keywords_of(world::motion_options()));
+        out["find_path"] = table_of(keywords_of(motion::path_options()));
+        out["link_pairs"] = table_of(keywords_of(world::pair_options()));
+        out["inverse_kinematics"] = table_of(keywords_of(kinematics::inverse_options()));
+        out["solve"] = table_of(keywords_of(plan::solve_options()));
+        out["task"] = table_of(keywords_of(execution::task_options()));
+        out["run_plan"] = table_of(keywords_of(execution::run_options()));
+        out["make_scene"] = table_of(keywords_of(scene::scene_options()));
         return out;
       },
       "By function, its options as the library describes them: a list of dicts.");

@@ -1,28 +1,21 @@
-// Planning: kaboum.solve, check_plan, draw_plan, write_plan_page, run_plan and convert_domain, as
-// kaboum-plan.
+// Planning: kaboum.solve, check_plan, draw_plan, run_plan and convert_domain, as kaboum-plan.
 
-#include <kaboum/execution/plan_page.h>
-#include <kaboum/execution/run_plan.h>
+#include <kaboum/execution/task_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/outcomes.h>
+#include <kaboum/plan/solve_options.h>
 
-#include <cstdio>
 #include <map>
 
 #include "arguments.h"
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
 
 namespace kaboum::python {
 namespace {
 
-constexpr std::array<std::pair<const char*, plan::Algorithm>, 5> kSearches{
-    {{"dfs", plan::Algorithm::DepthFirst},
-     {"bfs", plan::Algorithm::BreadthFirst},
-     {"ids", plan::Algorithm::IterativeDeepening},
-     {"greedy", plan::Algorithm::Greedy},
-     {"astar", plan::Algorithm::AStar}}};
 constexpr std::array<std::pair<const char*, plan::Language>, 2> kLanguages{
     {{"kpl", plan::Language::Kpl}, {"pddl", plan::Language::Pddl}}};
 using Drawing = std::string (*)(const plan::Model&, const plan::Plan&, const plan::PlanProgress&);
@@ -46,41 +39,17 @@ std::string json_text(const py::handle& value) {
   return py::module_::import("json").attr("dumps")(value).cast<std::string>();
 }
 
-/// A sequence of paths or commands; one of them may stand alone.
-std::vector<std::string> texts_of(const py::object& value, const char* argument) {
-  if (const auto one = path_of(value)) return {*one};
-  std::vector<std::string> out;
-  if (!py::isinstance<py::sequence>(value))
-    throw Error(ErrorCode::InvalidArgument,
-                std::string(argument) + " must be a str or a sequence of them");
-  for (const py::handle item : value.cast<py::sequence>())
-    out.push_back(required_path(py::reinterpret_borrow<py::object>(item), argument));
+/// The files of a task, whose options are taken from keywords.
+/// @param scene  None: none
+execution::TaskFiles files_of(const py::object& domain, const py::object& problem,
+                              const py::object& scene, py::dict& keywords) {
+  execution::TaskFiles out;
+  take_options(execution::task_options(), keywords, out);
+  out.domain = required_path(domain, "domain");
+  if (!problem.is_none()) out.problem = required_path(problem, "problem");
+  if (!scene.is_none()) out.scene = required_path(scene, "scene");
   return out;
 }
-
-/// What the functions have in common: a domain, a problem, and what answers external functions.
-struct Source {
-  py::object domain, problem, scene, plugins, processes;
-  double process_timeout;
-  std::optional<std::string> input_format, problem_format;
-
-  [[nodiscard]] execution::TaskFiles files() const {
-    execution::TaskFiles out;
-    out.domain = required_path(domain, "domain");
-    if (!problem.is_none()) out.problem = required_path(problem, "problem");
-    if (!scene.is_none()) out.scene = required_path(scene, "scene");
-    if (input_format) out.language = value_of(kLanguages, *input_format, "input_format");
-    if (problem_format)
-      out.problem_language = value_of(kLanguages, *problem_format, "problem_format");
-    out.plugins = texts_of(plugins, "plugins");
-    out.processes = texts_of(processes, "processes");
-    if (!(process_timeout >= 1e-3 && process_timeout <= 1e6))
-      throw Error(ErrorCode::InvalidArgument,
-                  "process_timeout must be a number of seconds from 0.001 to 1e6");
-    out.most_seconds = process_timeout;
-    return out;
-  }
-};
 
 /// A dict of outcomes, or a file of them.
 std::map<std::string, std::string> outcomes_of(const py::object& value, const char* argument) {
@@ -92,12 +61,6 @@ std::map<std::string, std::string> outcomes_of(const py::object& value, const ch
   return plan::parse_outcomes(json_text(value), argument);
 }
 
-double seconds_of(const std::optional<double>& timeout) {
-  if (timeout && !(*timeout > 0))
-    throw Error(ErrorCode::InvalidArgument, "timeout must be a number of seconds above 0");
-  return timeout.value_or(0);
-}
-
 py::dict dict_of(const plan::PlanSize& size) {
   py::dict out;
   out["nodes"] = size.nodes;
@@ -107,6 +70,14 @@ py::dict dict_of(const plan::PlanSize& size) {
   out["longest_path"] = size.longest;
   out["cost"] = size.cost;
   return out;
+}
+
+std::vector<Keyword> task_keywords() { return keywords_of(execution::task_options()); }
+std::vector<Keyword> solve_keywords() {
+  return keywords_of(plan::solve_options()) + task_keywords();
+}
+std::vector<Keyword> run_keywords() {
+  return keywords_of(execution::run_options()) + task_keywords();
 }
 
 struct SolutionValue {
@@ -198,30 +169,29 @@ void bind_class(py::module_& module) {
           },
           py::arg("path"), "Writes the plan (JSON), the bytes of `kaboum-plan solve`.")
       .def_property_readonly("statistics", &statistics_of, "Counters, as in kaboum-plan's report.")
-      .def_readonly("notes", &SolutionValue::notes, "What a user should know of the scene.")
+      .def_property_readonly("notes", notes_of(&SolutionValue::notes),
+                             "What a user should know of the scene.")
       .def("__bool__", &SolutionValue::solved)
       .def("__repr__", [](const SolutionValue& s) {
         return std::string("<kaboum.Solution: ") + (s.solved() ? "solved" : "no plan") + ">";
       });
 }
 
-SolutionValue solve(const Source& source, const std::string& search, const py::object& assume,
-                    const std::optional<double>& timeout,
-                    const std::optional<std::size_t>& max_memory, std::uint64_t seed, bool no_cache,
-                    int threads, const py::object& progress) {
-  execution::TaskFiles files = source.files();
-  files.answers_kept = !no_cache;
-  plan::SolveOptions options;
-  options.algorithm = value_of(kSearches, search, "search");
-  options.timeout = seconds_of(timeout);
-  options.max_memory = max_memory.value_or(0);
-  options.seed = seed;
+SolutionValue solve(const py::object& domain, const py::object& problem, const py::object& scene,
+                    const py::object& assume, const py::kwargs& given) {
+  py::dict keywords = given;
+  execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  plan::SearchRequest options;
+  take_options(plan::solve_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords);
+  require_all_taken("solve", keywords, solve_keywords());
+  files.answers_kept = !running.no_cache;
   options.assumed = outcomes_of(assume, "assume");
-  Watch watch(progress);
+  Watch watch(running.progress);
   options.progress = [&watch](const plan::Statistics& s) {
     watch(std::to_string(s.expanded) + " states expanded, depth " + std::to_string(s.depth));
   };
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     SolutionValue out;
     const execution::PlanningTask task(files);
     if (task.scene() != nullptr) out.notes = task.scene()->notes;
@@ -260,12 +230,15 @@ struct CheckValue {
   plan::PlanSize size;
 };
 
-CheckValue check_plan(const Source& source, const py::object& plan, int threads,
-                      const py::object& progress) {
-  const execution::TaskFiles files = source.files();
+CheckValue check_plan(const py::object& domain, const py::object& problem, const py::object& plan,
+                      const py::object& scene, const py::kwargs& given_keywords) {
+  py::dict keywords = given_keywords;
+  const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
+  require_all_taken("check_plan", keywords, task_keywords(), Runs::Threads);
   const PlanText given(plan);
-  Watch watch(progress);
-  return run(threads, [&] {
+  Watch watch(running.progress);
+  return run(running.threads, [&] {
     const execution::PlanningTask task(files);
     const plan::Model model = task.load();
     const plan::Plan read = given.read(model);
@@ -278,41 +251,19 @@ CheckValue check_plan(const Source& source, const py::object& plan, int threads,
   });
 }
 
-std::string draw_plan(const Source& source, const py::object& plan, const std::string& format,
-                      bool tree, const py::object& progress) {
-  const execution::TaskFiles files = source.files();
+std::string draw_plan(const py::object& domain, const py::object& problem, const py::object& plan,
+                      const std::string& format, bool tree, const py::object& scene,
+                      const py::kwargs& given_keywords) {
+  py::dict keywords = given_keywords;
+  const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  require_all_taken("draw_plan", keywords, task_keywords(), Runs::Briefly);
   const PlanText given(plan);
   const Drawing draw = value_of(kDrawings, format, "format");
-  Watch watch(progress);
-  const std::function<void()> drawing = [&] { watch("drawing the plan"); };
   return run(0, [&] {
     const execution::PlanningTask task(files);
     const plan::Model model = task.load();
-    plan::Plan read = given.read(model);
-    if (tree) read = plan::expand_tree(read, plan::kMostTreeNodes, drawing);
-    return draw(model, read, drawing);
-  });
-}
-
-std::vector<std::string> write_plan_page(const Source& source, const py::object& plan,
-                                         const py::object& path, bool tree,
-                                         const py::object& package_path, int threads,
-                                         const py::object& progress) {
-  const execution::TaskFiles files = source.files();
-  if (files.scene.empty())
-    throw Error(ErrorCode::InvalidArgument, "scene is needed: a page shows it");
-  const std::string file = required_path(path, "path");
-  const PlanText given(plan);
-  Watch watch(progress);
-  const execution::PlanPageOptions options{tree, packages_of(package_path), watch.hook()};
-  return run(threads, [&] {
-    const execution::PlanningTask task(files);
-    const plan::Model model = task.load();
-    execution::PlanPage page = execution::plan_page(task, model, given.read(model), options);
-    io::write_file(file, page.html);
-    std::vector<std::string> notes = task.scene()->notes;
-    notes.insert(notes.end(), page.notes.begin(), page.notes.end());
-    return notes;
+    const plan::Plan read = given.read(model);
+    return draw(model, tree ? plan::expand_tree(read) : read, {});
   });
 }
 
@@ -332,45 +283,25 @@ plan::RunOptions run_options(const py::object& outcomes) {
   return out;
 }
 
-struct Execution {
-  py::object outcomes, trajectories, package_path;
-  unsigned replan;
-  double rate, max_acceleration;
-  bool time_optimal;
-  std::uint64_t seed;
-};
-
-void require_number(double value, double least, double most, const char* argument) {
-  if (value >= least && value <= most) return;
-  char text[96];
-  std::snprintf(text, sizeof text, "%s must be a number from %g to %g", argument, least, most);
-  throw Error(ErrorCode::InvalidArgument, text);
-}
-
-execution::PlanRunReport run_plan(const Source& source, const py::object& plan,
-                                  const Execution& asked, const std::optional<double>& timeout,
-                                  int threads, const py::object& progress) {
-  const execution::TaskFiles files = source.files();
+execution::PlanRunReport run_plan(const py::object& domain, const py::object& problem,
+                                  const py::object& plan, const py::object& scene,
+                                  const py::object& outcomes, const py::object& trajectories,
+                                  const py::kwargs& given_keywords) {
+  py::dict keywords = given_keywords;
+  const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  execution::PlanRunRequest request;
+  take_options(execution::run_options(), keywords, request);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
+  require_all_taken("run_plan", keywords, run_keywords(), Runs::Threads);
   if (files.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "scene is needed: a plan is carried out in it");
   const PlanText given(plan);
-  require_number(asked.rate, 1, 1e5, "rate");
-  require_number(asked.max_acceleration, 1e-3, 1e6, "max_acceleration");
-  execution::PlanRunRequest request;
-  request.replan.run = run_options(asked.outcomes);
-  request.replan.most = asked.replan;
+  request.replan.run = run_options(outcomes);
   request.replan.solve.algorithm = plan::Algorithm::Greedy;
-  request.replan.solve.seed = asked.seed;
-  request.replan.solve.timeout = seconds_of(timeout);
-  request.simulation.rate = asked.rate;
-  request.simulation.acceleration = asked.max_acceleration;
-  if (asked.time_optimal) request.simulation.profile = motion::Profile::Trapezoid;
-  request.packages = packages_of(asked.package_path);
-  if (!asked.trajectories.is_none())
-    request.trajectories = required_path(asked.trajectories, "trajectories");
-  Watch watch(progress);
+  if (!trajectories.is_none()) request.trajectories = required_path(trajectories, "trajectories");
+  Watch watch(running.progress);
   request.simulation.progress = watch.hook();
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     const execution::PlanningTask task(files);
     const plan::Model model = task.load();
     execution::PlanRunReport out = execution::run_plan(task, model, given.read(model), request);
@@ -419,16 +350,14 @@ py::list replans_of(const execution::PlanRunReport& r) {
 
 std::string convert_domain(const py::object& domain, const py::object& problem,
                            const std::string& to, const std::optional<std::string>& input_format,
-                           const std::optional<std::string>& problem_format,
-                           const py::object& progress) {
-  const Source source{domain,      problem, py::none(),   py::tuple(),
-                      py::tuple(), 10,      input_format, problem_format};
-  const execution::TaskFiles files = source.files();
+                           const std::optional<std::string>& problem_format) {
+  py::dict keywords;
+  keywords["input_format"] = input_format;
+  keywords["problem_format"] = problem_format;
+  const execution::TaskFiles files = files_of(domain, problem, py::none(), keywords);
   const plan::Language language = value_of(kLanguages, to, "to");
-  Watch watch(progress);
   return run(0, [&] {
     const plan::TaskTexts texts = execution::read_texts(files);
-    watch("converting the domain");
     return plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, language);
   });
 }
@@ -470,8 +399,8 @@ void bind_results(py::module_& module) {
       .def_property_readonly(
           "problems", [](const execution::PlanRunReport& r) { return r.simulation.problems; },
           "What was wrong, in words; the first twenty.")
-      .def_readonly("notes", &execution::PlanRunReport::notes,
-                    "What a user should know of the scene.")
+      .def_property_readonly("notes", notes_of(&execution::PlanRunReport::notes),
+                             "What a user should know of the scene.")
       .def("__repr__", [](const execution::PlanRunReport& r) {
         return std::string("<kaboum.PlanRun: ") + (r.good() ? "good" : "not good") + ">";
       });
@@ -486,29 +415,10 @@ domain, problem : path
     .kpl or .pddl; the domain's file may hold the problem.
 scene : path, optional
     Whose geometry answers external functions (docs/planning/geometry.md).
-search : str
-    'greedy', 'astar', 'bfs', 'ids' or 'dfs'.
 assume : dict or path, optional
     Outcomes of sensing that the plan needs branches for alone, {'isSpillable(o1)': False}, or a
     file of them.
-timeout : float, optional
-    [s]
-max_memory : int, optional
-    Of grounding and search. [bytes]
-seed : int
-    Of external functions that choose at random.
-plugins : path or sequence of path
-    Shared libraries with external functions (docs/planning/externals.md).
-processes : str or sequence of str
-    Commands whose programs answer external functions.
-process_timeout : float
-    Longest time for one answer of these. [s]
-input_format, problem_format : str, optional
-    'kpl' or 'pddl', where names do not tell.
-no_cache : bool
-    Ask a scene's functions anew, and keep nothing for the next run.
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Raises
 ------
@@ -520,11 +430,10 @@ constexpr const char* kCheckDoc =
 
 Parameters
 ----------
-domain, problem, scene, plugins, processes, process_timeout, input_format, problem_format
+domain, problem, scene
     As for `solve`.
 plan : Solution, dict or path
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Returns
 -------
@@ -541,138 +450,39 @@ constexpr const char* kRunDoc =
 
 Parameters
 ----------
-domain, problem, plan, plugins, processes, process_timeout, input_format, problem_format
+domain, problem, plan
     As for `check_plan`.
 scene : path
 outcomes : str, int, dict or path
     How sensing turns out: 'all': every branch; a number: one run, at random, of this seed; a dict,
     {'isSpillable(o1)': True}, or a file of it: as it says.
-replan : int
-    How often it is planned again, at most, where sensing turns out as the plan has no branch for; 0:
-    that is an error.
-timeout : float, optional
-    For each new plan. [s]
-seed : int
-    Of new plans' external functions.
-rate : float
-    Samples per second.
-max_acceleration : float
-    Of all joints. [rad/s^2, length/s^2]
-time_optimal : bool
-    As fast as velocities and accelerations allow, which then jump, instead of by polynomials.
 trajectories : path, optional
     A folder that each motion's samples are written into, as CSV.
-package_path : path or sequence of path
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Returns
 -------
 PlanRun)";
 
-void bind_execution(py::module_& module) {
-  module.def(
-      "run_plan",
-      [](const py::object& domain, const py::object& problem, const py::object& plan,
-         const py::object& scene, const py::object& outcomes, unsigned replan,
-         const std::optional<double>& timeout, std::uint64_t seed, double rate,
-         double max_acceleration, bool time_optimal, const py::object& trajectories,
-         const py::object& package_path, const py::object& plugins, const py::object& processes,
-         double process_timeout, const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format, int threads,
-         const py::object& progress) {
-        return run_plan({domain, problem, scene, plugins, processes, process_timeout, input_format,
-                         problem_format},
-                        plan,
-                        {outcomes, trajectories, package_path, replan, rate, max_acceleration,
-                         time_optimal, seed},
-                        timeout, threads, progress);
-      },
-      py::arg("domain"), py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("scene"),
-      py::arg("outcomes") = "all", py::arg("replan") = 100, py::arg("timeout") = py::none(),
-      py::arg("seed") = 1, py::arg("rate") = 1000.0, py::arg("max_acceleration") = 5.0,
-      py::arg("time_optimal") = false, py::arg("trajectories") = py::none(),
-      py::arg("package_path") = py::tuple(), py::arg("plugins") = py::tuple(),
-      py::arg("processes") = py::tuple(), py::arg("process_timeout") = 10.0,
-      py::arg("input_format") = py::none(), py::arg("problem_format") = py::none(),
-      py::arg("threads") = 0, py::arg("progress") = py::none(), kRunDoc);
-  module.def(
-      "draw_plan",
-      [](const py::object& domain, const py::object& problem, const py::object& plan,
-         const std::string& format, bool tree, const py::object& scene, const py::object& plugins,
-         const py::object& processes, double process_timeout,
-         const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format, const py::object& progress) {
-        return draw_plan({domain, problem, scene, plugins, processes, process_timeout, input_format,
-                          problem_format},
-                         plan, format, tree, progress);
-      },
-      py::arg("domain"), py::arg("problem"), py::arg("plan"), py::kw_only(),
-      py::arg("format") = "svg", py::arg("tree") = false, py::arg("scene") = py::none(),
-      py::arg("plugins") = py::tuple(), py::arg("processes") = py::tuple(),
-      py::arg("process_timeout") = 10.0, py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(), py::arg("progress") = py::none(),
-      R"(A plan as an indented text, Graphviz DOT or SVG, as `kaboum-plan show`.
+constexpr const char* kDrawDoc =
+    R"(A plan as an indented text, Graphviz DOT or SVG, as `kaboum-plan show`.
 
 Parameters
 ----------
-domain, problem, plan, scene, plugins, processes, process_timeout, input_format, problem_format
+domain, problem, plan, scene
     As for `check_plan`.
 format : str
     'text', 'dot' or 'svg'.
 tree : bool
     Expand shared sub-plans.
-progress
-    As for `decimate`.
+{keywords}
 
 Returns
 -------
-str)");
-  module.def(
-      "write_plan_page",
-      [](const py::object& domain, const py::object& problem, const py::object& plan,
-         const py::object& path, const py::object& scene, bool tree, const py::object& package_path,
-         const py::object& plugins, const py::object& processes, double process_timeout,
-         const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format, int threads,
-         const py::object& progress) {
-        return write_plan_page({domain, problem, scene, plugins, processes, process_timeout,
-                                input_format, problem_format},
-                               plan, path, tree, package_path, threads, progress);
-      },
-      py::arg("domain"), py::arg("problem"), py::arg("plan"), py::arg("path"), py::kw_only(),
-      py::arg("scene"), py::arg("tree") = false, py::arg("package_path") = py::tuple(),
-      py::arg("plugins") = py::tuple(), py::arg("processes") = py::tuple(),
-      py::arg("process_timeout") = 10.0, py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(), py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
-      R"(Writes a page that plays a plan in its scene, the bytes of `kaboum-plan show --html`.
+str)";
 
-It is one HTML file, which needs nothing besides itself (docs/pages.md).
-
-Parameters
-----------
-domain, problem, plan, plugins, processes, process_timeout, input_format, problem_format
-    As for `check_plan`.
-path : str or path
-    Of the page.
-scene : path
-tree : bool
-    Expand shared sub-plans.
-package_path : path or sequence of path
-    Folders that package:// is looked up in.
-threads, progress
-    As for `decimate`.
-
-Returns
--------
-list of str
-    What a user should know of the scene and of the page.)");
-  module.def(
-      "convert_domain", &convert_domain, py::arg("domain"), py::arg("problem") = py::none(),
-      py::kw_only(), py::arg("to"), py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(), py::arg("progress") = py::none(),
-      R"(A domain, with its problem if there is one, in another language, as `kaboum-plan convert`.
+constexpr const char* kConvertDoc =
+    R"(A domain, with its problem if there is one, in another language, as `kaboum-plan convert`.
 
 Parameters
 ----------
@@ -680,8 +490,6 @@ domain, problem, input_format, problem_format
     As for `solve`.
 to : str
     'kpl' or 'pddl'.
-progress
-    As for `decimate`.
 
 Returns
 -------
@@ -690,7 +498,36 @@ str
 Raises
 ------
 Error
-    'invalid_input' naming what cannot be said in it.)");
+    'invalid_input' naming what cannot be said in it.)";
+
+/// Functions whose options stand in tables.
+void bind_functions_with_options(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();  // the tables'
+  const std::string of_plan = "domain: object, problem: object, plan: object, *, ";
+  const std::string solving = document(
+      "solve",
+      "domain: object, problem: object = None, *, scene: object = None, assume: object = None",
+      solve_keywords(), "kaboum.Solution", kSolveDoc);
+  module.def("solve", &solve, py::arg("domain"), py::arg("problem") = py::none(), py::kw_only(),
+             py::arg("scene") = py::none(), py::arg("assume") = py::none(), solving.c_str());
+  const std::string checking =
+      document("check_plan", of_plan + "scene: object = None", task_keywords(), "kaboum.PlanCheck",
+               kCheckDoc, Runs::Threads);
+  module.def("check_plan", &check_plan, py::arg("domain"), py::arg("problem"), py::arg("plan"),
+             py::kw_only(), py::arg("scene") = py::none(), checking.c_str());
+  const std::string drawing = document(
+      "draw_plan", of_plan + "format: str = 'svg', tree: bool = False, scene: object = None",
+      task_keywords(), "str", kDrawDoc, Runs::Briefly);
+  module.def("draw_plan", &draw_plan, py::arg("domain"), py::arg("problem"), py::arg("plan"),
+             py::kw_only(), py::arg("format") = "svg", py::arg("tree") = false,
+             py::arg("scene") = py::none(), drawing.c_str());
+  const std::string carrying = document(
+      "run_plan", of_plan + "scene: object, outcomes: object = 'all', trajectories: object = None",
+      run_keywords(), "kaboum.PlanRun", kRunDoc, Runs::Threads);
+  module.def("run_plan", &run_plan, py::arg("domain"), py::arg("problem"), py::arg("plan"),
+             py::kw_only(), py::arg("scene"), py::arg("outcomes") = "all",
+             py::arg("trajectories") = py::none(), carrying.c_str());
 }
 
 }  // namespace
@@ -698,43 +535,10 @@ Error
 void bind_planning(py::module_& module) {
   bind_class(module);
   bind_results(module);
-  module.def(
-      "solve",
-      [](const py::object& domain, const py::object& problem, const py::object& scene,
-         const std::string& search, const py::object& assume, const std::optional<double>& timeout,
-         const std::optional<std::size_t>& max_memory, std::uint64_t seed,
-         const py::object& plugins, const py::object& processes, double process_timeout,
-         const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format, bool no_cache, int threads,
-         const py::object& progress) {
-        return solve({domain, problem, scene, plugins, processes, process_timeout, input_format,
-                      problem_format},
-                     search, assume, timeout, max_memory, seed, no_cache, threads, progress);
-      },
-      py::arg("domain"), py::arg("problem") = py::none(), py::kw_only(),
-      py::arg("scene") = py::none(), py::arg("search") = "greedy", py::arg("assume") = py::none(),
-      py::arg("timeout") = py::none(), py::arg("max_memory") = py::none(), py::arg("seed") = 1,
-      py::arg("plugins") = py::tuple(), py::arg("processes") = py::tuple(),
-      py::arg("process_timeout") = 10.0, py::arg("input_format") = py::none(),
-      py::arg("problem_format") = py::none(), py::arg("no_cache") = false, py::arg("threads") = 0,
-      py::arg("progress") = py::none(), kSolveDoc);
-  module.def(
-      "check_plan",
-      [](const py::object& domain, const py::object& problem, const py::object& plan,
-         const py::object& scene, const py::object& plugins, const py::object& processes,
-         double process_timeout, const std::optional<std::string>& input_format,
-         const std::optional<std::string>& problem_format, int threads,
-         const py::object& progress) {
-        return check_plan({domain, problem, scene, plugins, processes, process_timeout,
-                           input_format, problem_format},
-                          plan, threads, progress);
-      },
-      py::arg("domain"), py::arg("problem"), py::arg("plan"), py::kw_only(),
-      py::arg("scene") = py::none(), py::arg("plugins") = py::tuple(),
-      py::arg("processes") = py::tuple(), py::arg("process_timeout") = 10.0,
-      py::arg("input_format") = py::none(), py::arg("problem_format") = py::none(),
-      py::arg("threads") = 0, py::arg("progress") = py::none(), kCheckDoc);
-  bind_execution(module);
+  module.def("convert_domain", &convert_domain, py::arg("domain"), py::arg("problem") = py::none(),
+             py::kw_only(), py::arg("to"), py::arg("input_format") = py::none(),
+             py::arg("problem_format") = py::none(), kConvertDoc);
+  bind_functions_with_options(module);
 }
 
 }  // namespace kaboum::python

@@ -69,8 +69,9 @@ expected; `decimate` does not prepare it again.)")
                              "Number of triangles whose orientation was reversed.")
       .def_property_readonly("guessed", number(&geom::PreparationReport::guessed),
                              "Whether which solid is meant is a guess, which notes explain.")
-      .def_property_readonly("notes", number(&geom::PreparationReport::notes),
-                             "What was changed, one sentence each.");
+      .def_property_readonly(
+          "notes", [](const PreparedValue& p) { return spelled(p.prepared->report.notes); },
+          "What was changed, one sentence each.");
   module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,
              py::arg("holes") = "fill", py::arg("keep_orientation") = false,
              R"(Gives a mesh a solid, as all tools do first (docs/algorithms/preparation.md).

@@ -19,8 +19,8 @@ constexpr std::size_t kWidth = 96;  ///< of lines of docstrings
 
 [[noreturn]] void refuse(const OptionDescription& option, const std::string& what,
                          const py::object& value) {
-  throw Error(ErrorCode::InvalidArgument, with_underscores(option.name) + " must be " + what +
-                                              ", not " + py::repr(value).cast<std::string>());
+  throw Error(ErrorCode::InvalidArgument, keyword_of(option) + " must be " + what + ", not " +
+                                              py::repr(value).cast<std::string>());
 }
 
 /// Of Python's kind, in words.
@@ -34,6 +34,8 @@ const char* type_words(const OptionDescription& option) {
       return "int or sequence of int";
     case Kind::Number:
       return "float";
+    case Kind::Memory:
+      return "int or str";
     case Kind::Length:
       return option.absolute ? "float" : "float or str";
     case Kind::Files:
@@ -142,8 +144,8 @@ std::string entry_of(const Keyword& keyword) {
   if (const std::string range = range_words(o); !range.empty()) text += " (" + range + ")";
   text += '.';
   if (!o.otherwise.empty()) text += " By default " + spelled(o.otherwise) + ".";
-  return with_underscores(o.name) + " : " + type_words(o) + (keyword.initial ? "" : ", optional") +
-         "\n" + wrapped(text, 4);
+  return keyword_of(o) + " : " + type_words(o) + (keyword.initial ? "" : ", optional") + "\n" +
+         wrapped(text, 4);
 }
 
 constexpr const char* kCacheEntry =
@@ -151,10 +153,12 @@ constexpr const char* kCacheEntry =
     Neither use nor store results of earlier runs ($KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else
     ~/.cache/kaboum).
 )";
-constexpr const char* kRunEntries =
+constexpr const char* kThreadsEntry =
     R"(threads : int
     0: one per core. The result is the same for any number.
-progress : callable, optional
+)";
+constexpr const char* kProgressEntry =
+    R"(progress : callable, optional
     Called with what is being done; what it raises ends the work, as Ctrl-C does.
 )";
 
@@ -164,6 +168,10 @@ std::string with_underscores(const std::string& name) {
   std::string out = name;
   std::replace(out.begin(), out.end(), '-', '_');
   return out;
+}
+
+std::string keyword_of(const OptionDescription& option) {
+  return with_underscores(option.plural.empty() ? option.name : option.plural);
 }
 
 std::optional<std::string> whole_number(const py::handle& value) {
@@ -200,6 +208,14 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       else
         refuse(option, "a number", value);
       break;
+    case Kind::Memory:
+      if (is_text)
+        text = value.cast<std::string>();
+      else if (const auto digits = whole_number(value))
+        text = *digits;
+      else
+        refuse(option, "a number of bytes, or a size such as '500M'", value);
+      break;
     case Kind::Length:
       if (is_text)
         text = value.cast<std::string>();
@@ -226,11 +242,11 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       break;
   }
   if (const std::string flaw = flaw_of(option, text); !flaw.empty())
-    throw Error(ErrorCode::InvalidArgument, with_underscores(option.name) + " " + flaw);
+    throw Error(ErrorCode::InvalidArgument, keyword_of(option) + " " + flaw);
   return text;
 }
 
-RunKeywords take_run_keywords(py::dict& keywords, bool cached) {
+RunKeywords take_run_keywords(py::dict& keywords, Runs runs) {
   RunKeywords out;
   const auto take = [&](const char* name) -> py::object {
     return keywords.attr("pop")(name, py::none());
@@ -238,11 +254,13 @@ RunKeywords take_run_keywords(py::dict& keywords, bool cached) {
   const auto wrong = [](const char* name, const char* type) {
     return py::type_error(std::string(name) + " must be " + type);
   };
-  if (const py::object value = cached ? take("no_cache") : py::none(); !value.is_none()) {
+  if (const py::object value = runs == Runs::Cached ? take("no_cache") : py::none();
+      !value.is_none()) {
     if (!py::isinstance<py::bool_>(value)) throw wrong("no_cache", "True or False");
     out.no_cache = value.cast<bool>();
   }
-  if (const py::object value = take("threads"); !value.is_none()) {
+  if (const py::object value = runs >= Runs::Threads ? take("threads") : py::none();
+      !value.is_none()) {
     try {
       if (!whole_number(value)) throw wrong("threads", "an int");
       out.threads = value.cast<int>();
@@ -250,17 +268,19 @@ RunKeywords take_run_keywords(py::dict& keywords, bool cached) {
       throw wrong("threads", "an int from 0 to 1024");
     }
   }
-  out.progress = take("progress");
+  if (runs != Runs::Briefly) out.progress = take("progress");
   return out;
 }
 
 void require_all_taken(const char* function, const py::dict& keywords,
-                       const std::vector<Keyword>& known, bool cached) {
+                       const std::vector<Keyword>& known, Runs runs) {
   if (keywords.empty()) return;
   const std::string first = py::str(keywords.attr("__iter__")().attr("__next__")());
-  std::vector<std::string> names{"threads", "progress"};
-  if (cached) names.emplace_back("no_cache");
-  for (const Keyword& keyword : known) names.push_back(with_underscores(keyword.option.name));
+  std::vector<std::string> names;
+  if (runs != Runs::Briefly) names.emplace_back("progress");
+  if (runs >= Runs::Threads) names.emplace_back("threads");
+  if (runs == Runs::Cached) names.emplace_back("no_cache");
+  for (const Keyword& keyword : known) names.push_back(keyword_of(keyword.option));
   throw py::type_error(std::string(function) + "() got an unexpected keyword argument '" + first +
                        "'" + did_you_mean(first, names));
 }
@@ -272,19 +292,27 @@ void require_none(const std::string& contradiction) {
 
 std::string document(const std::string& function, const std::string& positional,
                      const std::vector<Keyword>& keywords, const std::string& result,
-                     const std::string& text, bool cached) {
-  std::string signature = function + "(" + positional + ", *";
+                     const std::string& text, Runs runs) {
+  std::string signature = function + "(" + positional;
+  if (positional.find('*') == std::string::npos) signature += ", *";
   std::string entries;
   for (const Keyword& keyword : keywords) {
-    signature += ", " + with_underscores(keyword.option.name) + ": object = " + literal(keyword);
+    signature += ", " + keyword_of(keyword.option) + ": object = " + literal(keyword);
     entries += entry_of(keyword);
   }
-  if (cached) {
+  if (runs == Runs::Cached) {
     signature += ", no_cache: bool = False";
     entries += kCacheEntry;
   }
-  signature += ", threads: int = 0, progress: object = None) -> " + result + "\n\n";
-  entries += kRunEntries;
+  if (runs >= Runs::Threads) {
+    signature += ", threads: int = 0";
+    entries += kThreadsEntry;
+  }
+  if (runs != Runs::Briefly) {
+    signature += ", progress: object = None";
+    entries += kProgressEntry;
+  }
+  signature += ") -> " + result + "\n\n";
   const std::string place = "{keywords}\n";
   const std::size_t at = text.find(place);
   return signature + text.substr(0, at) + entries +
@@ -297,7 +325,7 @@ py::list table_of(const std::vector<Keyword>& keywords) {
     const OptionDescription& o = keyword.option;
     py::dict entry;
     entry["name"] = o.name;
-    entry["keyword"] = with_underscores(o.name);
+    entry["keyword"] = keyword_of(o);
     entry["type"] = type_words(o);
     entry["choices"] = py::cast(o.values.empty() ? o.choices : std::vector<std::string>());
     entry["values"] = value_words(o);

@@ -35,6 +35,9 @@ std::vector<Keyword> keywords_of(const std::vector<Option<Request>>& options) {
 /// "max_bodies" of "max-bodies".
 std::string with_underscores(const std::string& name);
 
+/// The keyword of an option.
+std::string keyword_of(const OptionDescription& option);
+
 /// The digits of an int, also NumPy's; nullopt for all else, True and False too.
 std::optional<std::string> whole_number(const py::handle& value);
 
@@ -42,15 +45,21 @@ std::optional<std::string> whole_number(const py::handle& value);
 /// @throws Error{InvalidArgument} naming the keyword: a value of another type, or a wrong one
 std::optional<std::string> text_of(const OptionDescription& option, const py::object& value);
 
-/// Takes threads and progress out of keywords, and no_cache.
-/// @param cached  whether there is no_cache
-/// @throws py::type_error on other types
-RunKeywords take_run_keywords(py::dict& keywords, bool cached = true);
+/// Keywords of RunKeywords that a function has.
+enum class Runs {
+  Briefly,  ///< none
+  Alone,    ///< progress
+  Threads,  ///< threads, progress
+  Cached    ///< no_cache, threads, progress
+};
 
-/// @param cached  whether there is no_cache
+/// Takes threads and progress out of keywords, and no_cache.
+/// @throws py::type_error on other types
+RunKeywords take_run_keywords(py::dict& keywords, Runs runs = Runs::Cached);
+
 /// @throws py::type_error naming a keyword that nothing took, and one like it
 void require_all_taken(const char* function, const py::dict& keywords,
-                       const std::vector<Keyword>& known, bool cached = true);
+                       const std::vector<Keyword>& known, Runs runs = Runs::Cached);
 
 /// @param contradiction  why options do not go together; empty: they do
 /// @throws Error{InvalidArgument}
@@ -64,7 +73,7 @@ std::set<std::string> take_options(const std::vector<Option<Request>>& options, 
                                    Request& request) {
   std::set<std::string> stated;
   for (const Option<Request>& option : options) {
-    const py::str name(with_underscores(option.name));
+    const py::str name(keyword_of(option));
     if (!keywords.contains(name)) continue;
     if (const auto text = text_of(option, keywords[name])) {
       option.assign(request, *text);
@@ -76,14 +85,30 @@ std::set<std::string> take_options(const std::vector<Option<Request>>& options, 
   return stated;
 }
 
+/// Takes all keywords of a call.
+/// @throws as take_options, take_run_keywords and require_all_taken
+template <class Request>
+RunKeywords take_keywords(const char* function, const std::vector<Option<Request>>& options,
+                          py::dict keywords, Request& request, Runs runs) {
+  take_options(options, keywords, request);
+  RunKeywords out = take_run_keywords(keywords, runs);
+  require_all_taken(function, keywords, keywords_of(options), runs);
+  return out;
+}
+
+/// The keywords of two tables.
+inline std::vector<Keyword> operator+(std::vector<Keyword> a, const std::vector<Keyword>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 /// A docstring: the signature in its first line, the text, and a section for the keywords in the
 /// place of "{keywords}".
-/// @param positional  parameters before the keywords: "mesh: object"
+/// @param positional  parameters before the options: "mesh: object"; keywords after "*"
 /// @param result      the type of what is returned
-/// @param cached      whether there is no_cache
 std::string document(const std::string& function, const std::string& positional,
                      const std::vector<Keyword>& keywords, const std::string& result,
-                     const std::string& text, bool cached = true);
+                     const std::string& text, Runs runs = Runs::Cached);
 
 /// The table of a function's keywords, for stub and reference: a list of dicts.
 py::list table_of(const std::vector<Keyword>& keywords);

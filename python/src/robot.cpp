@@ -5,6 +5,7 @@
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/certify/set_options.h>
+#include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/certified_folder.h>
 #include <kaboum/robot_folder/loaders.h>
 #include <kaboum/scene/robot_pairs.h>
@@ -79,22 +80,25 @@ void bind_robot(py::module_& module) {
       });
 }
 
-CertifiedValue certify_robot(const py::object& robot, const py::object& links,
-                             const std::string& geometry, const py::object& package_path,
-                             const py::object& epsilons, std::optional<std::size_t> robot_bodies,
+std::vector<Keyword> certify_keywords() {
+  return keywords_of(robot::shape_options()) + keywords_of(link_options());
+}
+
+CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons,
+                             std::optional<std::size_t> robot_bodies,
                              std::optional<std::size_t> robot_vertices, bool partial,
                              const py::kwargs& given) {
   py::dict keywords = given;
   certify::SetOptions options;
   const std::set<std::string> stated = take_options(link_options(), keywords, options);
+  certify::RobotRequest r;
+  take_options(robot::shape_options(), keywords, r.shapes);
   const RunKeywords running = take_run_keywords(keywords);
-  require_all_taken("certify_robot", keywords, keywords_of(link_options()));
+  require_all_taken("certify_robot", keywords, certify_keywords());
   require_none(certify::contradiction(options, stated));
   const RobotValue value = robot_of(robot, "robot");
-  certify::RobotRequest r;
   r.set = certify::request_of(options);
   r.partial = partial;
-  r.shapes = {links_of(links), is_visual(geometry), packages_of(package_path)};
   r.epsilons = epsilons_of(epsilons);
   const bool has_budget = robot_bodies || robot_vertices;
   if (has_budget)
@@ -217,8 +221,8 @@ void bind_certified(py::module_& module) {
       .def_property_readonly(
           "distance", [](const Value& r) { return r.made.bodies.certificate().distance; },
           "Bound of how far a body reaches beyond its shape. [length]")
-      .def_property_readonly(
-          "notes", [](const Value& r) { return r.notes; }, "What a user should know of the meshes.")
+      .def_property_readonly("notes", notes_of(&Value::notes),
+                             "What a user should know of the meshes.")
       .def("write", &write_robot, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
            py::arg("srdf") = false, py::arg("no_cache") = false, py::arg("progress") = py::none(),
@@ -234,12 +238,6 @@ constexpr const char* kDoc =
 Parameters
 ----------
 robot : Robot or path
-links : sequence of str, optional
-    Only these.
-geometry : str
-    'collision' or 'visual'.
-package_path : str or sequence of str
-    Folders that package:// is looked up in.
 epsilons : dict, optional
     Of single links, by name: a length or a percentage, instead of `epsilon`.
 robot_bodies, robot_vertices : int, optional
@@ -256,10 +254,10 @@ Error
     `partial` only where no link can be held.)";
 
 /// Keywords that are no options of a set, in the signature.
-constexpr const char* kOwnKeywords =
-    "*, links: object = None, geometry: str = 'collision', package_path: object = (), "
-    "epsilons: object = None, robot_bodies: object = None, robot_vertices: object = None, "
-    "partial: bool = False,";
+constexpr const char* kParameters =
+    "robot: object, *, epsilons: object = None, robot_bodies: object = None, robot_vertices: "
+    "object = None, "
+    "partial: bool = False";
 
 }  // namespace
 
@@ -369,14 +367,11 @@ Error
     'invalid_input' naming the line.)");
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  std::string text = document("certify_robot", "robot: object", keywords_of(link_options()),
-                              "kaboum.CertifiedRobot", kDoc);
-  text.replace(text.find("*,"), 2, kOwnKeywords);
+  const std::string text =
+      document("certify_robot", kParameters, certify_keywords(), "kaboum.CertifiedRobot", kDoc);
   module.def("certify_robot", &certify_robot, py::arg("robot"), py::kw_only(),
-             py::arg("links") = py::none(), py::arg("geometry") = "collision",
-             py::arg("package_path") = py::tuple(), py::arg("epsilons") = py::none(),
-             py::arg("robot_bodies") = py::none(), py::arg("robot_vertices") = py::none(),
-             py::arg("partial") = false, text.c_str());
+             py::arg("epsilons") = py::none(), py::arg("robot_bodies") = py::none(),
+             py::arg("robot_vertices") = py::none(), py::arg("partial") = false, text.c_str());
 }
 
 }  // namespace kaboum::python

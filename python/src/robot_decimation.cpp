@@ -1,10 +1,12 @@
 // Robots with simplified meshes: kaboum.decimate_robot, as bmesh-decimate on a robot.
 
 #include <kaboum/certify/link_verdict.h>
+#include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/enclosed_folder.h>
 
 #include <algorithm>
 
+#include "answers.h"
 #include "mesh.h"
 #include "request_options.h"
 #include "robot.h"
@@ -22,27 +24,28 @@ struct EnclosedValue {
   std::vector<std::string> notes;
 };
 
-EnclosedValue decimate_robot(const py::object& robot, const py::object& links,
-                             const std::string& geometry, const py::object& package_path,
-                             const py::object& epsilons,
+std::vector<Keyword> decimate_keywords() {
+  return keywords_of(robot::shape_options()) + keywords_of(link_mesh_options());
+}
+
+EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons,
                              const std::optional<std::string>& output_format, bool partial,
                              const py::kwargs& given) {
   py::dict keywords = given;
   certify::MeshOptions options;
   const auto known = link_mesh_options();
   const std::set<std::string> stated = take_options(known, keywords, options);
+  robot::ShapeChoice shapes;
+  take_options(robot::shape_options(), keywords, shapes);
   const RunKeywords running = take_run_keywords(keywords);
-  require_all_taken("decimate_robot", keywords, keywords_of(known));
+  require_all_taken("decimate_robot", keywords, decimate_keywords());
   require_none(certify::contradiction(options, stated));
   std::optional<io::Format> format;
   if (output_format) format = format_of(output_format, "output_format");
   options.request.comment = "bmesh-decimate " KABOUM_VERSION;
   const RobotValue value = robot_of(robot, "robot");
   certify::LinkEnclosuresRequest request{
-      certify::link_request_of(options, format),
-      {links_of(links), is_visual(geometry), packages_of(package_path)},
-      {},
-      epsilons_of(epsilons)};
+      certify::link_request_of(options, format), shapes, {}, epsilons_of(epsilons)};
   request.partial = partial;
   EnclosedValue out{nullptr, value.file, request.shapes, format.value_or(io::Format::Stl), {}};
   Watch watch(running.progress);
@@ -73,6 +76,7 @@ py::list meshes_of(const EnclosedValue& r) {
     one["flaw"] = mesh.flaw;
     if (mesh.flaw.empty()) {
       one["mesh"] = MeshValue{{r.made, &mesh.made.enclosure.artefact()}};
+      one["certificate"] = dict_of(certify::certificate_of(mesh.made.enclosure));
       one["report"] = loads(certify::to_json(mesh.made.enclosure));
       one["cached"] = mesh.made.cached;
     }
@@ -121,7 +125,7 @@ constexpr const char* kDoc =
 Parameters
 ----------
 robot : Robot or path
-links, geometry, package_path, epsilons
+epsilons
     As for `certify_robot`.
 output_format : str, optional
     'stl' or 'obj'; by default STL, and OBJ for a mesh that float32 is too coarse for.
@@ -150,9 +154,9 @@ dict
     As of `CertifiedRobot.write`.)";
 
 /// Keywords that are no options of a mesh, in the signature.
-constexpr const char* kOwnKeywords =
-    "*, links: object = None, geometry: str = 'collision', package_path: object = (), "
-    "epsilons: object = None, output_format: object = None, partial: bool = False,";
+constexpr const char* kParameters =
+    "robot: object, *, epsilons: object = None, output_format: object = None, partial: bool = "
+    "False";
 
 void bind_class(py::module_& module) {
   using Value = EnclosedValue;
@@ -181,7 +185,8 @@ void bind_class(py::module_& module) {
           "'undecided' and 'not held'.")
       .def_property_readonly("distance", &distance_of,
                              "Bound of how far a mesh reaches beyond its original. [length]")
-      .def_readonly("notes", &Value::notes, "What a user should know of the meshes.")
+      .def_property_readonly("notes", notes_of(&Value::notes),
+                             "What a user should know of the meshes.")
       .def("write", &write, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
            py::arg("no_cache") = false, kWriteDoc)
@@ -203,13 +208,11 @@ void bind_robot_decimation(py::module_& module) {
   bind_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  std::string text = document("decimate_robot", "robot: object", keywords_of(link_mesh_options()),
-                              "kaboum.EnclosedRobot", kDoc);
-  text.replace(text.find("*,"), 2, kOwnKeywords);
+  const std::string text =
+      document("decimate_robot", kParameters, decimate_keywords(), "kaboum.EnclosedRobot", kDoc);
   module.def("decimate_robot", &decimate_robot, py::arg("robot"), py::kw_only(),
-             py::arg("links") = py::none(), py::arg("geometry") = "collision",
-             py::arg("package_path") = py::tuple(), py::arg("epsilons") = py::none(),
-             py::arg("output_format") = py::none(), py::arg("partial") = false, text.c_str());
+             py::arg("epsilons") = py::none(), py::arg("output_format") = py::none(),
+             py::arg("partial") = false, text.c_str());
 }
 
 }  // namespace kaboum::python

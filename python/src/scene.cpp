@@ -5,14 +5,15 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/scene/scene_draft.h>
+#include <kaboum/scene/scene_options.h>
 #include <kaboum/scene/scene_update.h>
 
 #include <memory>
 
 #include "convex_set.h"
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
-#include "set_options.h"
 
 namespace kaboum::python {
 namespace {
@@ -71,6 +72,9 @@ std::vector<std::filesystem::path> sources_of(const std::string& file) {
 
 bool is_made(const py::object& shape) { return py::isinstance<CertifiedSetValue>(shape); }
 
+/// A dict as of scene files: {"sphere": {"radius": 0.1}}.
+bool is_primitive(const py::object& shape) { return py::isinstance<py::dict>(shape); }
+
 /// Refuses options that no mesh is made into a set with.
 void require_mesh(const py::dict& options, bool all_made) {
   if (!options.empty() && all_made)
@@ -106,7 +110,7 @@ py::dict dict_of(const scene::MadeScene& made) {
   out["inputs"] = made.inputs;
   out["sizes"] = made.sizes;
   out["bad_links"] = made.bad_links;
-  out["notes"] = made.notes;
+  out["notes"] = spelled(made.notes);
   return out;
 }
 
@@ -145,13 +149,21 @@ void add_robot(SceneValue& scene, const std::string& name, const py::object& rob
 void add_object(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::object& inner, const py::object& features,
                 const py::object& grasps, const py::kwargs& options) {
-  require_mesh(options, is_made(shape) && (inner.is_none() || is_made(inner)));
+  const bool primitive = is_primitive(shape);
+  require_mesh(options, primitive || (is_made(shape) && (inner.is_none() || is_made(inner))));
+  if (primitive && !inner.is_none())
+    throw Error(ErrorCode::InvalidArgument, "inner: a primitive has its own inner set");
   const std::string unit = unit_of(scene);
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   if (!features.is_none()) members["features"] = features;
   if (!grasps.is_none()) members["grasps"] = grasps;
   const std::string text = json_text(members);
+  if (primitive) {
+    const std::string sizes = json_text(shape);
+    run(0, [&] { scene.draft->add_primitive_object(name, sizes, text); });
+    return;
+  }
   scene::SceneSet outer = set_from(shape, options, "outer", unit);
   std::optional<scene::SceneSet> in;
   // With the same options: a set of another scale, or of the sheets too, is not inside the other.
@@ -161,10 +173,15 @@ void add_object(SceneValue& scene, const std::string& name, const py::object& sh
 
 void add_region(SceneValue& scene, const std::string& name, const py::object& shape,
                 const py::object& at, const py::kwargs& options) {
-  require_mesh(options, is_made(shape));
+  require_mesh(options, is_made(shape) || is_primitive(shape));
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   const std::string text = json_text(members);
+  if (is_primitive(shape)) {
+    const std::string primitive = json_text(shape);
+    run(0, [&] { scene.draft->add_primitive_region(name, primitive, text); });
+    return;
+  }
   scene::SceneSet inner = set_from(shape, options, "inner", unit_of(scene));
   run(0, [&] { scene.draft->add_region(name, std::move(inner), text); });
 }
@@ -183,12 +200,10 @@ std::vector<scene::NamedFile> files_of(const py::object& given, const char* argu
 
 py::dict make_scene(const py::object& path, const py::object& robots, const py::object& objects,
                     const py::object& regions, const py::object& at,
-                    const std::map<std::string, double>& scale, bool inner, bool inner_links,
-                    const std::string& geometry, const py::object& epsilon,
-                    const std::string& effort, bool drop_sheets, const std::string& unit,
-                    const py::object& package_path, bool force, bool no_cache, int threads,
-                    const py::object& progress) {
+                    const std::map<std::string, double>& scale, const py::kwargs& given) {
   scene::SceneMaker maker;
+  const RunKeywords running =
+      take_keywords("make_scene", scene::scene_options(), given, maker, Runs::Cached);
   maker.scene = path_text(path, "path");
   maker.robots = files_of(robots, "robots");
   maker.objects = files_of(objects, "objects");
@@ -207,20 +222,11 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
                   "scale of '" + name + "' must be a number from 1e-9 to 1e9");
     maker.scales.emplace(name, factor);
   }
-  maker.inner = inner;
-  maker.replace = force;
-  if (inner_links) maker.options.inner_links.emplace();  // all
-  maker.options.visual = is_visual(geometry);
-  maker.options.sets.epsilon = length_of(epsilon, "epsilon");
-  maker.options.sets.effort = value_of(kSetEfforts, effort, "effort");
-  maker.options.sets.preparation.drop_sheets = drop_sheets;
-  maker.options.sets.unit = unit;
-  maker.options.packages = packages_of(package_path);
-  Watch watch(progress);
+  Watch watch(running.progress);
   maker.options.progress = watch.hook();
-  return dict_of(run(threads, [&] {
+  return dict_of(run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
-    if (!no_cache) maker.options.cache = &cache;
+    if (!running.no_cache) maker.options.cache = &cache;
     return scene::make_scene(maker);
   }));
 }
@@ -262,8 +268,10 @@ constexpr const char* kAddObjectDoc =
 Parameters
 ----------
 name : str
-shape : CertifiedSet or mesh
-    A mesh is decomposed.
+shape : CertifiedSet, mesh or dict
+    A mesh is decomposed. A dict is a primitive, as in scene files: {'box': {'size': [x, y, z]}},
+    {'sphere': {'radius': r}}, 'cylinder' or 'capsule' with 'radius' and 'length', 'plane' with
+    'size'.
 at : sequence of float, optional
     Where it stands: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 inner : CertifiedSet or mesh, optional
@@ -303,21 +311,7 @@ at : dict, optional
     By name, where things stand: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 scale : dict
     By name, what the coordinates of an object's or region's mesh are multiplied by.
-inner, inner_links : bool
-    Inner sets of objects, of robots' links: contacts can be certain.
-geometry : str
-    Of robots: 'collision' or 'visual'.
-epsilon : float or str
-    Largest distance of the sets from their meshes.
-effort : str
-drop_sheets : bool
-unit : str
-    Of all meshes; with robots m.
-package_path : str or sequence of str
-force : bool
-    Replace a scene that exists.
-no_cache, threads, progress
-    As for `decompose`.
+{keywords}
 
 Returns
 -------
@@ -416,17 +410,20 @@ std::optional<world::SceneFile> scene_file_of(const py::object& value) {
 
 void bind_scenes(py::module_& module) {
   bind_scene(module);
-  module.def(
-      "make_scene", &make_scene, py::arg("path"), py::kw_only(), py::arg("robots") = py::none(),
-      py::arg("objects") = py::none(), py::arg("regions") = py::none(), py::arg("at") = py::none(),
-      py::arg("scale") = py::dict(), py::arg("inner") = false, py::arg("inner_links") = false,
-      py::arg("geometry") = "collision", py::arg("epsilon") = "1%", py::arg("effort") = "normal",
-      py::arg("drop_sheets") = false, py::arg("unit") = "m", py::arg("package_path") = py::tuple(),
-      py::arg("force") = false, py::arg("no_cache") = false, py::arg("threads") = 0,
-      py::arg("progress") = py::none(), kMakeDoc);
   module.def("update_scene", &update_scene, py::arg("path"), py::kw_only(),
              py::arg("package_path") = py::tuple(), py::arg("no_cache") = false,
              py::arg("threads") = 0, py::arg("progress") = py::none(), kUpdateDoc);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document(
+      "make_scene",
+      "path: object, *, robots: object = None, objects: object = None, regions: object = None, "
+      "at: object = None, scale: dict = {}",
+      keywords_of(scene::scene_options()), "dict", kMakeDoc);
+  module.def("make_scene", &make_scene, py::arg("path"), py::kw_only(),
+             py::arg("robots") = py::none(), py::arg("objects") = py::none(),
+             py::arg("regions") = py::none(), py::arg("at") = py::none(),
+             py::arg("scale") = py::dict(), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -71,6 +71,9 @@ void bind_class(py::module_& module) {
           "margin", [](const SweptSet& s) { return s.made.certificate().margin; },
           "By which the bodies have to be enlarged. [length]")
       .def_property_readonly(
+          "certificate", [](const SweptSet& s) { return dict_of(certify::certificate_of(s.made)); },
+          kCertificateDoc)
+      .def_property_readonly(
           "claim", [](const SweptSet& s) { return claim_of(s.made.certificate()); },
           "'decided', exactly and from the bodies; 'proved', by the steps; "
           "'none', of bound 'baginski'.")
@@ -81,7 +84,8 @@ void bind_class(py::module_& module) {
       .def_property_readonly(
           "bodies_distance", [](const SweptSet& s) { return s.made.certificate().bodies_distance; },
           "Nor are the robot's bodies farther from its shapes. [length]")
-      .def_readonly("notes", &SweptSet::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&SweptSet::notes),
+                             "What a user should know of the input.")
       .def_property_readonly(
           "bytes",
           [](const SweptSet& s) { return py::bytes(s.made.bytes().data(), s.made.bytes().size()); },

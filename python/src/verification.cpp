@@ -178,7 +178,8 @@ void bind_class(py::module_& module) {
       .def_readonly("claims", &Verdict::claims,
                     "By its name, each claim: a dict with 'answer', 'reason' and, where it is "
                     "refuted, 'witness' (a point) and 'depth'.")
-      .def_readonly("notes", &Verdict::notes, "What a user should know of the input.")
+      .def_property_readonly("notes", notes_of(&Verdict::notes),
+                             "What a user should know of the input.")
       .def("__bool__", [](const Verdict& v) { return v.answer == verify::Answer::Verified; })
       .def("__repr__", [](const Verdict& v) {
         return std::string("<kaboum.Verdict: ") + verify::name_of(v.answer) + ">";

@@ -1,18 +1,18 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
-#include <kaboum/motion/find_path.h>
-#include <kaboum/world/allowed_pairs.h>
+#include <kaboum/motion/path_options.h>
+#include <kaboum/world/check_options.h>
 #include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
 #include <pybind11/numpy.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "arguments.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
 #include "scene.h"
 
@@ -88,6 +88,9 @@ py::dict dict_of(const world::World& world, const world::Contact& contact) {
   out["certain"] = contact.certain;
   out["epsilon"] = contact.epsilon;
   out["place"] = array_of(contact.place);
+  out["depth"] = contact.depth
+                     ? py::object(py::make_tuple(contact.depth->lower, contact.depth->upper))
+                     : py::object(py::none());
   return out;
 }
 
@@ -123,25 +126,32 @@ void for_rows(const robot::Path& rows, Watch& watch, const Look& look) {
 }
 
 std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
-                                     const robot::Path& rows, bool resting, Watch& watch) {
+                                     const robot::Path& rows,
+                                     const world::Checker::Options& options, Watch& watch) {
   return run(0, [&] {
     world::Scratch scratch;
     std::vector<ContactList> out;
     for_rows(rows, watch, [&](const std::vector<double>& q) {
-      out.push_back({in, in.checker->find_contacts(state_at(in, robot, q), scratch, {resting})});
+      const world::WorldState state = state_at(in, robot, q);
+      std::vector<world::Contact> contacts = in.checker->find_contacts(state, scratch, options);
+      for (world::Contact& contact : contacts) in.checker->measure_depth(contact, state, scratch);
+      out.push_back({in, std::move(contacts)});
     });
     return out;
   });
 }
 
 py::object check(const WorldValue& in, const py::object& q, const std::optional<std::string>& robot,
-                 bool resting, const py::object& progress) {
+                 const py::kwargs& given) {
+  world::Checker::Options options;
+  const RunKeywords running =
+      take_keywords("check", world::state_options(), given, options, Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
-  Watch watch(progress);
-  std::vector<ContactList> made = contacts_at(in, index, rows, resting, watch);
+  Watch watch(running.progress);
+  std::vector<ContactList> made = contacts_at(in, index, rows, options, watch);
   if (one) return py::cast(std::move(made.front()));
   return py::cast(std::move(made));
 }
@@ -168,44 +178,36 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
 }
 
 MotionValue check_motion(const WorldValue& in, const py::object& path,
-                         const std::optional<std::string>& robot, double resolution,
-                         std::size_t max_intervals, const py::object& progress) {
+                         const std::optional<std::string>& robot, const py::kwargs& given) {
+  world::MotionOptions options;
+  const RunKeywords running =
+      take_keywords("check_motion", world::motion_options(), given, options, Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
-  Watch watch(progress);
+  Watch watch(running.progress);
+  options.progress = watch.hook();
   return run(0, [&] {
-    world::MotionOptions options;
-    options.progress = watch.hook();
-    options.resolution = resolution;
-    options.most_intervals = max_intervals;
     return MotionValue{
         in, world::check_motion(*in.checker, initial_state(in.world()), index, rows, options)};
   });
 }
 
 PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
-                    const std::optional<std::string>& robot, std::uint64_t seed, double max_work,
-                    std::size_t max_nodes, int shortcuts, double resolution,
-                    const py::object& progress) {
+                    const std::optional<std::string>& robot, const py::kwargs& given) {
+  motion::PathOptions options;
+  const RunKeywords running =
+      take_keywords("find_path", motion::path_options(), given, options, Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
   bool one = false;
   const robot::Path from = rows_of(start, variables, "start", one);
   if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
   const robot::Path to = rows_of(goals, variables, "goals", one);
-  if (!(max_work > 0)) throw Error(ErrorCode::InvalidArgument, "max_work must be above 0");
-  if (shortcuts < 0) throw Error(ErrorCode::InvalidArgument, "shortcuts must be at least 0");
-  Watch watch(progress);
+  Watch watch(running.progress);
+  options.check.progress = watch.hook();
   return run(0, [&] {
-    motion::PathOptions options;
-    options.check.progress = watch.hook();
-    options.seed = seed;
-    options.most_work = max_work;
-    options.most_nodes = max_nodes;
-    options.shortcuts = shortcuts;
-    options.check.resolution = resolution;
     return PathValue{in, motion::find_path(*in.checker, initial_state(in.world()), index,
                                            from.front(), to, options)};
   });
@@ -246,19 +248,18 @@ py::object is_inside(const WorldValue& in, const std::string& what, const std::s
 
 InclusionValue stays_inside(const WorldValue& in, const std::string& what,
                             const std::string& region, const py::object& path,
-                            const std::optional<std::string>& robot, double resolution,
-                            std::size_t max_intervals, const py::object& progress) {
+                            const std::optional<std::string>& robot, const py::kwargs& given) {
+  world::MotionOptions options;
+  const RunKeywords running =
+      take_keywords("stays_inside", world::motion_options(), given, options, Runs::Alone);
   const world::InclusionQuestion question = world::inclusion_question(in.world(), what, region);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
-  Watch watch(progress);
+  Watch watch(running.progress);
+  options.progress = watch.hook();
   return run(0, [&] {
-    world::MotionOptions options;
-    options.resolution = resolution;
-    options.most_intervals = max_intervals;
-    options.progress = watch.hook();
     const world::MotionInclusion found =
         find_inclusion(*in.checker, initial_state(in.world()), index, rows, question, options);
     InclusionValue out{found.answer, {}};
@@ -267,35 +268,23 @@ InclusionValue stays_inside(const WorldValue& in, const std::string& what,
   });
 }
 
-py::object dict_of(const world::World& world, const std::optional<world::Checker::Nearest>& found) {
-  if (!found) return py::none();
-  py::dict out;
-  out["pair"] = py::make_tuple(world.name_of(found->items[0]), world.name_of(found->items[1]));
-  out["lower"] = found->clearance.lower;
-  out["upper"] = found->clearance.upper;
-  return out;
-}
-
 py::object nearest(const WorldValue& in, const py::object& q,
-                   const std::optional<std::string>& robot, bool resting,
-                   const py::object& progress) {
+                   const std::optional<std::string>& robot, bool resting) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
-  Watch watch(progress);
+  if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
   const auto found = run(0, [&] {
     world::Scratch scratch;
-    std::vector<std::optional<world::Checker::Nearest>> out;
-    const world::Checker::Options options{resting, [&] { watch("nearest pair"); }};
-    for_rows(rows, watch, [&](const std::vector<double>& row) {
-      out.push_back(in.checker->find_nearest(state_at(in, index, row), scratch, options));
-    });
-    return out;
+    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, {resting});
   });
-  if (one) return dict_of(in.world(), found.front());
-  py::list out;
-  for (const auto& pair : found) out.append(dict_of(in.world(), pair));
+  if (!found) return py::none();
+  py::dict out;
+  out["pair"] =
+      py::make_tuple(in.world().name_of(found->items[0]), in.world().name_of(found->items[1]));
+  out["lower"] = found->clearance.lower;
+  out["upper"] = found->clearance.upper;
   return out;
 }
 
@@ -313,24 +302,17 @@ struct LinkPairsValue {
 };
 
 LinkPairsValue link_pairs(const WorldValue& in, const std::optional<std::string>& robot,
-                          std::size_t max_boxes, const std::optional<double>& timeout,
-                          const py::object& progress) {
+                          const py::kwargs& given) {
+  world::PairOptions options;
+  const RunKeywords running =
+      take_keywords("link_pairs", world::pair_options(), given, options, Runs::Alone);
   LinkPairsValue out{in, robot_index(in.world(), robot), {}};
-  if (max_boxes < 1) throw Error(ErrorCode::InvalidArgument, "max_boxes must be at least 1");
-  if (timeout && !(*timeout > 0))
-    throw Error(ErrorCode::InvalidArgument, "timeout must be a number of seconds above 0");
-  Watch watch(progress);
-  out.pairs = run(0, [&] {
-    world::PairOptions options;
-    options.most_boxes = max_boxes;
-    const auto begin = std::chrono::steady_clock::now();
-    options.stop = [&] {
-      watch("pairs of links");
-      return timeout &&
-             std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(*timeout);
-    };
-    return examine_pairs(out.model(), options);
-  });
+  Watch watch(running.progress);
+  options.stop = [&] {
+    watch("pairs of links");
+    return false;
+  };
+  out.pairs = run(0, [&] { return examine_pairs(out.model(), options); });
   return out;
 }
 
@@ -419,7 +401,9 @@ void bind_answers(py::module_& module) {
               out.append(dict_of(c.in.world(), contact));
             return out;
           },
-          "Dicts of 'pair', 'certain' (else they are within 'epsilon'), 'epsilon' and 'place'. "
+          "Dicts of 'pair', 'certain' (else they are within 'epsilon'), 'epsilon', 'place', and "
+          "'depth': a "
+          "bracket of the penetration depth of the sets, or None. "
           "[length]")
       .def("__repr__", [](const ContactList& c) {
         return "<kaboum.Contacts: " +
@@ -499,11 +483,8 @@ void bind_path(py::module_& module) {
 
 using WorldClass = py::class_<WorldValue>;
 
-void bind_questions(WorldClass& world) {
-  world
-      .def("check", &check, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false, py::arg("progress") = py::none(),
-           R"(All contacts of the world with a robot at a configuration, the other robots at home.
+constexpr const char* kCheckDoc =
+    R"(All contacts of the world with a robot at a configuration, the other robots at home.
 
 Parameters
 ----------
@@ -511,35 +492,22 @@ q : array
     k values, or n x k: then a list is returned.
 robot : str, optional
     Its name, where the scene has several.
-resting : bool
-    Look at pairs of objects that rest, too.
-progress : callable, optional
-    Is told what is being done, as a str, now and then; what it raises ends the call, as Ctrl-C.)")
-      .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("progress") = py::none(),
-           "Of n x k values, n bools: whether each configuration is free, for certain.")
-      .def(
-          "check_motion", &check_motion, py::arg("path"), py::kw_only(),
-          py::arg("robot") = py::none(), py::arg("resolution") = 1e-5,
-          py::arg("max_intervals") = 1'000'000, py::arg("progress") = py::none(),
-          R"(Whether a robot may move along straight segments of joint values: at every instant, not at samples.
+{keywords}
+)";
+
+constexpr const char* kMotionDoc =
+    R"(Whether a robot may move along straight segments of joint values: at every instant, not at samples.
 
 Parameters
 ----------
 path : array
     n x k, a row for each waypoint.
 robot : str, optional
-resolution : float
-    What is not farther apart counts as contact. [length]
-max_intervals : int
-    Of time that are looked at.
-progress
-    As of `check`.)")
-      .def("find_path", &find_path, py::arg("start"), py::arg("goals"), py::kw_only(),
-           py::arg("robot") = py::none(), py::arg("seed") = 1, py::arg("max_work") = 10.0,
-           py::arg("max_nodes") = 100'000, py::arg("shortcuts") = 60, py::arg("resolution") = 1e-5,
-           py::arg("progress") = py::none(),
-           R"(A path from a configuration to one of several, certified free at every instant.
+{keywords}
+)";
+
+constexpr const char* kPathDoc =
+    R"(A path from a configuration to one of several, certified free at every instant.
 
 Parameters
 ----------
@@ -548,25 +516,11 @@ start : array
 goals : array
     k values, or n x k.
 robot : str, optional
-seed : int
-max_work : float
-    The search ends after so much work, counted, not measured: about seconds of one core.
-max_nodes : int
-    Of the search trees.
-shortcuts : int
-    That are tried to shorten a path.
-resolution : float
-    As of `check_motion`. [length]
-progress
-    As of `check`.)")
-      .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false, py::arg("progress") = py::none(),
-           "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
-           "'lower', 'upper' of its sets' distance; None where no pair is looked at. Of n x k "
-           "values a list of them. [length]")
-      .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
-           py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
-           R"(Whether a thing is in a region of the scene, as `kaboum-check --inside`.
+{keywords}
+)";
+
+constexpr const char* kInsideDoc =
+    R"(Whether a thing is in a region of the scene, as `kaboum-check --inside`.
 
 Parameters
 ----------
@@ -582,41 +536,78 @@ progress
 
 Returns
 -------
-Inclusion)")
-      .def("stays_inside", &stays_inside, py::arg("what"), py::arg("region"), py::arg("path"),
-           py::kw_only(), py::arg("robot") = py::none(), py::arg("resolution") = 1e-5,
-           py::arg("max_intervals") = 1'000'000, py::arg("progress") = py::none(),
-           R"(The same along a path, at every instant.
+Inclusion)";
+
+constexpr const char* kStaysDoc =
+    R"(Whether a thing stays in a region along a path, at every instant.
 
 Parameters
 ----------
 what, region
     As of `is_inside`.
-path, robot, resolution, max_intervals, progress
+path, robot
     As of `check_motion`.
+{keywords}
 
 Returns
 -------
-Inclusion)")
-      .def(
-          "link_pairs", &link_pairs, py::kw_only(), py::arg("robot") = py::none(),
-          py::arg("max_boxes") = 20'000, py::arg("timeout") = py::none(),
-          py::arg("progress") = py::none(),
-          R"(Pairs of a robot's links: which never touch, or need no check, as `kaboum-scene pairs`.
+Inclusion)";
+
+constexpr const char* kPairsDoc =
+    R"(Pairs of a robot's links: which never touch, or need no check, as `kaboum-scene pairs`.
 
 Parameters
 ----------
 robot : str, optional
-max_boxes : int
-    Of joint values that are looked at for one pair.
-timeout : float, optional
-    After so long, what is left stays unproved. [s]
-progress
-    As of `check`.
+{keywords}
 
 Returns
 -------
-LinkPairs)");
+LinkPairs)";
+
+/// Questions whose options stand in tables.
+void bind_questions_with_options(WorldClass& world) {
+  py::options signatures;
+  signatures.disable_function_signatures();  // the tables'
+  const auto text = [](const char* function, const std::string& positional, const auto& options,
+                       const char* result, const char* doc) {
+    return document(function, "self: object, " + positional + "*, robot: object = None",
+                    keywords_of(options), result, doc, Runs::Alone);
+  };
+  const std::string check_text =
+      text("check", "q: object, ", world::state_options(), "object", kCheckDoc);
+  const std::string motion_text = text("check_motion", "path: object, ", world::motion_options(),
+                                       "kaboum.MotionCheck", kMotionDoc);
+  const std::string path_text = text("find_path", "start: object, goals: object, ",
+                                     motion::path_options(), "kaboum.Path", kPathDoc);
+  const std::string stays_text = text("stays_inside", "what: str, region: str, path: object, ",
+                                      world::motion_options(), "kaboum.Inclusion", kStaysDoc);
+  const std::string pairs_text =
+      text("link_pairs", "", world::pair_options(), "kaboum.LinkPairs", kPairsDoc);
+  const auto robot = py::arg("robot") = py::none();
+  world.def("check", &check, py::arg("q"), py::kw_only(), robot, check_text.c_str())
+      .def("check_motion", &check_motion, py::arg("path"), py::kw_only(), robot,
+           motion_text.c_str())
+      .def("find_path", &find_path, py::arg("start"), py::arg("goals"), py::kw_only(), robot,
+           path_text.c_str())
+      .def("stays_inside", &stays_inside, py::arg("what"), py::arg("region"), py::arg("path"),
+           py::kw_only(), robot, stays_text.c_str())
+      .def("link_pairs", &link_pairs, py::kw_only(), robot, pairs_text.c_str());
+}
+
+void bind_questions(WorldClass& world) {
+  world
+      .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           py::arg("progress") = py::none(),
+           "Of n x k values, n bools: whether each configuration is free, for certain.")
+      .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+           py::arg("resting") = false,
+           "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
+           "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
+      .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
+           py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
+           kInsideDoc);
+  bind_questions_with_options(world);
 }
 
 void bind_world(py::module_& module) {
@@ -653,7 +644,7 @@ It never changes. Angles are in radians, lengths in the scene's unit.)");
           },
           "Names.")
       .def_property_readonly(
-          "notes", [](const WorldValue& w) { return w.scene->notes; },
+          "notes", [](const WorldValue& w) { return spelled(w.scene->notes); },
           "What a user should know of the scene.")
       .def(
           "variables",

@@ -2,6 +2,7 @@
 
 #include <kaboum/certify/wrap.h>
 
+#include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
 #include "running.h"
@@ -78,6 +79,10 @@ void bind_wraps(py::module_& module) {
           "faces", [](const WrapValue& w) { return faces_of(w.mesh()); },
           "m x 3 uint32, a view that cannot be written.")
       .def_property_readonly(
+          "certificate",
+          [](const WrapValue& w) { return dict_of(certify::certificate_of(*w.made)); },
+          kCertificateDoc)
+      .def_property_readonly(
           "report",
           [](const WrapValue& w) {
             return py::module_::import("json").attr("loads")(
@@ -92,8 +97,7 @@ void bind_wraps(py::module_& module) {
           },
           "Certified bracket of the largest distance of its points from the "
           "triangles. [length]")
-      .def_property_readonly(
-          "notes", [](const WrapValue& w) { return w.notes; }, "What a user should know.")
+      .def_property_readonly("notes", notes_of(&WrapValue::notes), "What a user should know.")
       .def("__repr__", [](const WrapValue& w) {
         return "<kaboum.Wrap of " + std::to_string(w.made->artefact().vertices.size()) +
                " vertices, " + std::to_string(w.made->artefact().triangles.size()) + " faces>";

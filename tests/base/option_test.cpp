@@ -78,6 +78,62 @@ TEST(Options, RefuseWrongValues) {
   EXPECT_NE(flaw_of(named(all, "way"), "rigth").find("did you mean 'right'"), std::string::npos);
 }
 
+/// Bytes with and without a unit; no number that is no size.
+TEST(Options, SizesOfMemory) {
+  EXPECT_EQ(parse_memory("1000"), 1000U);
+  EXPECT_EQ(parse_memory("1k"), 1024U);
+  EXPECT_EQ(parse_memory("0.5K"), 512U);
+  EXPECT_EQ(parse_memory("500M"), 500U << 20U);
+  EXPECT_EQ(parse_memory("2G"), std::size_t{2} << 30U);
+  for (const char* wrong : {"", "M", "0", "-1", "0.5", "1T", "1 M", "1MM", "nan", "inf", "1e16"})
+    EXPECT_EQ(parse_memory(wrong), std::nullopt) << wrong;
+  struct Limits {
+    std::size_t bytes = 0;
+    double seconds = 0;
+  } limits;
+  const auto memory = limit_option<Limits>(
+      {.name = "max-memory", .text = "Most", .kind = OptionDescription::Kind::Memory},
+      [](auto& r) -> auto& { return r.bytes; });
+  const auto time = limit_option<Limits>(
+      {.name = "timeout", .text = "Longest", .low = 0, .between = true},
+      [](auto& r) -> auto& { return r.seconds; });
+  EXPECT_EQ(memory.value(limits), std::nullopt);
+  EXPECT_EQ(time.value(limits), std::nullopt);
+  memory.assign(limits, "2k");
+  time.assign(limits, "0.5");
+  EXPECT_EQ(memory.value(limits), "2048");
+  EXPECT_EQ(time.value(limits), "0.5");
+  EXPECT_NE(flaw_of(memory, "2 GB"), "");
+  EXPECT_EQ(flaw_of(time, "0"), "must be a number above 0, without a unit, not 0");
+  EXPECT_EQ(range_words(time), "above 0");
+}
+
+/// Numbers by name, numbers that are lengths, and numbers without end, which state nothing.
+TEST(Options, OtherMembers) {
+  struct Motion {
+    std::map<std::string, double> joints;
+    double resolution = 1e-5, work = std::numeric_limits<double>::infinity();
+  } motion;
+  const std::vector<Option<Motion>> all{
+      option<Motion>(
+          {.name = "joint", .text = "Value"}, [](auto& r) -> auto& { return r.joints; }),
+      option<Motion>(
+          {.name = "resolution", .text = "Resolution", .absolute = true},
+          [](auto& r) -> auto& { return r.resolution; }),
+      option<Motion>(
+          {.name = "work", .text = "Work"}, [](auto& r) -> auto& { return r.work; })};
+  EXPECT_EQ(record_of(all, motion), "");
+  EXPECT_EQ(value_words(all[1]), "LENGTH");
+  EXPECT_NE(flaw_of(all[1], "1%"), "");
+  EXPECT_NE(flaw_of(all[0], "a=1\na=2"), "");
+  EXPECT_EQ(read_record(all, "--joint b=0.25 --joint a=1 --resolution 0.5 --work 3", motion), "");
+  EXPECT_EQ(motion.joints, (std::map<std::string, double>{{"a", 1}, {"b", 0.25}}));
+  EXPECT_EQ(motion.resolution, 0.5);
+  EXPECT_EQ(record_of(options_named(all, {"work", "joint"}), motion),
+            "--work 3 --joint a=1 --joint b=0.25");
+  EXPECT_THROW(option_named(all, "none"), Error);
+}
+
 TEST(Options, RecordsAreReadBack) {
   const auto all = options();
   EXPECT_EQ(record_of(all, Request{}), "--max-count 64");

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <string>
 
+#include "support/temporary_folder.h"
+
 namespace kaboum::certify {
 namespace {
 
@@ -68,9 +70,8 @@ TEST(BentQuads, ArePartOfTheCachesKey) {
 }
 
 TEST(BentQuads, ASetOfAMeshDoesNotStandForThatOfItsFile) {
-  const fs::path folder = fs::temp_directory_path() / "kaboum-bent-quads";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
   std::string text = cube(false);
   text.append(40000, '#').append("\n");  // large enough to be known by its bytes
   std::ofstream(folder / "cube.obj") << text;
@@ -86,7 +87,6 @@ TEST(BentQuads, ASetOfAMeshDoesNotStandForThatOfItsFile) {
     plain.source = "cube.obj";
     ASSERT_TRUE(find_or_certify(read(text).mesh, file.sha256, plain, &cache));
   }
-  fs::remove_all(folder);
 }
 
 TEST(BentQuads, AreFollowedThroughAScale) {

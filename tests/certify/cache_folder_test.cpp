@@ -14,6 +14,8 @@
 #include <fstream>
 #include <thread>
 
+#include "support/temporary_folder.h"
+
 namespace kaboum::certify {
 namespace {
 
@@ -33,19 +35,12 @@ std::string content_of(std::size_t i, std::size_t size = 1000) {
 
 class CacheFolderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-folder-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = fs::path(name) / "cache";  // made when it is needed
-  }
-  void TearDown() override {
-    unsetenv("KABOUM_CACHE_SIZE");
-    fs::remove_all(folder_.parent_path());
-  }
+  void TearDown() override { unsetenv("KABOUM_CACHE_SIZE"); }
 
   fs::path path_of(std::size_t i) const { return folder_ / (key_of(i) + ".set"); }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path() / "cache";  // made when it is needed
   std::string flaw_;
 };
 

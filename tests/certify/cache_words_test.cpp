@@ -17,6 +17,7 @@
 
 #include "cache_words.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
@@ -67,13 +68,10 @@ CertifiedSet set_of(const geom::Mesh& mesh, SetRequest::Direction direction) {
 class InAFolder : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-words-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     io::write_file(folder_ / "part.off", io::serialise_mesh(bar(), io::Format::Off));
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 using CacheWords = InAFolder;
 

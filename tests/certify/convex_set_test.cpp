@@ -21,6 +21,7 @@
 
 #include "set_record.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
@@ -262,7 +263,7 @@ bool is_internal_error(const Work& work) {
 TEST(Certified, WhatIsMadeByDefaultClaimsNothing) {
   EXPECT_FALSE(CertifiedSet());
   EXPECT_TRUE(is_internal_error([] { (void)to_json(CertifiedSet()); }));
-  EXPECT_TRUE(is_internal_error([] { (void)claims(CertifiedMesh()); }));
+  EXPECT_TRUE(is_internal_error([] { (void)certificate_of(CertifiedMesh()); }));
   EXPECT_TRUE(is_internal_error([none = CertifiedMesh()] { (void)none.bytes(); }));
   EXPECT_TRUE(is_internal_error([none = CertifiedSweep()] { (void)none.certificate(); }));
   EXPECT_TRUE(is_internal_error([] {
@@ -300,18 +301,12 @@ TEST(SetRequest, OnePercentStandsForNoTarget) {
 
 class SetCacheTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-cache-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::vector<fs::path> entries() const {
     return {fs::directory_iterator(folder_), fs::directory_iterator()};
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {

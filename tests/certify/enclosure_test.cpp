@@ -14,6 +14,7 @@
 
 #include "enclosure_record.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
@@ -23,13 +24,7 @@ using verify::Answer;
 
 class EnclosureTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-enclosure-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    write("part.off", part());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write("part.off", part()); }
 
   static geom::Mesh part() { return test::torus(1, 0.3, 48, 24); }
   void write(const std::string& name, const geom::Mesh& mesh) const {
@@ -55,7 +50,8 @@ class EnclosureTest : public ::testing::Test {
     }
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 TEST_F(EnclosureTest, HoldsTheFilesMesh) {
@@ -77,7 +73,7 @@ TEST_F(EnclosureTest, HoldsTheFilesMesh) {
     EXPECT_EQ(verify::verify_distance(mesh, part(), c.distance_upper * 1.0001).answer,
               Answer::Verified);
     ASSERT_FALSE(c.claims.empty());
-    EXPECT_EQ(c.claims[0].kind, MeshClaim::Kind::Solid);
+    EXPECT_EQ(c.claims[0].kind, Claim::Kind::Solid);
     EXPECT_EQ(c.claims[0].basis, decide ? Basis::Bytes : Basis::Steps);
     EXPECT_EQ(c.claims[0].answer, Answer::Verified);
   }

@@ -14,6 +14,7 @@
 
 #include "link_polytopes.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
@@ -58,9 +59,6 @@ geom::Mesh cuboid(double height) {
 class InnerLinksTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-inner-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     const auto off = *io::format_from_name("off");
     io::write_file(folder_ / "part.off", io::serialise_mesh(part(), off));
     geom::Mesh sheet;
@@ -74,7 +72,6 @@ class InnerLinksTest : public ::testing::Test {
     request.set.effort = bcd::Effort::Fast;
     made_ = certify_inner_links(robot_, request);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   const CertifiedInnerLink& link(const std::string& name) const {
     for (const CertifiedInnerLink& l : made_.links)
@@ -91,7 +88,8 @@ class InnerLinksTest : public ::testing::Test {
     return out;
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
   robot::RobotFile robot_;
   InnerLinks made_;
 };

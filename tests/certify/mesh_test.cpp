@@ -12,13 +12,14 @@
 
 #include "mesh_certifier.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace kaboum::certify {
 namespace {
 
 namespace fs = std::filesystem;
 using bmesh::Direction;
-using Kind = MeshClaim::Kind;
+using Kind = Claim::Kind;
 using verify::Answer;
 
 geom::Mesh torus() { return test::torus(1, 0.3, 24, 12); }
@@ -60,7 +61,7 @@ std::vector<geom::Vec3> corners(const geom::Mesh& mesh) {
 
 std::set<Kind> kinds(const CertifiedMesh& made, Basis basis, Answer answer) {
   std::set<Kind> found;
-  for (const MeshClaim& claim : claims(made))
+  for (const Claim& claim : certificate_of(made).claims)
     if (claim.basis == basis && claim.answer == answer) found.insert(claim.kind);
   return found;
 }
@@ -151,9 +152,8 @@ TEST(CertifyMeshes, WhatIsNotReachedStandsForAllAfterIt) {
 }
 
 TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
-  std::string name = (fs::temp_directory_path() / "kaboum-mesh-XXXXXX").string();
-  ASSERT_NE(mkdtemp(name.data()), nullptr);
-  const fs::path folder = name, in = folder / "in.off", out = folder / "out.ply";
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.path(), in = folder / "in.off", out = folder / "out.ply";
   io::write_file(in, io::serialise_mesh(torus(), io::Format::Off));
   for (const bool inner : {false, true}) {
     const std::string command = std::string(KABOUM_BMESH_DECIMATE) + " " + in.string() + " -o " +
@@ -172,7 +172,6 @@ TEST(CertifyMesh, GivesTheBytesOfTheProgram) {
       EXPECT_EQ(made->bytes(), io::read_file(out)) << inner << decide;
     }
   }
-  fs::remove_all(folder);
 }
 
 /// Candidates from anywhere, as if decimation had made them.
@@ -304,7 +303,7 @@ TEST(CertifyMesh, WithoutDecidingClaimsSayWhatTheyRestOn) {
   request.measure = false;
   EXPECT_FALSE(certify_mesh(prepare_mesh(torus()), request)->certificate().original_to_result);
   request.direction = Direction::Any;
-  EXPECT_TRUE(claims(*certify_mesh(prepare_mesh(torus()), request)).empty());
+  EXPECT_TRUE(certificate_of(*certify_mesh(prepare_mesh(torus()), request)).claims.empty());
 }
 
 TEST(CertifyMesh, TrianglesThatBoundNoSolidAreFoundToStickOut) {

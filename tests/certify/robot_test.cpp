@@ -16,6 +16,7 @@
 
 #include "link_polytopes.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 #include "swept_motion.h"
 
 namespace kaboum::certify {
@@ -39,14 +40,10 @@ constexpr const char* kArm = R"(<robot name="arm">
 class RobotTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "kaboum-robot-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     write(part());
     std::ofstream(folder_ / "arm.urdf") << kArm;
     std::ofstream(folder_ / "quarter.csv") << "elbow\n0\n0.8\n1.5\n";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void write(const geom::Mesh& mesh) const {
     io::write_file(folder_ / "part.off", io::serialise_mesh(mesh, *io::format_from_name("off")));
@@ -72,7 +69,8 @@ class RobotTest : public ::testing::Test {
   }
   std::vector<char> bytes(const std::string& file) const { return io::read_file(folder_ / file); }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 TEST_F(RobotTest, LinksAreHeldInTheirFrames) {

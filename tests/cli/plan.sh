@@ -16,8 +16,8 @@ expect 0 '' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o p
 expect 2 'plan.png: plans are drawn as' "$P" show "$DOMAINS/$1/domain.kpl" problem.kpl --plan plan.json -o plan.png
 [ ! -e plan.png ] || fail "text was written to plan.png"
 grep -q '<svg' plan.svg || fail "show -o plan.svg draws no SVG"
-expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout nan
-expect 2 'seconds above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout -1
+expect 2 'number above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout nan
+expect 2 'number above 0' "$P" solve "$DOMAINS/$1/domain.kpl" problem.kpl --timeout -1
 
 # The optimal plan of four stacked objects has seven moves; another problem's plan is invalid.
 "$DOMAINS/stacked/make-problem" 4 >problem.kpl

@@ -206,6 +206,47 @@ TEST(Check, RunsThatMeetAreReplayedAtOnceWhereTheyAreMany) {
   }
 }
 
+/// All bottles are looked at first; of each it matters later whether it is empty, and nothing of
+/// those that are done with.
+TEST(Check, NodesAreReplayedAFewTimesEach) {
+  for (const char* n : {"4", "12"}) {
+    const Model m = scenario("bartender", n);
+    const Plan plan = solved(m, Algorithm::Greedy).plan;
+    const CheckResult r = check(m, plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+    EXPECT_LE(r.states, 2 * plan.nodes.size());
+    EXPECT_EQ(r.leaves, 1);
+  }
+}
+
+/// What is known of p differs, and the condition holds either way; then one of the ways fails.
+TEST(Check, AConditionThatHoldsMayFailFurtherDown) {
+  const auto verdict = [](const std::string& spoil, const std::string& one) {
+    const Model m = model_of(
+        "predicates: p, q, s, done\ninit: K(!p), K(!q)\naction look effects: add(Kw, s)\n"
+        "action one preconds: K(s) effects: " +
+        one +
+        "\naction two preconds: K(!s) effects: add(Kf, p)\n"
+        "action act effects: add(Kf, done)" +
+        spoil + "\naction rest preconds: K(p) | K(q) effects: \ngoal: K(done) & (K(p) | K(q))");
+    const Plan plan =
+        read_plan(m,
+                  R"({"format":"kaboum-plan","version":1,"domain":"","root":0,"nodes":[
+      {"action":"look","arguments":[],"branch":{"predicate":"s","arguments":[],
+        "cases":[{"value":true,"next":1},{"value":false,"next":2}]}},
+      {"action":"one","arguments":[],"next":3},{"action":"two","arguments":[],"next":3},
+      {"action":"act","arguments":[],"next":4},{"action":"rest","arguments":[],"next":"goal"}]})",
+                  "plan.json");
+    return check(m, plan);
+  };
+  const CheckResult good = verdict("", "add(Kf, q)");
+  EXPECT_TRUE(good.valid) << good.violation;
+  EXPECT_EQ(good.states, 6);  // each node once, and the end
+  EXPECT_FALSE(verdict(", add(Kf, !p)", "add(Kf, q)").valid);
+  EXPECT_FALSE(verdict(", add(Kf, !q)", "add(Kf, q)").valid);
+  EXPECT_FALSE(verdict("", "del(Kf, !q)").valid);  // neither is known then
+}
+
 TEST(Check, TreeAndGraphAreBothValid) {
   const Model m = scenario("bartender", "3");
   const Plan plan = good_plan(m);

@@ -569,6 +569,7 @@ class RandomTask {
       for (const std::string f : {"next", "ok"}) {
         const std::string name = f + std::to_string(i);
         all[name] = [this, name](const Question& q) { return answer(name, q); };
+        if (seed_ % 2 != 0) all[name].refuse_early();
       }
     all["end"] = [this](const Question& q) { return answer("end", q); };
     return all;
@@ -770,6 +771,33 @@ TEST(Handles, ObjectsThatDoNotMatterMultiplyNothing) {
                 "action push preconds: K(isRemoved(o7)) & let ?p = extern(held(o1, home))"
                 " effects: add(Kf, pose(o1) = ?p)\n");
     EXPECT_EQ(with(bound(text, b), a).outcome, Outcome::Solved) << static_cast<int>(a);
+  }
+}
+
+/// Functions that refuse early are asked before the search, and no further than they read what
+/// their arguments name. Where they found nothing, no search helps either, and nothing is proved.
+TEST(Handles, WhatIsRefusedEarlyIsKnownBeforeTheSearch) {
+  for (const bool proved : {true, false}) {
+    int calls = 0, whole = 0;
+    ExternalBindings b = geometry(calls);
+    b["reach"] = [&](const Question& q) {
+      if (q.arguments[0] == "o7")
+        return proved ? Answer::impossible("out of reach") : Answer::not_found("out of reach");
+      q.state.value("pose", {q.arguments[0]});
+      q.state.value("pose", {"o2"});  // nothing says that it is named, but for o2
+      ++whole;
+      return Answer::found("at " + q.arguments[0]);
+    };
+    b["reach"].refuse_early();
+    const Solution s = with(bound(force_sensing(20, "home"), b), Algorithm::Greedy);
+    EXPECT_EQ(s.outcome, proved ? Outcome::Unsolvable : Outcome::Limit);
+    expect_says(proved ? s.refused : s.limit, "reach(o7, home, p7): out of reach");
+    EXPECT_EQ(s.statistics.expanded, 0U);
+    EXPECT_LE(whole, 10);  // o2, in every attempt
+    b["reach"] = [&](const Question& q) { return Answer::found("at " + q.arguments[0]); };
+    b["reach"].refuse_early();
+    EXPECT_EQ(with(bound(force_sensing(20, "home"), b), Algorithm::Greedy).outcome,
+              Outcome::Solved);
   }
 }
 

@@ -161,14 +161,6 @@ def test_plans_are_carried_out(tmp_path):
     ours, theirs = (sorted((tmp_path / name).iterdir()) for name in ("ours", "theirs"))
     assert [f.name for f in ours] == [f.name for f in theirs] and ours
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(ours, theirs))
-    for tree in (False, True):
-        notes = kaboum.write_plan_page(*files, solution, tmp_path / "ours.html", scene=scene, tree=tree)
-        code, text = run("kaboum-plan", "show", *files, "--scene", scene, "--plan", tmp_path / "plan.json",
-                         "--html", tmp_path / "theirs.html", *(["--tree"] if tree else []))
-        assert code == 0, text
-        page = (tmp_path / "ours.html").read_bytes()
-        assert page == (tmp_path / "theirs.html").read_bytes() and b"<title>Plan " in page
-        assert all(note in text for note in notes)
     one = kaboum.run_plan(*files, solution, scene=scene, rate=100, outcomes=7)
     assert one and one.counts == {**one.counts, "branches": 1, "samples": done.counts["samples"]}
     too_fast = kaboum.run_plan(*files, solution, scene=scene, rate=100, outcomes=7, time_optimal=True)
@@ -184,11 +176,6 @@ def test_plans_are_carried_out(tmp_path):
         kaboum.run_plan(*files, solution, scene=scene, progress=stop)
     with pytest.raises(Enough):
         kaboum.check_plan(*files, solution, scene=scene, progress=stop)
-    with pytest.raises(Enough):
-        kaboum.write_plan_page(*files, solution, tmp_path / "none.html", scene=scene, progress=stop)
-    assert not (tmp_path / "none.html").exists()
-    with pytest.raises(kaboum.Error, match="scene"):
-        kaboum.write_plan_page(*files, solution, tmp_path / "none.html", scene=None)
     with pytest.raises(kaboum.Error, match="rate"):
         kaboum.run_plan(*files, solution, scene=scene, rate=0)
     with pytest.raises(kaboum.Error, match="outcomes"):

@@ -3,7 +3,6 @@
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 
@@ -38,16 +37,7 @@ def world(arm):
 
 
 @pytest.fixture
-def task(tmp_path):
-    """Domain and problem of an example."""
-    place = SOURCE / "examples" / "domains" / "stacked"
-    text = subprocess.run([sys.executable, place / "make-problem", "3"], check=True, capture_output=True).stdout
-    (tmp_path / "problem.kpl").write_bytes(text)
-    return place / "domain.kpl", tmp_path / "problem.kpl"
-
-
-@pytest.fixture
-def calls(arm, world, task, tmp_path):
+def calls(arm, world, tmp_path):
     """Calls that take `progress`, by name."""
     ring = torus(32, 16)
     kaboum.write(ring, tmp_path / "ring.ply")
@@ -56,7 +46,6 @@ def calls(arm, world, task, tmp_path):
     subprocess.run([SOURCE / "examples" / "tutorial" / "make-robot", tmp_path / "six"], check=True)
     path = [[-0.3, 0], [0.2, 0.2], [0, 0]]
     rows = np.zeros((100, 2))
-    plan = kaboum.solve(*task)
     certified = kaboum.certify_robot(arm, epsilon="5%")
     return {
         "check": lambda **k: world.check(rows, **k),
@@ -69,17 +58,13 @@ def calls(arm, world, task, tmp_path):
         "sweep": lambda **k: kaboum.sweep(arm, path, epsilon=0.01, **k),
         "wrap": lambda **k: kaboum.wrap(ring, **k),
         "make_scene": lambda **k: kaboum.make_scene(tmp_path / "cell.json", robots={"arm": arm}, force=True, no_cache=True, **k),
-        "nearest": lambda **k: world.nearest(rows, **k),
-        "draw_plan": lambda **k: kaboum.draw_plan(*task, plan, tree=True, **k),
-        "convert_domain": lambda **k: kaboum.convert_domain(*task, to="kpl", **k),
         "cache_entries": lambda **k: kaboum.cache_entries(**k),
         "write": lambda **k: certified.write(tmp_path / "written", srdf=True, **k),
         "certify_robot": lambda **k: kaboum.certify_robot(arm, epsilon="5%", no_cache=True, **k),
     }
 
 
-NAMES = ["check", "are_free", "check_motion", "find_path", "inverse_kinematics", "replay", "sweep", "wrap", "make_scene", "certify_robot", "nearest",
-         "draw_plan", "convert_domain", "cache_entries", "write"]
+NAMES = ["check", "are_free", "check_motion", "find_path", "inverse_kinematics", "replay", "sweep", "wrap", "make_scene", "certify_robot", "cache_entries", "write"]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -136,23 +121,6 @@ def test_interrupt_ends_checks_of_configurations(world):
     rows = np.zeros((5_000_000, 2))
     interrupted(lambda: world.are_free(rows), 30)
     interrupted(lambda: world.check(rows), 30)
-
-
-def test_the_nearest_pairs_of_rows_are_those_of_each(world):
-    rows = np.array([[0, 0], [0.3, 0.1], [-0.2, 0.2]])
-    assert world.nearest(rows) == [world.nearest(row) for row in rows]
-    interrupted(lambda: world.nearest(np.zeros((2_000_000, 2))), 30)
-
-
-def test_drawing_itself_is_told_of(task):
-    def stop_at_drawing(stage):
-        if stage == "drawing the plan":
-            raise Enough
-
-    plan = kaboum.solve(*task)
-    for form in ("text", "dot", "svg"):
-        with pytest.raises(Enough):
-            kaboum.draw_plan(*task, plan, format=form, progress=stop_at_drawing)
 
 
 def test_interrupt_ends_inverse_kinematics(calls, tmp_path):

@@ -61,6 +61,23 @@ def test_outer_and_inner(ring):
     assert not refuted and refuted.answer == "refuted" and refuted.claims["solid"]["depth"] > 0
 
 
+def test_certificates_have_one_shape(ring):
+    results = {
+        "outer": [kaboum.decimate(ring, epsilon="2%"), kaboum.decompose(ring, epsilon="5%", effort="fast"), kaboum.wrap(ring)],
+        "inner": [kaboum.decimate(ring, epsilon="2%", direction="inner")],
+    }
+    for direction, made in results.items():
+        for result in made:
+            certificate = result.certificate
+            assert set(certificate) == {"direction", "of", "claims", "distance"}
+            assert certificate["direction"] == direction
+            assert certificate["claims"] and all(c["answer"] == "verified" and c["basis"] for c in certificate["claims"])
+            if certificate["distance"]:
+                assert 0 <= certificate["distance"]["lower"] <= certificate["distance"]["upper"]
+            if isinstance(result, kaboum.CertifiedSet):
+                assert tuple(certificate["distance"].values()) == result.distance
+
+
 def test_series_is_nested(ring):
     fine, coarse = kaboum.decimate(ring, vertices=[300, 100])
     assert len(fine.vertices) == 300 and len(coarse.vertices) == 100

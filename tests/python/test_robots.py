@@ -133,6 +133,12 @@ def test_joints_without_a_column(arm, tmp_path):
         kaboum.sweep(arm, tmp_path / "p.csv", joint="slide=0.1")
 
 
+def test_notes_name_options_as_keywords(arm, tmp_path):
+    (tmp_path / "p.csv").write_text("shoulder,slide\n13,0\n13.01,0\n")
+    notes = kaboum.sweep(arm, tmp_path / "p.csv", epsilon=0.02, ignore_limits=True).notes
+    assert any("if these are degrees, give degrees" in note for note in notes) and "«" not in "".join(notes), notes
+
+
 def test_robot_held_by_a_robot(arm, tmp_path):
     hull = kaboum.decompose(arm.parent / "tool.ply", max_bodies=1)
     hull.write(tmp_path / "hull.obj")

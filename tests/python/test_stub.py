@@ -70,26 +70,56 @@ def test_class(name):
             assert parameters(node) == [p for p in of_docstring(getattr(there, member)) if p[0] != "self"]
 
 
-# Program, and parameters that are no options of the table.
-PROGRAMS = {"decompose": ("bcd-decompose", {"mesh"}), "sweep": ("sweep-approx", {"robot", "path", "verify"})}
+# By function of Python: its tables, its keywords that are no options, and the program that has the tables' options, too.
+RUNS = {"threads", "progress"}
+FRONT_ENDS = {
+    "decimate": (["decimate"], {"output_format"} | RUNS, "bmesh-decimate"),
+    "decompose": (["decompose"], {"no_cache"} | RUNS, "bcd-decompose"),
+    "certify_robot": (["shapes", "certify_robot"], {"epsilons", "robot_bodies", "robot_vertices", "partial", "no_cache"} | RUNS,
+                      "bcd-decompose"),
+    "decimate_robot": (["shapes", "decimate_robot"], {"epsilons", "output_format", "partial", "no_cache"} | RUNS, "bmesh-decimate"),
+    "sweep": (["sweep"], {"verify", "no_cache"} | RUNS, "sweep-approx"),
+    "hausdorff": (["hausdorff"], RUNS, "hausdorff-eval"),
+    "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
+    "World.check_motion": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
+    "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
+    "World.find_path": (["find_path"], {"robot", "progress"}, "kaboum-move"),
+    "make_scene": (["make_scene"], {"robots", "objects", "regions", "at", "scale", "no_cache"} | RUNS, "kaboum-scene make"),
+    "World.link_pairs": (["link_pairs"], {"robot", "progress"}, "kaboum-scene pairs"),
+    "inverse_kinematics": (["inverse_kinematics"], {"tip", "base", "pose_of", "reference", "progress"}, "kaboum-ik"),
+    "solve": (["solve", "task"], {"scene", "assume", "no_cache"} | RUNS, "kaboum-plan solve"),
+    "check_plan": (["task"], {"scene"} | RUNS, "kaboum-plan check"),
+    "draw_plan": (["task"], {"scene", "format", "tree"}, "kaboum-plan show"),
+    "run_plan": (["run_plan", "task"], {"scene", "outcomes", "trajectories"} | RUNS, "kaboum-plan run"),
+}
 
 
-@pytest.mark.parametrize("function", PROGRAMS)
+def options_in_help(program):
+    name, *command = program.split()
+    path = pathlib.Path(os.environ["KABOUM_BIN"]) / name
+    text = subprocess.run([path, *command, "--help"], check=True, capture_output=True, text=True).stdout
+    return {option for line in re.findall(r"^  (-[-a-z,]+)", text, re.M) for option in line.split(",")}
+
+
+def test_every_table_has_front_ends():
+    assert set(kaboum._kaboum._option_tables()) == {t for tables, _, _ in FRONT_ENDS.values() for t in tables}
+
+
+@pytest.mark.parametrize("function", FRONT_ENDS)
 def test_every_front_end_has_every_option(function):
-    table = kaboum._kaboum._option_tables()[function]
-    name, own = PROGRAMS[function]
-    program = pathlib.Path(os.environ["KABOUM_BIN"]) / name
-    text = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
-    there = set(re.findall(r"^  (--[a-z-]+)", text, re.M))
-    node = next(n for n in FUNCTIONS if n.name == function)
+    tables, own, program = FRONT_ENDS[function]
+    owner, _, name = function.rpartition(".")
+    nodes = [n for n in CLASSES[owner].body if isinstance(n, ast.FunctionDef)] if owner else FUNCTIONS
+    node = next(n for n in nodes if n.name == name)
+    documented = getattr(getattr(kaboum, owner) if owner else kaboum, name)
+    all_tables = kaboum._kaboum._option_tables()
+    options = [o for table in tables for o in all_tables[table]]
     keywords = {name for name, kind, _ in parameters(node) if kind == "keyword"}
-    for option in table:
-        assert f"--{option['name']}" in there
-        assert option["keyword"] in keywords
-        assert f"\n{option['keyword']} : {option['type']}" in getattr(kaboum, function).__doc__
-    assert keywords - own - {o["keyword"] for o in table} == {"no_cache", "threads", "progress"}
-    stated = {name for name, _, _ in of_docstring(getattr(kaboum, function))}
-    assert stated == keywords | own
+    assert keywords == own | {o["keyword"] for o in options}
+    assert {name for name, kind, _ in of_docstring(documented) if kind == "keyword"} == keywords
+    for option in options:
+        assert f"\n{option['keyword']} : {option['type']}" in documented.__doc__
+    assert {f"--{o['name']}" for o in options} <= options_in_help(program)
 
 
 @pytest.mark.parametrize("given, says", [

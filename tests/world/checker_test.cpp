@@ -70,7 +70,17 @@ TEST(Checker, FindsTheContactsThatAllPairsInRationalNumbersFind) {
     EXPECT_EQ(checker.find_contact(state, scratch).has_value(), !expected.empty());
     const auto nearest = checker.find_nearest(state, scratch, {});
     ASSERT_TRUE(nearest);
-    EXPECT_EQ(nearest->clearance.lower == 0, !expected.empty());
+    EXPECT_EQ(nearest->clearance.lower <= 0, !expected.empty());
+    double deepest = 0;
+    for (Contact& c : checker.find_contacts(state, scratch, {})) {
+      checker.measure_depth(c, state, scratch);
+      ASSERT_TRUE(c.depth);
+      EXPECT_LE(c.depth->lower, c.depth->upper);
+      deepest = std::max(deepest, c.depth->lower);
+    }
+    if (deepest > 0) {
+      EXPECT_EQ(nearest->clearance.upper, -deepest) << i;
+    }
     contacts += expected.empty() ? 0 : 1;
     ++states;
   }

@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
     const tools::ThreadLimit limit(options.common.threads);
     const bool robot = tools::is_robot(options.input);
     if (robot && (options.from == "collision" || options.from == "visual"))
-      options.robot.geometry = std::exchange(options.from, {});
+      options.robot.shapes.visual = std::exchange(options.from, {}) == "visual";
     if (!options.from.empty()) return extract(app, options);
     if (options.mesh.preparation.mode != certify::PreparationOptions::Mode::Auto)
       tools::require_absent(app, "--prepare " + options.value("prepare"), {"--require-closed"});

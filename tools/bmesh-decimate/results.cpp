@@ -231,7 +231,7 @@ namespace {
 
 using page::Layer;
 
-std::string words_of(const certify::MeshClaim& claim) {
+std::string words_of(const certify::Claim& claim) {
   std::string text = std::string(name_of(claim.answer)) + ", " + name_of(claim.basis);
   if (claim.distance) text = "at most " + formatted(*claim.distance) + ": " + text;
   if (!claim.reason.empty()) text += ": " + claim.reason;
@@ -271,7 +271,7 @@ std::string page_of(const DecimationCase& run) {
     result.shapes.push_back(
         page::measured(made.artefact(), extent, page::distance_to(to_original)));
     preview.facts.emplace_back(result.name, summary_of(run, i));
-    for (const certify::MeshClaim& claim : claims(made))
+    for (const certify::Claim& claim : certificate_of(made).claims)
       preview.facts.emplace_back(name_of(claim.kind), words_of(claim));
     if (last) {
       const geom::DistanceQuery to_result(made.artefact());

@@ -2,7 +2,9 @@
 
 #include "arguments.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/base/length_unit.h>
+#include <kaboum/base/option.h>
 #include <kaboum/base/parse_length.h>
 
 #include <CLI/CLI.hpp>
@@ -34,6 +36,13 @@ std::string extension_of(const std::string& name) {
 }  // namespace
 
 std::optional<Length> parse_length(const std::string& text) { return kaboum::parse_length(text); }
+
+std::size_t parse_memory(const std::string& text, const char* option) {
+  if (text.empty()) return 0;
+  if (const auto bytes = kaboum::parse_memory(text)) return *bytes;
+  throw Error(ErrorCode::InvalidArgument,
+              std::string(option) + ": expected a size such as 500M or 2G");
+}
 
 CLI::Validator number_from(double low, double high) {
   std::ostringstream text;

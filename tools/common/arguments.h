@@ -2,6 +2,7 @@
 
 #include <kaboum/base/length.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,10 @@ using kaboum::Length;
 
 /// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
 std::optional<Length> parse_length(const std::string& text);
+
+/// Bytes of "500M", "2G" or "1000". Empty: 0.
+/// @throws Error{InvalidArgument} naming the option
+std::size_t parse_memory(const std::string& text, const char* option);
 
 /// Refuses what is not a number from `low` to `high`, and says so.
 CLI::Validator number_from(double low, double high);

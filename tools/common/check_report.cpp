@@ -24,17 +24,31 @@ std::string describe(const world::World& world, const world::Contact& contact) {
     out << " collide";
   else
     out << " are within epsilon: no farther apart than " << contact.epsilon;
+  if (contact.depth) {
+    const auto& [lower, upper, direction] = *contact.depth;
+    out << (contact.certain ? ", " : "; their sets are ");
+    // As many digits as both ends share.
+    if (upper - lower <= 1e-3 * upper)
+      out << upper << " deep";
+    else
+      out << lower << " to " << upper << " deep";
+  }
   out << ", at [" << contact.place.x() << ", " << contact.place.y() << ", " << contact.place.z()
       << "]";
   return out.str();
 }
 
 Json to_json(const world::World& world, const world::Contact& contact) {
-  return {{"answer", answer_of(contact)},
-          {"pair", {world.name_of(contact.items[0]), world.name_of(contact.items[1])}},
-          {"bodies", {contact.bodies.a, contact.bodies.b}},
-          {"epsilon", contact.epsilon},
-          {"place", to_json(contact.place)}};
+  Json out = {{"answer", answer_of(contact)},
+              {"pair", {world.name_of(contact.items[0]), world.name_of(contact.items[1])}},
+              {"bodies", {contact.bodies.a, contact.bodies.b}},
+              {"epsilon", contact.epsilon},
+              {"place", to_json(contact.place)}};
+  if (contact.depth)
+    out["depth"] = {{"lower", contact.depth->lower},
+                    {"upper", contact.depth->upper},
+                    {"direction", to_json(contact.depth->direction)}};
+  return out;
 }
 
 std::string describe(const world::World& world, const world::MotionAnswer& answer) {

@@ -115,9 +115,6 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str()
       ->type_name("N");
-  app.add_option("--seed", options.seed, "Seed of whatever is random; the result itself is not")
-      ->capture_default_str()
-      ->type_name("N");
   app.add_flag("--quiet", options.quiet, "Print errors only");
 }
 

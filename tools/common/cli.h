@@ -46,7 +46,6 @@ void require_absent(const CLI::App& app, const std::string& option,
 struct CommonOptions {
   std::string report;
   int threads = 0;
-  std::uint64_t seed = 1;
   bool quiet = false;
 };
 void add_common_options(CLI::App& app, CommonOptions& options);

@@ -32,29 +32,25 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
         name, [assign] { assign("true"); }, text);
     return;
   }
-  if (is_repeated(option)) {
-    app.add_option_function<std::vector<std::string>>(
-           name,
-           [name, assign, &option](const std::vector<std::string>& parts) {
-             const std::string value = option_text::of(parts, option);
-             const std::string flaw = flaw_of(option, value);
-             if (!flaw.empty()) throw CLI::ValidationError(name, flaw);
-             assign(value);
-           },
-           text)
-        ->type_name(value_words(option));
+  const bool names = option.kind == OptionDescription::Kind::Names;
+  if (is_repeated(option) || names) {
+    CLI::Option* const added =
+        app.add_option_function<std::vector<std::string>>(
+               name,
+               [name, assign, option](const std::vector<std::string>& parts) {
+                 const std::string value = option_text::of(parts, option);
+                 const std::string flaw = flaw_of(option, value);
+                 if (!flaw.empty()) throw CLI::ValidationError(name, flaw);
+                 assign(value);
+               },
+               text)
+            ->type_name(value_words(option));
+    if (names) added->delimiter(',')->allow_extra_args(false);
     return;
   }
   app.add_option_function<std::string>(name, assign, text)
-      ->check([&option](const std::string& value) { return flaw_of(option, value); })
+      ->check([option](const std::string& value) { return flaw_of(option, value); })
       ->type_name(value_words(option));
-}
-
-void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
-  app.add_flag_callback(
-         "--require-closed", [&options] { options.holes = geom::Holes::Refuse; },
-         "The same as --holes refuse")
-      ->excludes("--holes");
 }
 
 std::string with_dashes(const std::string& text) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <kaboum/base/option.h>
-#include <kaboum/certify/preparation_options.h>
 
 #include <functional>
 #include <set>
@@ -29,14 +28,11 @@ void add_request_options(CLI::App& app, const std::vector<Option<Request>>& opti
                          Request& request, std::set<std::string>& stated) {
   for (const Option<Request>& option : options)
     add_request_option(app, option, default_of(option),
-                       [&request, &stated, &option](const std::string& value) {
+                       [&request, &stated, option](const std::string& value) {
                          option.assign(request, value);
                          stated.insert(option.name);
                        });
 }
-
-/// Adds --require-closed, the same as --holes refuse under the name that it had.
-void add_require_closed(CLI::App& app, certify::PreparationOptions& options);
 
 /// A library's words about options as command lines spell these: "{max-bodies}" as "--max-bodies".
 std::string with_dashes(const std::string& text);

@@ -1,7 +1,7 @@
 // The program hausdorff-eval: options, distance::Comparison, lines, report and pictures.
 
 #include <kaboum/base/error.h>
-#include <kaboum/distance/compare.h>
+#include <kaboum/distance/compare_options.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
@@ -12,8 +12,10 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "common/cli.h"
+#include "common/request_options.h"
 #include "picture/heatmap.h"
 #include "picture/png_file.h"
 #include "picture/refine.h"
@@ -28,10 +30,8 @@ using tools::Json;
 
 struct Options {
   std::string a, b, input_format, a_as = "auto", b_as = "auto";
-  bool solid = false;
-  double gap = 1e-3;
-  std::uint64_t samples = 100000;
-  std::string backend = "embree";
+  distance::CompareOptions compare;
+  std::set<std::string> stated;  ///< names of these options that were stated
   std::string at_most;
   std::string csv, heatmap;
   int width = 1600, height = 800;
@@ -51,21 +51,8 @@ std::string whole_number(const std::string& text) {
 void describe(CLI::App& app, Options& o) {
   app.add_option("A", o.a, "Mesh or convex set (- for stdin)")->required()->type_name("A");
   app.add_option("B", o.b, "The other one")->required()->type_name("B");
-  app.add_flag("--solid", o.solid,
-               "Measure solid to solid: 0 inside the other one, the largest distance also of inner "
-               "points, no interior folds; both must be closed chains or sets");
-  app.add_option(
-         "--gap", o.gap,
-         "Wished relative width of the certified intervals, from 1e-9 to 1; never finer than "
-         "1e-9 of the diagonal")
-      ->check(tools::number_from(1e-9, 1))
-      ->capture_default_str()
-      ->type_name("G");
-  app.add_option("--samples", o.samples, "Points for mean and rms, each way, from 2 to 1e9")
-      ->transform(whole_number)
-      ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1000000000}).description(""))
-      ->capture_default_str()
-      ->type_name("N");
+  tools::add_request_options(app, distance::compare_options(), o.compare, o.stated);
+  app.get_option("--samples")->transform(whole_number);
   const std::string kinds = "auto|mesh|set";
   for (auto* kind : {&o.a_as, &o.b_as})
     app.add_option(
@@ -86,9 +73,6 @@ void describe(CLI::App& app, Options& o) {
                                       : "must be a positive number, or a percentage such as 0.5%";
       })
       ->type_name("LENGTH|P%");
-  app.add_option("--backend", o.backend, "Search structure: both give certified intervals [embree]")
-      ->check(CLI::IsMember({"embree", "own"}).description(""))
-      ->type_name("embree|own");
   app.add_option("--csv", o.csv, "Write the numbers as CSV, a line each way (- for stdout)")
       ->type_name("FILE");
   app.add_option("--heatmap", o.heatmap,
@@ -99,7 +83,6 @@ void describe(CLI::App& app, Options& o) {
       ->type_name("NAME");
   tools::add_unit_options(app, o.unit, "A");
   tools::add_common_options(app, o.common);
-  app.get_option("--seed")->description("Seed of the points behind mean and rms");
   app.footer(
       "Measures surface to surface, or solid to solid with --solid.\n"
       "Prints one-sided distances both ways and the Hausdorff distance, in the files' unit and "
@@ -124,20 +107,15 @@ void check_files(const Options& o) {
 }
 
 distance::CompareOptions compare_options(const Options& o, tools::Progress& progress) {
-  distance::CompareOptions c;
-  c.solid = o.solid;
-  c.relative_gap = o.gap;
-  c.samples = o.samples;
-  c.seed = o.common.seed;
-  c.backend = o.backend == "own" ? distance::Backend::Own : distance::Backend::Embree;
-  c.progress = [&progress](const std::string& stage) { progress.show(stage); };
-  return c;
+  distance::CompareOptions out = o.compare;
+  out.progress = [&progress](const std::string& stage) { progress.show(stage); };
+  return out;
 }
 
 /// Bytes of the file asked for.
 std::vector<char> heatmap(const Options& o, const Comparison& c, const distance::Compared& result) {
   if (tools::is_page(o.heatmap)) {
-    const std::string page = tools::page_of(c, result, {o.a, o.b}, o.solid);
+    const std::string page = tools::page_of(c, result, {o.a, o.b}, o.compare.solid);
     return {page.begin(), page.end()};
   }
   const double part = c.diagonal() / 100;
@@ -216,7 +194,7 @@ int run(const Options& o) {
     return tools::read_shape(file, {as, o.input_format, unit});
   };
   std::array<tools::ShapeFile, 2> files{read(o.a, o.a_as, o.unit), read(o.b, o.b_as, {})};
-  if (o.solid)
+  if (o.compare.solid)
     for (tools::ShapeFile& file : files) note_what_bounds_nothing(file);
   io::require_same_unit(o.a, files[0].unit, o.b, files[1].unit);
   const double reading = since(start);
@@ -233,15 +211,15 @@ int run(const Options& o) {
   progress.show("colours");
   if (!o.heatmap.empty()) io::write_file(o.heatmap, heatmap(o, comparison, result));
   const double measuring = since(built);
-  const tools::ComparisonReport report{files, comparison, result, o.solid};
+  const tools::ComparisonReport report{files, comparison, result, o.compare.solid};
   if (!o.csv.empty()) io::write_file(o.csv, report.csv());
   if (!o.common.report.empty()) {
     Json json = report.json();
-    json["options"] = {{"gap", o.gap},
+    json["options"] = {{"gap", o.compare.relative_gap},
                        {"scale", o.unit.scale},
-                       {"samples", o.samples},
-                       {"seed", o.common.seed},
-                       {"backend", o.backend}};
+                       {"samples", o.compare.samples},
+                       {"seed", o.compare.seed},
+                       {"backend", value_of(distance::compare_options(), "backend", o.compare)}};
     json["resources"] = {{"seconds_reading", reading},
                          {"seconds_building", building},
                          {"seconds_measuring", measuring},

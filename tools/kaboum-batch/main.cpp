@@ -11,7 +11,6 @@
 #include <iostream>
 
 #include "common/cli.h"
-#include "common/memory_size.h"
 
 namespace {
 

@@ -4,14 +4,14 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/path_file.h>
-#include <kaboum/world/motion_check.h>
+#include <kaboum/robot/path_options.h>
+#include <kaboum/world/check_options.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <sstream>
 
 #include "common/check_report.h"
-#include "common/motion_options.h"
 #include "common/scene_file.h"
 #include "inside.h"
 #include "options.h"
@@ -24,7 +24,7 @@ using namespace kaboum;  // the tool's own names are few
 /// "0,1.5,-2": a value per variable.
 robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot& robot) try {
   const robot::NamedPath named = robot::parse_path_csv(o.configuration, "--configuration");
-  const std::size_t given = named.waypoints.front().size() + o.joints.size(),
+  const std::size_t given = named.waypoints.front().size() + o.reading.fixed.size(),
                     needed = robot.variables.size();
   if (named.joints.empty() && (named.waypoints.size() > 1 || given != needed)) {
     std::string names;
@@ -34,10 +34,9 @@ robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot
                     " values are expected, one for each of " + names +
                     (given == needed ? ", on one line" : ", not " + std::to_string(given)));
   }
-  robot::Path path =
-      robot::arrange(named, robot, "--configuration", false, tools::fixed_joints(o.joints));
-  if (o.degrees) path = robot::from_degrees(std::move(path), robot);
-  if (!o.ignore_limits) robot::require_within_limits(path, robot, "--configuration");
+  robot::Path path = robot::arrange(named, robot, "--configuration", false, o.reading.fixed);
+  if (o.reading.degrees) path = robot::from_degrees(std::move(path), robot);
+  if (o.reading.check_limits) robot::require_within_limits(path, robot, "--configuration");
   return path;
 } catch (const Error& error) {  // the command line's fault, no file's
   throw Error(ErrorCode::InvalidArgument, error.what());
@@ -48,38 +47,42 @@ void say(const tools::CheckOptions& o, const std::string& line) {
   if (!o.common.quiet) std::cout << line << '\n';
 }
 
+std::vector<double> configuration_at(const robot::Path& path, std::size_t segment, double share) {
+  const std::vector<double>&from = path[segment],
+        &to = path[std::min(segment + 1, path.size() - 1)];
+  std::vector<double> out = from;
+  for (std::size_t i = 0; i < from.size(); ++i) out[i] += share * (to[i] - from[i]);
+  return out;
+}
+
 int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std::size_t robot,
                const robot::Path& path, tools::Json& report) {
   const world::Checker checker(scene.world);
   const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
-  world::MotionOptions options;
-  options.resolution = tools::parse_length(o.resolution)->value;
-  options.most_intervals = o.most_intervals;
-  const world::MotionAnswer answer = [&] {
+  world::MotionAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
-    world::MotionOptions told = options;
+    world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
     return check_motion(checker, initial_state(scene.world), robot, path, told);
   }();
   report["waypoints"] = path.size();
-  report["resolution"] = options.resolution;
+  report["resolution"] = o.motion.resolution;
+  world::WorldState at = initial_state(scene.world);
+  at.q[robot] = path.back();
+  std::vector<world::Contact> contacts;
+  if (answer.contact) {
+    at.q[robot] = configuration_at(path, answer.contact_segment, answer.contact_share);
+    if (answer.meets) {
+      world::Scratch scratch;
+      checker.measure_depth(*answer.contact, at, scratch);
+    }
+    contacts.push_back(*answer.contact);
+  }
   report["motion"] = tools::to_json(scene.world, answer);
   say(o, tools::describe(scene.world, answer));
-  if (!o.preview.empty()) {
-    world::WorldState state = initial_state(scene.world);
-    std::vector<world::Contact> contacts;
-    state.q[robot] = path.back();
-    if (answer.contact) {
-      contacts.push_back(*answer.contact);
-      const std::vector<double>&from = path[answer.contact_segment],
-            &to = path[std::min(answer.contact_segment + 1, path.size() - 1)];
-      for (std::size_t i = 0; i < from.size(); ++i)
-        state.q[robot][i] = from[i] + answer.contact_share * (to[i] - from[i]);
-    }
-    io::write_file(o.preview, tools::picture_of(checker, state, contacts));
-  }
+  if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(checker, at, contacts));
   const collide::Inclusion inside = tools::decide_inside(
-      checker, initial_state(scene.world), robot, path, options, wanted,
+      checker, initial_state(scene.world), robot, path, o.motion, wanted,
       [&](const std::string& line) { say(o, line); }, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
@@ -95,7 +98,6 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
 int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
                  std::optional<std::size_t> robot, const robot::Path& values, tools::Json& report) {
   const world::Checker checker(scene.world);
-  const world::Checker::Options options{.resting = o.resting};
   world::Scratch scratch;
   bool free = true, certain = false, drawn = false;
   const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
@@ -105,7 +107,8 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
   for (std::size_t i = 0; i < values.size(); ++i) {
     world::WorldState state = initial_state(scene.world);
     if (robot) state.q[*robot] = values[i];
-    const std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, options);
+    std::vector<world::Contact> contacts = checker.find_contacts(state, scratch, o.state);
+    for (world::Contact& contact : contacts) checker.measure_depth(contact, state, scratch);
     tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
     const std::string before =
         values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
@@ -124,7 +127,7 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
       drawn = true;
     }
     if (o.distance) {
-      if (const auto nearest = checker.find_nearest(state, scratch, options)) {
+      if (const auto nearest = checker.find_nearest(state, scratch, o.state)) {
         const auto& [items, clearance] = *nearest;
         one["distance"] = {
             {"lower", clearance.lower},
@@ -132,8 +135,11 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
             {"pair", {scene.world.name_of(items[0]), scene.world.name_of(items[1])}}};
         std::ostringstream line;
         line << before << "nearest: " << scene.world.name_of(items[0]) << " and "
-             << scene.world.name_of(items[1]) << ", sets " << clearance.lower << " to "
-             << clearance.upper << " apart";
+             << scene.world.name_of(items[1]) << ", sets ";
+        if (clearance.upper < 0)
+          line << -clearance.upper << " to " << -clearance.lower << " deep in each other";
+        else
+          line << clearance.lower << " to " << clearance.upper << " apart";
         say(o, line.str());
       }
     }
@@ -146,7 +152,7 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
 }
 
 int check(const tools::CheckOptions& o) {
-  if (!o.path.empty() && (o.resting || o.distance))
+  if (!o.path.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
   const tools::SceneFile scene = tools::read_scene(o.scene);
   std::vector<std::string> inputs = scene.inputs;
@@ -163,9 +169,7 @@ int check(const tools::CheckOptions& o) {
     report["robot"] = model.name;
     const std::string file = o.path.empty() ? o.configurations : o.path;
     if (!file.empty())
-      values =
-          robot::read_path(file, model.kinematics,
-                           {!o.ignore_limits, o.degrees, tools::fixed_joints(o.joints)}, notes);
+      values = robot::read_path(file, model.kinematics, o.reading, notes);
     else if (!o.configuration.empty())
       values = parse_configuration(o, model.kinematics);
     else
@@ -183,18 +187,18 @@ int check(const tools::CheckOptions& o) {
 
 /// Options that say how a motion or a configuration is meant, without one, would be ignored: the
 /// answer would be that of another state than was meant.
-void require_meaning(const CLI::App& app, const tools::CheckOptions& o) {
-  const auto require = [&](const char* option, bool given, const char* others) {
-    if (app.get_option(option)->count() != 0 && !given)
+void require_meaning(const tools::CheckOptions& o) {
+  const auto require = [&](const OptionDescription& option, bool given, const char* others) {
+    if (o.stated.contains(option.name) && !given)
       throw Error(ErrorCode::InvalidArgument,
-                  std::string(option) + " needs " + others +
+                  "--" + option.name + " needs " + others +
                       "; without, what is looked at are the robots at home");
   };
   const bool moves = !o.path.empty();
   const bool given = moves || !o.configuration.empty() || !o.configurations.empty();
-  for (const char* option : {"--joint", "--degrees", "--ignore-limits"})
+  for (const auto& option : robot::path_options())
     require(option, given, "--path, --configuration or --configurations");
-  for (const char* option : {"--resolution", "--max-intervals"}) require(option, moves, "--path");
+  for (const auto& option : world::motion_options()) require(option, moves, "--path");
 }
 
 }  // namespace
@@ -207,7 +211,7 @@ int main(int argc, char** argv) {
   tools::CheckOptions options;
   tools::describe(app, options);
   return tools::run(app, argc, argv, [&] {
-    require_meaning(app, options);
+    require_meaning(options);
     return check(options);
   });
 }

@@ -2,9 +2,12 @@
 
 #include "options.h"
 
+#include <kaboum/robot/path_options.h>
+#include <kaboum/world/check_options.h>
+
 #include <CLI/CLI.hpp>
 
-#include "common/motion_options.h"
+#include "common/request_options.h"
 
 namespace kaboum::tools {
 
@@ -23,10 +26,8 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->type_name("FILE")
       ->excludes(path)
       ->excludes(one);
-  add_joint_option(app, o.joints);
-  add_degrees_option(app, o.degrees);
-  app.add_flag("--ignore-limits", o.ignore_limits, "Allow values outside the joints' limits");
-  app.add_flag("--resting", o.resting, "Look at pairs of objects that rest, too (not with --path)");
+  add_request_options(app, robot::path_options(), o.reading, o.stated);
+  add_request_options(app, world::state_options(), o.state, o.stated);
   app.add_flag("--distance", o.distance, "Say how far apart the nearest pair is (not with --path)");
   app.add_option(
          "--inside", o.inside,
@@ -40,20 +41,7 @@ void describe(CLI::App& app, CheckOptions& o) {
          "first that is not free")
       ->check(png_name())
       ->type_name("FILE");
-  app.add_option("--resolution", o.resolution,
-                 "How much nearer than epsilon bodies may come in a motion before it counts as "
-                 "contact")
-      ->check([](const std::string& s) {
-        const auto length = parse_length(s);
-        return length && !length->percent ? std::string() : "must be a positive number";
-      })
-      ->capture_default_str()
-      ->type_name("LENGTH");
-  app.add_option("--max-intervals", o.most_intervals,
-                 "Most stretches of time that are looked at; then the motion is undecided")
-      ->check(number_from(1, 1e9))
-      ->capture_default_str()
-      ->type_name("N");
+  add_request_options(app, world::motion_options(), o.motion, o.stated);
   add_common_options(app, o.common);
   app.footer(
       "Free is certain. Contacts are colliding where inner sets meet, which is certain, else "

@@ -1,6 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <kaboum/robot/path_file.h>
+#include <kaboum/world/motion_check.h>
+
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,10 +17,13 @@ class App;
 namespace kaboum::tools {
 
 struct CheckOptions {
-  std::string scene, robot, path, configuration, configurations, resolution = "1e-5", preview;
-  std::vector<std::string> joints, inside;
-  bool degrees = false, ignore_limits = false, resting = false, distance = false;
-  std::size_t most_intervals = 1'000'000;
+  std::string scene, robot, path, configuration, configurations, preview;
+  std::vector<std::string> inside;
+  robot::PathOptions reading;
+  world::Checker::Options state;
+  world::MotionOptions motion;
+  std::set<std::string> stated;  ///< names of the options of these three that were stated
+  bool distance = false;
   CommonOptions common;
 };
 

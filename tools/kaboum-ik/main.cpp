@@ -86,15 +86,10 @@ Answer find(const Options& o, const Chain& chain) {
       o.pose.empty()
           ? ik::forward(answer.arm, parse_joints(o.pose_of, "--pose-of", answer, o.degrees))
           : robot::parse_pose(o.pose, "--pose");
-  ik::InverseRequest request{answer.target};
+  ik::InverseRequest request = o.request;
+  request.target = answer.target;
   if (!o.reference.empty())
     request.reference = parse_joints(o.reference, "--reference", answer, o.degrees);
-  request.numeric = o.numeric;
-  request.limits = !o.ignore_limits;
-  request.copies = o.copies;
-  request.free_heading = o.free_heading;
-  request.starts = o.starts;
-  request.seed = o.common.seed;
   static_cast<ik::InverseAnswer&>(answer) = ik::find_configurations(answer.arm, request);
   return answer;
 }
@@ -119,16 +114,16 @@ int run(const Options& o) {
   report["robot"] = {{"file", chain.file}, {"sha256", chain.sha256}};
   tools::write_report(o.common, "kaboum-ik", report);
   std::string what = answer.form ? std::string(ik::name_of(answer.form->family)) + ", closed form: "
-                                 : "numeric, " + std::to_string(o.starts) + " starts: ";
+                                 : "numeric, " + std::to_string(o.request.starts) + " starts: ";
   what += std::to_string(answer.found) + (answer.found == 1 ? " solution" : " solutions");
   if (!answer.families.empty())
     what += answer.families.size() == 1
                 ? " and a family with a free joint"
                 : " and " + std::to_string(answer.families.size()) + " families with a free joint";
-  if (answer.form && !o.ignore_limits)
+  if (answer.form && !o.request.ignore_limits)
     what += ", " + std::to_string(answer.rows.size()) +
-            (o.copies ? " configurations within the limits, whole turns counted"
-                      : " within the limits");
+            (o.request.copies ? " configurations within the limits, whole turns counted"
+                              : " within the limits");
   tools::log(o.common.quiet, what);
   for (const Answer::Family& f : answer.families)
     tools::log(o.common.quiet, "a family: " + family_text(answer, f.family, o.degrees));
@@ -137,7 +132,7 @@ int run(const Options& o) {
   if (!answer.rows.empty()) return tools::kDone;
   if (!answer.form) {
     std::cerr << "kaboum-ik: none found, which is no proof that there is none; try --starts "
-              << 10 * o.starts << '\n';
+              << 10 * o.request.starts << '\n';
     return tools::kLimit;
   }
   if (!answer.incomplete.empty()) {
@@ -147,7 +142,7 @@ int run(const Options& o) {
   }
   std::cerr << "kaboum-ik: "
             << (answer.found == 0 && !answer.outside
-                    ? unreached(answer, o.free_heading)
+                    ? unreached(answer, o.request.free_heading)
                     : "the pose is reached outside the joints' limits only; see "
                       "--ignore-limits")
             << '\n';

@@ -3,8 +3,11 @@
 #include "options.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/kinematics/inverse_options.h>
 
 #include <CLI/CLI.hpp>
+
+#include "common/request_options.h"
 
 namespace kaboum::tools {
 
@@ -46,20 +49,8 @@ void describe(CLI::App& app, IkOptions& o) {
                  "a free joint, the one that keeps its value comes first; numeric search begins at "
                  "it [0,0,…]")
       ->type_name("Q1,Q2,…");
-  app.add_flag(
-      "--copies", o.copies,
-      "Print all that differ by whole turns within the limits, at most 4096 of a solution");
-  app.add_flag("--ignore-limits", o.ignore_limits, "Print solutions outside the limits as well");
-  app.add_flag(
-      "--free-heading", o.free_heading,
-      "Of five axes: keep the pose's position, pitch and roll, and turn its heading (about "
-      "axis 1) so that it can be reached");
   app.add_flag("--degrees", o.degrees, "Angles are in degrees, those read and printed [radians]");
-  app.add_flag("--numeric", o.numeric, "Search numerically although there is a closed form");
-  app.add_option("--starts", o.starts, "Random configurations that numeric search begins at")
-      ->check(number_from(1, 1e6))
-      ->capture_default_str()
-      ->type_name("N");
+  add_request_options(app, kinematics::inverse_options(), o.request, o.stated);
   app.add_flag("--json", o.json, "Print JSON instead of a line of joint values per solution");
   add_common_options(app, o.common);
   app.footer(

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <kaboum/kinematics/inverse.h>
+
+#include <set>
 #include <string>
 
 #include "common/cli.h"
@@ -15,9 +18,9 @@ struct IkOptions {
   std::string robot;                    ///< a file, or
   std::string scene, robot_name, tool;  ///< a scene and what of it
   std::string base, tip, pose, pose_of, reference;
-  bool json = false, degrees = false, numeric = false, ignore_limits = false, copies = false,
-       free_heading = false;
-  int starts = 100;
+  kinematics::InverseRequest request;  ///< but for the pose and the reference
+  std::set<std::string> stated;        ///< names of the request's options that were stated
+  bool json = false, degrees = false;
   CommonOptions common;
 };
 

@@ -33,7 +33,7 @@ void require_free(const MoveRequest& r, const robot::Path& path, const MoveOptio
                   const world::Checker& checker, const char* what) {
   world::MotionOptions options;
   // Finer than for the path: what that has decided is not to be refused for a rounding.
-  options.resolution = 1e-3 * parse_length(o.resolution)->value;
+  options.resolution = 1e-3 * o.search.check.resolution;
   options.most_intervals = std::numeric_limits<std::size_t>::max();
   const world::MotionAnswer motion =
       check_motion(checker, initial_state(r.scene.world), r.robot, path, options);

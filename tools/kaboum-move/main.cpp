@@ -16,17 +16,6 @@ using motion::PathAnswer;
 using Outcome = PathAnswer::Outcome;
 using tools::MoveOptions;
 
-motion::PathOptions path_options(const MoveOptions& o) {
-  motion::PathOptions out;
-  out.seed = o.common.seed;
-  out.most_work = o.max_work;
-  out.most_nodes = o.max_nodes;
-  if (o.timeout > 0) out.most_seconds = o.timeout;
-  out.shortcuts = o.shortcuts;
-  out.check.resolution = tools::parse_length(o.resolution)->value;
-  return out;
-}
-
 int move(const MoveOptions& o) {
   const tools::MoveRequest r = tools::read_request(o);
   std::vector<std::string> inputs = r.scene.inputs;
@@ -38,7 +27,7 @@ int move(const MoveOptions& o) {
   const world::Checker checker(r.scene.world);
   const PathAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
-    motion::PathOptions options = path_options(o);
+    motion::PathOptions options = o.search;
     options.check.progress = [&](const std::string& stage) { progress.show(stage); };
     return find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, options);
   }();

@@ -3,50 +3,20 @@
 #include "options.h"
 
 #include <kaboum/base/similar_name.h>
+#include <kaboum/motion/path_options.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "common/motion_options.h"
+#include "common/request_options.h"
 
 namespace kaboum::tools {
 namespace {
 
 /// Where the robot's file states nothing. [rad/s or m/s; per s]
 constexpr double kVelocity = 1, kAcceleration = 5;
-
-void describe_search(CLI::App& app, MoveOptions& o) {
-  app.add_option("--max-work", o.max_work,
-                 "End the search after so much work, counted in steps that take about so many "
-                 "seconds of one core, so that the result is the same on any machine")
-      ->check(number_from(1e-6, 1e9))
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  app.add_option("--max-nodes", o.max_nodes, "End the search at so many nodes of its trees")
-      ->check(number_from(1, 1e9))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--timeout", o.timeout,
-                 "Give up after this time; a path that is found before is the same as without "
-                 "[never]")
-      ->check(number_from(1e-3, 1e9))
-      ->type_name("SECONDS");
-  app.add_option("--shortcuts", o.shortcuts,
-                 "How many shortcuts are tried; 0 leaves the path as it was found")
-      ->check(number_from(0, 1e6))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--resolution", o.resolution,
-                 "How much nearer than epsilon bodies may come before it counts as contact")
-      ->check([](const std::string& s) {
-        const auto length = parse_length(s);
-        return length && !length->percent ? std::string() : "must be a positive number";
-      })
-      ->capture_default_str()
-      ->type_name("LENGTH");
-}
 
 void describe_execution(CLI::App& app, MoveOptions& o) {
   auto* trajectory =
@@ -142,9 +112,9 @@ void describe(CLI::App& app, MoveOptions& o) {
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
-  add_degrees_option(app, o.degrees)
-      ->description("Angles are in degrees, those read and those in -o and --trajectory [radians]");
-  describe_search(app, o);
+  app.add_flag("--degrees", o.degrees,
+               "Angles are in degrees, those read and those in -o and --trajectory [radians]");
+  add_request_options(app, motion::path_options(), o.search, o.stated);
   describe_execution(app, o);
   add_common_options(app, o.common);
   app.footer(

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <kaboum/motion/find_path.h>
 #include <kaboum/motion/trajectory.h>
+
+#include <set>
 
 #include "common/cli.h"
 
@@ -12,12 +15,12 @@ namespace kaboum::tools {
 
 /// The command line of kaboum-move.
 struct MoveOptions {
-  std::string scene, robot, from, start, goals, output = "-", trajectory, resolution = "1e-5";
+  std::string scene, robot, from, start, goals, output = "-", trajectory;
   std::vector<std::string> to, velocities, accelerations;
+  motion::PathOptions search;
+  std::set<std::string> stated;  ///< names of the search's options that were stated
   bool degrees = false, time_optimal = false;
-  double max_work = 10, timeout = 0, rate = 1000;
-  std::size_t max_nodes = 100'000;
-  int shortcuts = 60;
+  double rate = 1000;
   CommonOptions common;
 };
 

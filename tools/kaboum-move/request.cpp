@@ -83,7 +83,7 @@ Json answer_json(const MoveRequest& r, const PathAnswer& answer, const MoveOptio
   Json out = {{"scene", {{"file", o.scene}, {"sha256", r.scene.sha256}}},
               {"robot", r.model().name},
               {"outcome", name_of(answer.outcome)},
-              {"seed", o.common.seed},
+              {"seed", o.search.seed},
               {"start", r.start},
               {"goals", r.goals.size()},
               {"spent",

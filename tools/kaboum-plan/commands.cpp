@@ -6,12 +6,11 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/plan.h>
-#include <kaboum/plan/solve.h>
+#include <kaboum/plan/solve_options.h>
 
 #include <chrono>
 #include <filesystem>
 #include <iostream>
-#include <map>
 
 #include "common/result_files.h"
 #include "explain.h"
@@ -20,13 +19,6 @@
 
 namespace kaboum::tools {
 namespace {
-
-const std::map<std::string, plan::Algorithm> kAlgorithms = {
-    {"dfs", plan::Algorithm::DepthFirst},
-    {"bfs", plan::Algorithm::BreadthFirst},
-    {"ids", plan::Algorithm::IterativeDeepening},
-    {"greedy", plan::Algorithm::Greedy},
-    {"astar", plan::Algorithm::AStar}};
 
 Json statistics_json(const plan::Statistics& s) {
   Json j = {
@@ -103,11 +95,7 @@ int solve(const PlanOptions& o) {
   const auto start = std::chrono::steady_clock::now();
   const execution::PlanningTask task = read_task(o, !o.no_cache);
   const plan::Model model = task.load();
-  plan::SolveOptions options;
-  options.algorithm = kAlgorithms.at(o.search);
-  options.timeout = o.timeout;
-  options.seed = o.common.seed;
-  options.max_memory = parse_memory(o.max_memory);
+  plan::SolveOptions options = o.search;
   if (!o.assume.empty()) options.assumed = read_outcomes(o.assume);
   Progress progress(o.common.quiet);
   options.progress = [&](const plan::Statistics& s) {
@@ -121,18 +109,18 @@ int solve(const PlanOptions& o) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict said = verdict(solution);
   Json report = {{"command", "solve"},
-                 {"domain", o.domain},
-                 {"problem", o.problem},
-                 {"search", o.search},
+                 {"domain", o.task.domain},
+                 {"problem", o.task.problem},
+                 {"search", value_of(plan::solve_options(), "search", o.search)},
                  {"assumed", options.assumed},
                  {"status", plan::name_of(solution.outcome)},
                  {"limit", solution.limit},
                  {"lost", solution.lost},
                  {"refused", solution.refused},
-                 {"scene", o.scene},
+                 {"scene", o.task.scene},
                  {"statistics", statistics_json(solution.statistics)}};
   task.keep_answers();
-  if (!o.scene.empty()) {
+  if (!o.task.scene.empty()) {
     report["geometry"] = geometry_json(task.counters());
     report["geometry"]["answers_reused"] = task.answers_reused();
   }
@@ -207,10 +195,16 @@ int show(const PlanOptions& o) {
 }
 
 int convert(const PlanOptions& o) {
-  const plan::TaskTexts texts = execution::read_texts(task_files(o));
-  const plan::Language to = language_of(o.output, o.output_format, "--output-format");
+  const plan::TaskTexts texts = execution::read_texts(o.task);
+  const auto to = o.output_format.empty()    ? plan::language_from_name(o.output)
+                  : o.output_format == "kpl" ? plan::Language::Kpl
+                                             : plan::Language::Pddl;
+  if (!to)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        o.output + ": cannot tell the language from the name; give --output-format kpl or pddl");
   io::write_file(o.output,
-                 plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, to));
+                 plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, *to));
   return kDone;
 }
 

@@ -2,42 +2,34 @@
 
 #include "options.h"
 
+#include <kaboum/execution/task_options.h>
+
 #include <CLI/CLI.hpp>
+
+#include "common/request_options.h"
 
 namespace kaboum::tools {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {
-  app.add_option("DOMAIN", o.domain, "Domain file (.kpl, .pddl), or - for stdin")
+  app.add_option("DOMAIN", o.task.domain, "Domain file (.kpl, .pddl), or - for stdin")
       ->required()
       ->type_name("FILE");
-  app.add_option("--input-format", o.input_format,
-                 "Language of DOMAIN (and PROBLEM) [by extension]")
-      ->check(CLI::IsMember({"kpl", "pddl"}))
-      ->type_name("NAME");
-  app.add_option("--problem-format", o.problem_format, "Language of PROBLEM [by extension]")
-      ->check(CLI::IsMember({"kpl", "pddl"}))
-      ->type_name("NAME");
+  add_request_options(app,
+                      options_named(execution::task_options(), {"input-format", "problem-format"}),
+                      o.task, o.stated);
 }
 
 void add_problem(CLI::App& app, PlanOptions& o) {
-  app.add_option("PROBLEM", o.problem, "Problem file, if the domain file does not hold it")
+  app.add_option("PROBLEM", o.task.problem, "Problem file, if the domain file does not hold it")
       ->type_name("FILE");
 }
 
 CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
-  app.add_option("--process", o.processes,
-                 "A command whose program answers external functions by JSON lines "
-                 "(docs/planning/externals.md); may be repeated")
-      ->type_name("COMMAND");
-  app.add_option("--process-timeout", o.process_timeout,
-                 "Longest time for one answer of a program or plug-in, and for its start")
-      ->check(number_from(1e-3, 1e6))
-      ->capture_default_str()
-      ->type_name("S");
-  app.add_option("--plugin", o.plugins, "A shared library with external functions; may be repeated")
-      ->type_name("FILE");
+  add_request_options(
+      app, options_named(execution::task_options(), {"process", "process-timeout", "plugin"}),
+      o.task, o.stated);
   return app
-      .add_option("--scene", o.scene,
+      .add_option("--scene", o.task.scene,
                   "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
                   "release, move, inside and collides [externals are tables]")
       ->type_name("FILE");
@@ -48,13 +40,7 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
   add_inputs(*s, o);
   add_problem(*s, o);
   add_scene(*s, o);
-  s->add_option(
-       "--search", o.search,
-       "greedy: a plan, soon; astar: least cost; bfs, ids: fewest steps; dfs: any plan. With "
-       "sensing, the last three minimise parts, not the whole")
-      ->check(CLI::IsMember({"dfs", "bfs", "ids", "greedy", "astar"}))
-      ->capture_default_str()
-      ->type_name("NAME");
+  add_request_options(*s, plan::solve_options(), o.search, o.stated);
   s->add_option("-o,--output", o.output, "The plan (JSON); - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
@@ -67,16 +53,6 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
               "Say which calls of external functions returned no value, how often, and why");
   s->add_flag("--no-cache", o.no_cache,
               "Ask a scene's functions anew, and keep nothing for the next run ($KABOUM_CACHE)");
-  s->add_option("--timeout", o.timeout, "Give up after this many seconds [never]")
-      ->check([](const std::string& text) {
-        double seconds = 0;
-        const bool good = CLI::detail::lexical_cast(text, seconds) && seconds > 0;
-        return good ? std::string() : "expected a number of seconds above 0, not " + text;
-      })
-      ->type_name("S");
-  s->add_option("--max-memory", o.max_memory,
-                "Give up when grounding and search hold this much, e.g. 500M or 2G [no limit]")
-      ->type_name("SIZE");
   add_common_options(*s, o.common);
   return s;
 }
@@ -112,9 +88,8 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
       ->excludes("--output-format")
       ->excludes("--output")
       ->type_name("FILE");
-  w->add_option("--package-path", o.packages,
-                "With --html: a package of package:// or a folder that holds it; may be repeated")
-      ->type_name("DIR");
+  add_request_options(*w, options_named(execution::run_options(), {"package-path"}), o.run,
+                      o.stated);
   add_common_options(*w, o.common);
   return w;
 }

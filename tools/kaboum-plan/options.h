@@ -1,7 +1,10 @@
 #pragma once
 
+#include <kaboum/execution/run_plan.h>
+#include <kaboum/plan/solve_options.h>
+
+#include <set>
 #include <string>
-#include <vector>
 
 #include "common/cli.h"
 
@@ -14,19 +17,15 @@ class Option;
 namespace kaboum::tools {
 
 struct PlanOptions {
-  std::string domain, problem, scene, plan, output = "-", input_format, problem_format,
-                                            output_format, search = "greedy";
-  bool tree = false, time_optimal = false, explain = false, no_cache = false;
-  double timeout = 0;                           ///< 0: none [s]
-  std::string max_memory;                       ///< "500M"; empty: no limit
-  std::string outcomes = "all", trajectories;   ///< of run
-  unsigned replan = 100;                        ///< of run
-  std::string assume;                           ///< of solve: a file
-  std::string html;                             ///< of show
-  double rate = 1000, acceleration = 5;         ///< of run [1/s; rad/s², length/s²]
-  std::vector<std::string> packages;            ///< of run and show
-  std::vector<std::string> processes, plugins;  ///< with external functions of a user's own
-  double process_timeout = 10;                  ///< [s]
+  execution::TaskFiles task;
+  plan::SearchRequest search;     ///< of solve
+  execution::PlanRunRequest run;  ///< of run
+  std::set<std::string> stated;   ///< names of options of these three that were stated
+  std::string plan, output = "-", output_format;
+  bool tree = false, explain = false, no_cache = false;
+  std::string outcomes = "all", trajectories;  ///< of run
+  std::string assume;                          ///< of solve: a file
+  std::string html;                            ///< of show
   CommonOptions common;
 };
 

@@ -12,15 +12,15 @@
 namespace kaboum::tools {
 
 int write_page(const PlanOptions& o) {
-  if (o.scene.empty())
+  if (o.task.scene.empty())
     throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   const execution::PlanningTask task = read_task(o);
   std::vector<std::string> inputs = task.scene()->inputs;
-  inputs.insert(inputs.end(), {o.plan, o.domain, o.problem});
+  inputs.insert(inputs.end(), {o.plan, o.task.domain, o.task.problem});
   require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = task.load();
   const execution::PlanPage page = execution::plan_page(task, model, read_plan_file(model, o.plan),
-                                                        {.tree = o.tree, .packages = o.packages});
+                                                        {.tree = o.tree, .packages = o.run.packages});
   for (const std::string& note : page.notes) log(o.common.quiet, note);
   io::write_file(o.html, page.html);
   return kDone;

@@ -3,19 +3,20 @@
 #include "run.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/execution/run_plan.h>
+#include <kaboum/execution/task_options.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <iostream>
 
+#include "common/request_options.h"
 #include "input.h"
 
 namespace kaboum::tools {
 namespace {
 
 /// "all", "seed:N", or a JSON file of outcomes.
-plan::RunOptions run_options(const std::string& outcomes) {
+plan::RunOptions outcomes_of(const std::string& outcomes) {
   plan::RunOptions out;
   if (outcomes == "all") return out;
   if (outcomes.starts_with("seed:")) {
@@ -29,14 +30,6 @@ plan::RunOptions run_options(const std::string& outcomes) {
   }
   out.outcomes = plan::RunOptions::Outcomes::Given;
   out.given = read_outcomes(outcomes);
-  return out;
-}
-
-execution::SimulationOptions simulation_options(const PlanOptions& o) {
-  execution::SimulationOptions out;
-  out.rate = o.rate;
-  out.acceleration = o.acceleration;
-  if (o.time_optimal) out.profile = motion::Profile::Trapezoid;
   return out;
 }
 
@@ -98,45 +91,18 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
                 "{\"isSpillable(o1)\": true, ...}: as it says")
       ->capture_default_str()
       ->type_name("all|seed:N|FILE");
-  r->add_option(
-       "--replan", o.replan,
-       "How often it is planned again, at most, where sensing turns out as the plan has no "
-       "branch for; 0: that is an error")
-      ->capture_default_str()
-      ->type_name("N");
-  r->add_option("--timeout", o.timeout, "Longest time for each new plan [no limit]")
-      ->check(number_from(1e-3, 1e9))
-      ->type_name("S");
-  r->add_option("--rate", o.rate, "Samples per second")
-      ->check(number_from(1, 1e5))
-      ->capture_default_str()
-      ->type_name("HZ");
-  r->add_option("--max-acceleration", o.acceleration, "Of all joints, per second squared")
-      ->check(number_from(1e-3, 1e6))
-      ->capture_default_str()
-      ->type_name("X");
-  r->add_flag("--time-optimal", o.time_optimal,
-              "As fast as velocities and accelerations allow, which then jump, instead of by "
-              "quintic polynomials");
+  add_request_options(*r, execution::run_options(), o.run, o.stated);
   r->add_option("--trajectories", o.trajectories,
                 "Write each motion's samples into this folder, as CSV")
-      ->type_name("DIR");
-  r->add_option("--package-path", o.packages,
-                "A package of package:// or a folder that holds it; may be repeated")
       ->type_name("DIR");
   add_common_options(*r, o.common);
   return r;
 }
 
 int run_plan(const PlanOptions& o) {
-  execution::PlanRunRequest request;
-  request.replan.run = run_options(o.outcomes);
-  request.replan.most = o.replan;
+  execution::PlanRunRequest request = o.run;
+  request.replan.run = outcomes_of(o.outcomes);
   request.replan.solve.algorithm = plan::Algorithm::Greedy;
-  request.replan.solve.seed = o.common.seed;
-  request.replan.solve.timeout = o.timeout;
-  request.simulation = simulation_options(o);
-  request.packages = o.packages;
   request.trajectories = o.trajectories;
   const execution::PlanningTask task = read_task(o);
   const plan::Model model = task.load();
@@ -152,9 +118,9 @@ int run_plan(const PlanOptions& o) {
   const execution::SimulationReport& r = done.simulation;
   Json report = report_json(r, summary);
   report["command"] = "run";
-  report["scene"] = o.scene;
+  report["scene"] = o.task.scene;
   report["outcomes"] = o.outcomes;
-  report["rate"] = o.rate;
+  report["rate"] = o.run.simulation.rate;
   report["triangles"] = done.triangles;
   report["notes"] = done.notes;
   report["replans"] = replans_json(replans);

@@ -5,7 +5,6 @@
 #include <kaboum/scene/scene_update.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 
 #include "names.h"
 #include "options.h"
@@ -14,9 +13,6 @@
 namespace {
 
 using namespace kaboum;  // the tool's own names are few
-
-const std::map<std::string, bcd::Effort> kEfforts{
-    {"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}};
 
 std::vector<scene::NamedFile> named_files(const std::vector<std::string>& texts,
                                           const char* option) {
@@ -50,27 +46,20 @@ int say_made(const tools::SceneOptions& o, const scene::MadeScene& made, const s
 
 int make_scene(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  scene::SceneMaker maker;
+  scene::SceneMaker maker = o.make;
   maker.scene = o.scene;
   maker.robots = named_files(o.robots, "--robot");
   maker.objects = named_files(o.objects, "--object");
+  for (const std::string& text : o.primitives)
+    maker.primitives.push_back(tools::parse_primitive(text, "--primitive"));
   maker.regions = named_files(o.regions, "--region");
   maker.places = tools::parse_places(o.places, "--at");
   maker.scales = tools::parse_scales(o.scales, "--scale");
   std::vector<std::string> inputs;
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})
     for (const scene::NamedFile& file : *files) inputs.push_back(file.file);
-  maker.replace = o.force;
-  scene::require_free_place(o.scene, o.force);
+  scene::require_free_place(o.scene, maker.replace);
   tools::require_apart({{"SCENE", o.scene}, {"--report", o.common.report}}, inputs);
-  maker.inner = o.inner;
-  if (o.inner_links) maker.options.inner_links.emplace();  // all
-  maker.options.visual = o.visual;
-  maker.options.sets.epsilon = tools::parse_length(o.epsilon);
-  maker.options.sets.effort = kEfforts.at(o.effort);
-  maker.options.sets.preparation.drop_sheets = o.drop_sheets;
-  maker.options.sets.unit = o.unit;
-  maker.options.packages = o.packages;
   maker.options.format_of = format_of;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
@@ -93,7 +82,7 @@ int update_scene(const tools::SceneOptions& o) {
                                                 : std::filesystem::path(o.cache));
   tools::Progress progress(o.common.quiet);
   const scene::MadeScene made =
-      scene::update_scene({o.scene, o.packages, o.no_cache ? nullptr : &cache,
+      scene::update_scene({o.scene, o.make.options.packages, o.no_cache ? nullptr : &cache,
                            [&](const std::string& stage) { progress.show(stage); }, format_of});
   return say_made(
       o, made,

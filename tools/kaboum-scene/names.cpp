@@ -7,6 +7,7 @@
 #include <kaboum/robot/base_pose.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "common/arguments.h"
 
@@ -19,6 +20,53 @@ scene::NamedFile parse_named_file(const std::string& text, const char* option) {
     throw Error(ErrorCode::InvalidArgument,
                 std::string(option) + ": NAME=FILE is expected, not '" + text + "'");
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+scene::NamedPrimitive parse_primitive(const std::string& text, const char* option) {
+  using Kind = world::Primitive::Kind;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(option) +
+                    ": NAME=box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH or "
+                    "plane:X,Y,Z is expected, not '" +
+                    text + "'" + why);
+  };
+  const auto equals = text.find('='), colon = text.find(':');
+  if (equals == std::string::npos || equals == 0 || colon == std::string::npos || colon < equals)
+    refuse("");
+  const std::string kind = text.substr(equals + 1, colon - equals - 1);
+  std::vector<double> sizes;
+  for (std::size_t at = colon + 1; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    std::string number = text.substr(at, comma - at);
+    if (const std::string why = number_from(1e-9, 1e9)(number); !why.empty())
+      refuse("; a size " + why);
+    sizes.push_back(parse_length(number)->value);
+    at = comma + 1;
+  }
+  scene::NamedPrimitive out{text.substr(0, equals), {}};
+  world::Primitive& p = out.primitive;
+  const auto need = [&](std::size_t count) {
+    if (sizes.size() != count)
+      refuse("; " + kind + " has " + std::to_string(count) + (count == 1 ? " size" : " sizes"));
+  };
+  if (kind == "box" || kind == "plane") {
+    need(3);
+    p.kind = kind == "box" ? Kind::Box : Kind::Plane;
+    p.size = {sizes[0], sizes[1], sizes[2]};
+  } else if (kind == "sphere") {
+    need(1);
+    p.kind = Kind::Sphere;
+    p.radius = sizes[0];
+  } else if (kind == "cylinder" || kind == "capsule") {
+    need(2);
+    p.kind = kind == "cylinder" ? Kind::Cylinder : Kind::Capsule;
+    p.radius = sizes[0];
+    p.length = sizes[1];
+  } else {
+    refuse("");
+  }
+  return out;
 }
 
 std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,

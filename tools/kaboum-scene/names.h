@@ -13,6 +13,10 @@ namespace kaboum::tools {
 /// @throws Error{InvalidArgument} naming the option.
 scene::NamedFile parse_named_file(const std::string& text, const char* option);
 
+/// "NAME=KIND:SIZES": box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH or plane:X,Y,Z.
+/// @throws Error{InvalidArgument} naming the option.
+scene::NamedPrimitive parse_primitive(const std::string& text, const char* option);
+
 /// "NAME=POSE" for each, see robot::parse_pose.
 /// @throws Error{InvalidArgument} naming the option.
 std::map<std::string, geom::Transform> parse_places(const std::vector<std::string>& texts,

@@ -2,17 +2,18 @@
 
 #include "options.h"
 
+#include <kaboum/scene/scene_options.h>
+#include <kaboum/world/check_options.h>
+
 #include <CLI/CLI.hpp>
+
+#include "common/request_options.h"
 
 namespace kaboum::tools {
 
 namespace {
 
 void add_sources_of_sets(CLI::App& command, SceneOptions& o) {
-  command
-      .add_option("--package-path", o.packages,
-                  "A package of package:// or a folder that holds it; may be repeated")
-      ->type_name("DIR");
   command
       .add_option("--from-cache", o.cache,
                   "Cache of decompositions, used and filled [as bcd-decompose]")
@@ -30,6 +31,11 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
       ->required();
   make->add_option("--robot", o.robots, "A robot; may be repeated")->type_name("NAME=URDF");
   make->add_option("--object", o.objects, "An object; may be repeated")->type_name("NAME=MESH");
+  make->add_option("--primitive", o.primitives,
+                   "An object that is a box, sphere, cylinder, capsule or plane, in its middle and "
+                   "along z: box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH (without "
+                   "caps) or plane:X,Y,Z (so wide, and so thick below); may be repeated")
+      ->type_name("NAME=KIND:SIZES");
   make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
       ->type_name("NAME=MESH");
   make->add_option("--at", o.places,
@@ -41,31 +47,10 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
                    "Multiply the coordinates of this object's or region's mesh by FACTOR first, as "
                    "for one in mm of a scene in m: 0.001; may be repeated [1]")
       ->type_name("NAME=FACTOR");
-  make->add_flag("--inner", o.inner, "Inner sets of objects as well: contacts can be certain");
-  make->add_flag("--inner-links", o.inner_links,
-                 "Inner sets of robots' links as well: so can contacts with them");
-  make->add_flag("--visual", o.visual,
-                 "Of robots, the shapes for drawing instead of those for collisions");
-  make->add_option("--epsilon", o.epsilon,
-                   "Largest distance of the sets from their meshes, a length or a percentage of "
-                   "each mesh's diagonal")
-      ->check([](const std::string& s) {
-        return parse_length(s) ? std::string() : "must be a positive number or percentage";
-      })
-      ->capture_default_str()
-      ->type_name("LENGTH|P%");
-  make->add_option("--effort", o.effort, "Of the decomposition [normal]")
-      ->check(CLI::IsMember({"fast", "normal", "best"}).description(""))
-      ->type_name("fast|normal|best");
-  make->add_flag("--drop-sheets", o.drop_sheets,
-                 "Drop back-to-back faces without volume (they are then not covered)");
-  make->add_option("--unit", o.unit,
-                   "Unit of length of all meshes: m, dm, cm, mm, um, km, in or ft; with robots m")
-      ->check(unit_name())
-      ->capture_default_str()
-      ->type_name("NAME");
+  add_request_options(*make, scene::scene_options(), o.make, o.stated);
+  make->add_flag_callback(
+      "--visual", [&o] { o.make.options.visual = true; }, "The same as --geometry visual");
   add_sources_of_sets(*make, o);
-  make->add_flag("--force", o.force, "Replace a scene that exists, with all that was edited in it");
   add_common_options(*make, o.common);
   return make;
 }
@@ -77,6 +62,8 @@ CLI::App* describe_update(CLI::App& app, SceneOptions& o) {
       ->add_option("SCENE", o.scene,
                    "Scene file; all but its sets (and of YAML, comments) stays as it is")
       ->required();
+  add_request_options(*update, options_named(scene::scene_options(), {"package-path"}), o.make,
+                      o.stated);
   add_sources_of_sets(*update, o);
   add_common_options(*update, o.common);
   return update;
@@ -88,15 +75,7 @@ CLI::App* describe_pairs(CLI::App& app, SceneOptions& o) {
   pairs->add_option("SCENE", o.scene, "Scene file")->required();
   pairs->add_option("--robot", o.robot, "Which robot [the only one]")->type_name("NAME");
   pairs->add_option("--srdf", o.srdf, "Write the pairs as SRDF")->type_name("FILE");
-  pairs
-      ->add_option("--max-boxes", o.most_boxes,
-                   "Most boxes of joint values that are looked at for one pair")
-      ->check(number_from(1, 1e9))
-      ->capture_default_str()
-      ->type_name("N");
-  pairs->add_option("--timeout", o.timeout, "After so long, what is left stays unproved [none]")
-      ->check(CLI::Range(0.001, 1e9).description(""))
-      ->type_name("SECONDS");
+  add_request_options(*pairs, world::pair_options(), o.pairs, o.stated);
   add_common_options(*pairs, o.common);
   return pairs;
 }

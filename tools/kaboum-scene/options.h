@@ -1,6 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <kaboum/scene/scene_maker.h>
+#include <kaboum/world/allowed_pairs.h>
+
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,12 +17,12 @@ class App;
 namespace kaboum::tools {
 
 struct SceneOptions {
-  std::string scene, robot, srdf, epsilon = "1%", effort = "normal", unit = "m", cache;
-  std::vector<std::string> robots, objects, regions, places, scales, packages;
-  bool inner = false, inner_links = false, visual = false, no_cache = false, drop_sheets = false,
-       force = false;
-  std::size_t most_boxes = 20'000;
-  double timeout = 0;
+  std::string scene, robot, srdf, cache;
+  std::vector<std::string> robots, objects, primitives, regions, places, scales;
+  scene::SceneMaker make;  ///< but for what these name; of update, its packages
+  bool no_cache = false;
+  world::PairOptions pairs;
+  std::set<std::string> stated;  ///< names of options of requests that were stated
   CommonOptions common;
 };
 

@@ -6,7 +6,6 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/allowed_pairs.h>
 
-#include <chrono>
 #include <iostream>
 
 #include "common/scene_file.h"
@@ -24,14 +23,7 @@ int find_pairs(const SceneOptions& o) {
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
   Json pairs = Json::array(), never = Json::array();
   std::vector<world::AllowedPair> proofs;
-  world::PairOptions options;
-  options.most_boxes = o.most_boxes;
-  const auto begin = std::chrono::steady_clock::now();
-  if (o.timeout > 0)
-    options.stop = [&] {
-      return std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(o.timeout);
-    };
-  const std::vector<world::LinkPair> examined = examine_pairs(robot, options);
+  const std::vector<world::LinkPair> examined = examine_pairs(robot, o.pairs);
   for (const world::LinkPair& pair : examined) {
     const std::string reason = pair.reason ? name_of(*pair.reason) : "unproved";
     pairs.push_back({{"links", {name(pair.a), name(pair.b)}},

@@ -3,6 +3,7 @@
 #include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/mesh.h>
 #include <kaboum/certify/mesh_bytes.h>
+#include <kaboum/certify/preparation_options.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/verify/inclusion.h>

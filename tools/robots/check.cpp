@@ -63,14 +63,14 @@ RobotCheck check_of(const std::string& original, const std::string& result,
     out.command += " --prepare";
   // What is claimed then is about the triangles that stand for exact faces.
   if (!preparation.holds_exact_faces()) out.command += " --exact-points 0";
-  if (options.visual()) out.command += " --visual";
+  if (options.shapes.visual) out.command += " --visual";
   if (preparation.drop_sheets) out.command += " --drop-sheets";
-  if (!options.links.empty()) {
+  if (!options.shapes.links.empty()) {
     std::string links;
-    for (const std::string& link : options.links) links += (links.empty() ? "" : ",") + link;
+    for (const std::string& link : options.shapes.links) links += (links.empty() ? "" : ",") + link;
     out.command += " --links " + shell_word(links);
   }
-  for (const std::string& folder : options.packages)
+  for (const std::string& folder : options.shapes.packages)
     out.command += " --package-path " + shell_word(folder);
   if (epsilon) out.command += " --epsilon " + shell_word(epsilon->text());
   return out;

@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/loaders.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "common/request_options.h"
 #include "link_epsilons.h"
 
 namespace kaboum::tools {
@@ -51,27 +53,15 @@ bool is_robot(const std::string& path) {
 }
 
 void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
-  app.add_option("--geometry", o.geometry, "Which shapes of a robot [collision]")
-      ->check(CLI::IsMember({"collision", "visual"}).description(""))
-      ->type_name("collision|visual");
+  add_request_options(app, robot::shape_options(), o.shapes, o.stated);
   if (from)
     app.add_option_function<std::string>(
-           "--from", [&o](const std::string& value) { o.geometry = value; },
+           "--from", [&o](const std::string& value) { o.shapes.visual = value == "visual"; },
            "The same as --geometry")
         ->check(CLI::IsMember({"collision", "visual"}).description(""))
         ->type_name("collision|visual");
   app.add_flag_callback(
-      "--visual", [&o] { o.geometry = "visual"; }, "The same as --geometry visual");
-  app.add_option("--links", o.links,
-                 "Only these links of a robot, separated by commas; the others stay as they are "
-                 "[all]")
-      ->delimiter(',')
-      ->type_name("A,B");
-  app.add_option("--package-path", o.packages,
-                 "A package of a robot's package:// or a folder that holds it, besides "
-                 "$ROS_PACKAGE_PATH, $AMENT_PREFIX_PATH and the folders above the robot's file "
-                 "(repeatable)")
-      ->type_name("DIR");
+      "--visual", [&o] { o.shapes.visual = true; }, "The same as --geometry visual");
   app.add_option(
          "--mesh-prefix", o.prefix,
          "Put before the new meshes' file names in a robot's new URDF, as in package://arm, with "
@@ -83,6 +73,13 @@ void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
                  "[--epsilon for all]")
       ->type_name("FILE");
   add_formats(app, o);
+}
+
+void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
+  app.add_flag_callback(
+         "--require-closed", [&options] { options.holes = geom::Holes::Refuse; },
+         "The same as --holes refuse")
+      ->excludes("--holes");
 }
 
 void require_options_of_meshes(const CLI::App& app, const std::string& input) {

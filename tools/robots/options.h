@@ -1,8 +1,11 @@
 #pragma once
 
+#include <kaboum/certify/preparation_options.h>
 #include <kaboum/certify/wanted_meshes.h>
+#include <kaboum/robot/link_meshes.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,13 +19,13 @@ class App;
 namespace kaboum::tools {
 
 struct RobotOptions {
-  std::string geometry = "collision", prefix, epsilons, html, preset;
-  std::vector<std::string> packages, links;
+  robot::ShapeChoice shapes;
+  std::set<std::string> stated;  ///< names of the options of shapes that were stated
+  std::string prefix, epsilons, html, preset;
   std::vector<std::string> formats;  ///< that are written besides URDF
   std::string bodies = "stl";        ///< format of convex bodies' files
   bool declare_convex = false;       ///< in the URDF, as Drake asks for
 
-  [[nodiscard]] bool visual() const { return geometry == "visual"; }
   [[nodiscard]] bool writes(const std::string& format) const;
 };
 
@@ -31,6 +34,9 @@ bool is_robot(const std::string& path);
 
 /// @param from  whether --from collision|visual is one of the options here
 void add_robot_options(CLI::App& app, RobotOptions& options, bool from);
+
+/// Adds --require-closed, the same as --holes refuse under the name that it had.
+void add_require_closed(CLI::App& app, certify::PreparationOptions& options);
 
 /// Options that a plain mesh has no use for are mistakes.
 /// @throws Error{InvalidArgument}

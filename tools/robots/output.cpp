@@ -30,7 +30,7 @@ void require_robot_folder(const std::string& output, const std::string& output_f
 }
 
 robot_folder::FolderOptions folder_options(const RobotOptions& o) {
-  return {.shapes = {o.links, o.visual(), o.packages},
+  return {.shapes = o.shapes,
           .mesh_prefix = o.prefix,
           .mjcf = o.writes("mjcf"),
           .sdf = o.writes("sdf"),

@@ -1,6 +1,7 @@
 // The validator: a plan is replayed over pairs of a node and a state of knowledge, each once:
 // breadth first, where it is known beforehand what is read from a node on; else depth first, and a
-// state is one that was replayed if it agrees with it on all that was read from there on. It reads
+// state is one that was replayed if it agrees with it on all that was read from there on. Where a
+// condition further down is settled, that it holds is all that states need to agree on. It reads
 // the lifted model, and includes nothing of the planner: scripts/include-graph sees to it.
 #include <kaboum/base/error.h>
 #include <kaboum/plan/check.h>
@@ -30,7 +31,8 @@ class Checker {
         progress_(progress),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
-        transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut),
+        transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut,
+                     Transitions::Outcomes::MayBeOpen),
         depth_first_(std::ranges::any_of(model.external_functions, &ExternalFunction::reads_state)),
         kept_less_(std::ranges::any_of(model.initial, is_disjunction)) {}
 
@@ -40,8 +42,9 @@ class Checker {
     if (depth_first_) replay_depth_first();
     while (!queue_.empty() && result_.violation.empty()) {
       if (!tried_at_once_ && visits_.size() >= kManyVisits && confirmed_at_once()) return result_;
-      const std::size_t v = queue_.front();
+      const auto [v, state] = std::move(queue_.front());
       queue_.pop_front();
+      visits_[v].state = &state;
       replay(v);
     }
     for (const auto& [node, v] : contradicted_)
@@ -71,7 +74,8 @@ class Checker {
     tried_at_once_ = true;
     if (!MergedReplay::takes(model_)) return false;
     try {
-      result_.valid = MergedReplay(model_, plan_, evaluator_, live_, transitions_).confirms();
+      const Transitions apart(model_, evaluator_, Transitions::Disjunctions::LeftOut);
+      result_.valid = MergedReplay(model_, plan_, evaluator_, live_, apart).confirms();
     } catch (const Error& e) {
       // What runs have in common may leave more outcomes open than can be looked at.
       if (e.code() != ErrorCode::LimitReached) throw;
@@ -82,7 +86,7 @@ class Checker {
 
   struct Visit {
     Index node;
-    const RuntimeKnowledge* state;
+    const RuntimeKnowledge* state;  ///< while it is replayed
     std::size_t parent;
     std::string label;
   };
@@ -113,11 +117,10 @@ class Checker {
       return;
     }
     if (!live_.at(node).all) k.restrict_to(live_.at(node).facts);
-    const auto [it, fresh] = seen_.emplace(node, std::move(k));
-    if (!fresh) return;
+    if (!seen_.emplace(node, live_.residue(node, k, {})).second) return;
     count_state();
-    visits_.push_back({node, &it->second, parent, std::move(label)});
-    queue_.push_back(visits_.size() - 1);
+    queue_.emplace_back(visits_.size(), std::move(k));
+    visits_.push_back({node, nullptr, parent, std::move(label)});
   }
 
   /// A state that a node is reached in.
@@ -138,26 +141,15 @@ class Checker {
   /// States in which a node was replayed, as far as that rests on them.
   struct Replayed {
     std::set<Fact> read;  ///< by external functions
-    std::set<RuntimeKnowledge> states;
+    std::set<LiveFacts::Residue> states;
   };
-
-  /// Of a state, what a node and all after it may read.
-  void restrict_to_read(RuntimeKnowledge& k, Index node, const std::set<Fact>& read) const {
-    if (live_.at(node).all) return;
-    std::set<Fact> facts = live_.at(node).facts;
-    facts.insert(read.begin(), read.end());
-    k.restrict_to(facts);
-  }
 
   /// External functions answer alike wherever what they asked of the state is alike.
   const Replayed* find_replayed(Index node, const RuntimeKnowledge& k) const {
     const auto at = replayed_.find(node);
     if (at == replayed_.end()) return nullptr;
-    for (const Replayed& r : at->second) {
-      RuntimeKnowledge part = k;
-      restrict_to_read(part, node, r.read);
-      if (r.states.contains(part)) return &r;
-    }
+    for (const Replayed& r : at->second)
+      if (r.states.contains(live_.residue(node, k, r.read))) return &r;
     return nullptr;
   }
 
@@ -165,8 +157,7 @@ class Checker {
     std::vector<Replayed>& all = replayed_[o.node];
     const auto same = std::ranges::find(all, o.read, &Replayed::read);
     Replayed& r = same == all.end() ? all.emplace_back(Replayed{o.read, {}}) : *same;
-    restrict_to_read(o.state, o.node, r.read);
-    r.states.insert(std::move(o.state));
+    r.states.insert(live_.residue(o.node, std::move(o.state), r.read));
   }
 
   void replay_depth_first() {
@@ -197,21 +188,29 @@ class Checker {
   }
 
   void end(std::size_t v) {
-    ++result_.leaves;
     std::vector<Index> slots(std::max<Index>(model_.goal_slots, 1), 0);
-    for (const Query& q : model_.goal.children)
-      if (!evaluator_.holds(q, slots, *visits_[v].state)) {
-        violate(v, "the goal does not hold at an end of the plan");
-        return;
-      }
+    const bool holds = std::ranges::all_of(model_.goal.children, [&](const Query& q) {
+      return evaluator_.holds(q, slots, *visits_[v].state);
+    });
+    ++result_.leaves;
+    if (!holds) violate(v, "the goal does not hold at an end of the plan");
   }
 
   void replay(std::size_t v) {
     const Visit at = visits_[v];
-    if (at.node == kNone) {
-      end(v);
-      return;
+    try {
+      if (at.node == kNone)
+        end(v);
+      else
+        carry_out(v);
+    } catch (const LeftOpen& open) {
+      for (RuntimeKnowledge& k : transitions_.look_at(*at.state, open.fact))
+        visit(at.node, std::move(k), at.parent, at.label);
     }
+  }
+
+  void carry_out(std::size_t v) {
+    const Visit at = visits_[v];
     const Plan::Node& node = plan_.nodes[at.node];
     std::vector<RuntimeKnowledge> after;
     std::string label;
@@ -275,6 +274,11 @@ class Checker {
 
   void follow(std::size_t v, const Plan::Branch& branch, RuntimeKnowledge k,
               const std::string& label) {
+    if (const Fact f = branch_fact(branch); k.is_open(f)) {
+      for (RuntimeKnowledge& seen : transitions_.look_at(std::move(k), f))
+        follow(v, branch, std::move(seen), label);
+      return;
+    }
     const Fact f = branch_fact(branch);
     const std::string prefix = label.empty() ? "" : label + "; ";
     Index value = 0;
@@ -308,9 +312,9 @@ class Checker {
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
-  std::set<std::pair<Index, RuntimeKnowledge>> seen_;
+  std::set<std::pair<Index, LiveFacts::Residue>> seen_;
   std::vector<Visit> visits_;
-  std::deque<std::size_t> queue_;
+  std::deque<std::pair<std::size_t, RuntimeKnowledge>> queue_;  ///< visits, and their states
   std::map<Index, std::size_t> contradicted_;  ///< nodes, and a visit in which they contradict
   std::set<Index> passed_;                     ///< nodes that some run gets through
   bool depth_first_;  ///< external functions may read anything: what they did is known afterwards

@@ -379,6 +379,8 @@ ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arg
     ExternalContext context{reader, handles_, seed_, attempt, choice_};
     try {
       result = model_.external_functions[external].call(arguments, context);
+    } catch (const LeftOpen&) {
+      throw;
     } catch (const std::exception& e) {
       throw Error(ErrorCode::InvalidInput, "external function '" + model_.externals[external].name +
                                                "' failed: " + e.what());

@@ -8,16 +8,18 @@
 namespace kaboum::plan {
 
 bool RuntimeKnowledge::operator<(const RuntimeKnowledge& o) const {
-  return std::tie(atoms_, values_, excluded_, exclusive_, some_, cut_) <
-         std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_, o.some_, o.cut_);
+  return std::tie(atoms_, values_, excluded_, exclusive_, some_, open_, cut_) <
+         std::tie(o.atoms_, o.values_, o.excluded_, o.exclusive_, o.some_, o.open_, o.cut_);
 }
 
 bool RuntimeKnowledge::knows(const Fact& atom, bool truth) const {
+  require_seen(atom);
   const auto found = atoms_.find(atom);
   return found != atoms_.end() && found->second == truth;
 }
 
 const Index* RuntimeKnowledge::value(const Fact& term) const {
+  require_seen(term);
   const auto found = values_.find(term);
   return found == values_.end() ? nullptr : &found->second;
 }
@@ -29,6 +31,7 @@ bool RuntimeKnowledge::rules_out(const Fact& term, Index value) const {
 }
 
 bool RuntimeKnowledge::learn(const Fact& atom, bool truth) {
+  require_seen(atom);
   const auto [it, fresh] = atoms_.emplace(atom, truth);
   if (!fresh) return it->second == truth;
   return propagate();
@@ -97,11 +100,13 @@ bool RuntimeKnowledge::conclude_some(bool& again) {
 }
 
 bool RuntimeKnowledge::learn_exclusive(const std::set<Fact>& atoms) {
+  for (const Fact& f : atoms) require_seen(f);
   exclusive_[atoms] = atoms;
   return propagate();
 }
 
 bool RuntimeKnowledge::learn_some(std::set<FactLiteral> literals) {
+  for (const FactLiteral& l : literals) require_seen(l.first);
   for (const FactLiteral& l : literals)
     if (literals.contains({l.first, !l.second})) return true;
   some_.insert(std::move(literals));
@@ -134,6 +139,7 @@ bool RuntimeKnowledge::learn_not_value(const Fact& term, Index value,
 /// A disjunction with this atom undecided says nothing any more about the others. Nothing is lost
 /// if it is the only one, and asks of the others no more than that one of them or the atom held.
 void RuntimeKnowledge::release(const Fact& atom) {
+  require_seen(atom);
   if (atoms_.contains(atom)) return;
   bool ties = false;
   std::size_t gone = std::erase_if(exclusive_, [&](const auto& e) {
@@ -156,10 +162,12 @@ void RuntimeKnowledge::forget(const Fact& atom) {
   atoms_.erase(atom);
 }
 void RuntimeKnowledge::become_value(const Fact& term, Index value) {
+  require_seen(term);
   excluded_.erase(term);
   values_[term] = value;
 }
 void RuntimeKnowledge::forget_value(const Fact& term) {
+  require_seen(term);
   excluded_.erase(term);
   values_.erase(term);
 }
@@ -219,6 +227,14 @@ void RuntimeKnowledge::weaken_to(const RuntimeKnowledge& other,
   cut_ |= other.cut_;
 }
 
+std::set<Fact> RuntimeKnowledge::tied() const {
+  std::set<Fact> tied;
+  for (const auto& [entry, open] : exclusive_) tied.insert(open.begin(), open.end());
+  for (const std::set<FactLiteral>& literals : some_)
+    for (const FactLiteral& l : literals) tied.insert(l.first);
+  return tied;
+}
+
 void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {
   std::set<Fact> keep = live;
   for (bool again = true; again;) {
@@ -247,6 +263,7 @@ void RuntimeKnowledge::restrict_to(const std::set<Fact>& live) {
   std::erase_if(atoms_, dead);
   std::erase_if(values_, dead);
   std::erase_if(excluded_, dead);
+  std::erase_if(open_, [&](const Fact& f) { return !keep.contains(f); });
 }
 
 }  // namespace kaboum::plan

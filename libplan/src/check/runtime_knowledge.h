@@ -15,6 +15,12 @@ using Fact = std::vector<Index>;
 /// An atom, and whether it is the atom or its negation that holds.
 using FactLiteral = std::pair<Fact, bool>;
 
+/// Stops whatever looks at, or changes, what was sensed but left open
+/// (RuntimeKnowledge::leave_open): it has to be done for each outcome by itself.
+struct LeftOpen {
+  Fact fact;
+};
+
 /// What an agent knows at run time, when every sensed value is at hand: plain sets, no packing. The
 /// validator's, and only its, notion of a state; the rules are those of
 /// docs/planning/knowledge-states.md, written a second time.
@@ -23,9 +29,18 @@ class RuntimeKnowledge {
   [[nodiscard]] bool operator<(const RuntimeKnowledge& other) const;
 
   [[nodiscard]] bool knows(const Fact& atom, bool truth) const;
-  [[nodiscard]] bool knows_whether(const Fact& atom) const { return atoms_.contains(atom); }
+  [[nodiscard]] bool knows_whether(const Fact& atom) const {
+    return atoms_.contains(atom) || open_.contains(atom);
+  }
   [[nodiscard]] const Index* value(const Fact& term) const;
   [[nodiscard]] bool rules_out(const Fact& term, Index value) const;
+
+  /// It is sensed, and stands for all its outcomes until one is looked at. All else that is asked
+  /// or done of it throws LeftOpen. @pre it is not known, and no disjunction says anything of it.
+  void leave_open(const Fact& f) { open_.insert(f); }
+  [[nodiscard]] bool is_open(const Fact& f) const { return open_.contains(f); }
+  /// It is as it was before it was sensed.
+  void look_at(const Fact& f) { open_.erase(f); }
 
   // The world as it is: outcomes of sensing and initial facts. False: contradiction.
   bool learn(const Fact& atom, bool truth);
@@ -50,6 +65,8 @@ class RuntimeKnowledge {
   }
   /// At least one literal of each holds.
   [[nodiscard]] const std::set<std::set<FactLiteral>>& some() const { return some_; }
+  /// Atoms that are not decided, and of which disjunctions say something.
+  [[nodiscard]] std::set<Fact> tied() const;
   /// Whether less is kept than is known: a disjunction went whose atoms said something of each
   /// other still, or something happened that hangs on what is unknown.
   [[nodiscard]] bool cut() const { return cut_; }
@@ -67,6 +84,9 @@ class RuntimeKnowledge {
   bool conclude_exclusive(bool& again);
   bool conclude_some(bool& again);
   void release(const Fact& atom);
+  void require_seen(const Fact& f) const {
+    if (!open_.empty() && open_.contains(f)) throw LeftOpen{f};
+  }
 
   std::map<Fact, bool> atoms_;
   std::map<Fact, Index> values_;
@@ -74,6 +94,7 @@ class RuntimeKnowledge {
   /// Each with the entry it came from: del(Kx) names that.
   std::map<std::set<Fact>, std::set<Fact>> exclusive_;
   std::set<std::set<FactLiteral>> some_;
+  std::set<Fact> open_;  ///< sensed, and not looked at
   bool cut_ = false;
 };
 

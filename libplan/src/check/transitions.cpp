@@ -39,12 +39,31 @@ void Transitions::sense(RuntimeKnowledge state, const Fact& f,
   }
 }
 
+/// Whether either outcome may come, and tells nothing of other facts.
+bool Transitions::may_leave_open(const RuntimeKnowledge& k, const Fact& f) const {
+  if (outcomes_ == Outcomes::Apart) return false;
+  if (f[0] == 0) return !k.knows_whether(f) && !k.tied().contains(f);
+  return k.value(f) == nullptr &&
+         std::ranges::count_if(range(f[1]), [&](Index v) { return !k.rules_out(f, v); }) > 1;
+}
+
+std::vector<RuntimeKnowledge> Transitions::look_at(RuntimeKnowledge k, const Fact& f) const {
+  std::vector<RuntimeKnowledge> next;
+  k.look_at(f);
+  sense(std::move(k), f, next);
+  return next;
+}
+
 /// The states that the sensing of these facts may lead to.
 std::vector<RuntimeKnowledge> Transitions::split(RuntimeKnowledge k,
                                                  const std::vector<Fact>& sensed) const {
   std::vector<RuntimeKnowledge> all;
   all.push_back(std::move(k));
   for (const Fact& f : sensed) {
+    if (all.size() == 1 && (all[0].is_open(f) || may_leave_open(all[0], f))) {
+      all[0].leave_open(f);
+      continue;
+    }
     std::vector<RuntimeKnowledge> next;
     for (RuntimeKnowledge& state : all) sense(std::move(state), f, next);
     if (next.size() > kMaximumSplit)

@@ -22,8 +22,13 @@ class Transitions {
   /// Whether states keep initial disjunctions (Or), or only that their atoms are stated.
   enum class Disjunctions : std::uint8_t { Kept, LeftOut };
 
-  Transitions(const Model& model, const QueryEvaluator& evaluator, Disjunctions disjunctions)
-      : model_(model), evaluator_(evaluator), disjunctions_(disjunctions) {}
+  /// Whether states are those of one outcome each, or may leave open what was sensed until it is
+  /// looked at. Then what looks at it, or changes it, is stopped by LeftOpen.
+  enum class Outcomes : std::uint8_t { Apart, MayBeOpen };
+
+  Transitions(const Model& model, const QueryEvaluator& evaluator, Disjunctions disjunctions,
+              Outcomes outcomes = Outcomes::Apart)
+      : model_(model), evaluator_(evaluator), disjunctions_(disjunctions), outcomes_(outcomes) {}
 
   /// @throws Error{InvalidInput} if the initial knowledge contradicts itself.
   [[nodiscard]] std::vector<RuntimeKnowledge> initial_states() const;
@@ -32,6 +37,9 @@ class Transitions {
   /// contradicts what is known.
   [[nodiscard]] std::vector<RuntimeKnowledge> after(const Action& action, std::vector<Index>& slots,
                                                     const RuntimeKnowledge& before) const;
+
+  /// One for each outcome of what a state leaves open.
+  [[nodiscard]] std::vector<RuntimeKnowledge> look_at(RuntimeKnowledge k, const Fact& f) const;
 
  private:
   /// An update that happens, or only may.
@@ -47,6 +55,7 @@ class Transitions {
   };
 
   [[nodiscard]] const std::vector<Index>& range(Index function) const;
+  [[nodiscard]] bool may_leave_open(const RuntimeKnowledge& k, const Fact& f) const;
   void sense(RuntimeKnowledge state, const Fact& f, std::vector<RuntimeKnowledge>& next) const;
   [[nodiscard]] std::vector<RuntimeKnowledge> split(RuntimeKnowledge k,
                                                     const std::vector<Fact>& sensed) const;
@@ -72,6 +81,7 @@ class Transitions {
   const Model& model_;
   const QueryEvaluator& evaluator_;
   Disjunctions disjunctions_;
+  Outcomes outcomes_;
 };
 
 }  // namespace kaboum::plan

@@ -151,6 +151,7 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
             result.chosen = answer.chosen;
             result.choices = answer.choices;
             result.fixed = answer.fixed;
+            result.listed = answer.listed;
             if (answer.kind != Answer::Kind::Value || g.range == kNone) return result;
             const auto found = names->object_of.find(answer.value);
             const bool constant =
@@ -162,7 +163,7 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
             result.value = constant ? found->second : context.handles.intern(g.range, answer.value);
             return result;
           },
-          function.reads_state(), function.takes_seed()};
+          function.reads_state(), function.takes_seed(), function.refuses_early()};
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ ExternalBindings FailedCalls::watch(const ExternalBindings& bindings) {
       return answer;
     };
     out[name] = ExternalBinding(watched, function.reads_state());
+    if (function.refuses_early()) out[name].refuse_early();
   }
   return out;
 }

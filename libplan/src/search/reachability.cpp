@@ -375,8 +375,12 @@ bool Reachability::again() {
 bool Reachability::may_answer(Index node) const {
   const AnswerTree& answers = task_.calls().answers();
   if (node == kNone) return true;
-  if (AnswerTree::is_leaf(node))
-    return answers.leaf(AnswerTree::leaf_number(node)).kind != Answer::Kind::Impossible;
+  if (AnswerTree::is_leaf(node)) {
+    const AnswerTree::Leaf leaf = answers.leaf(AnswerTree::leaf_number(node));
+    return leaf.kind == Answer::Kind::Value ||
+           (leaf.kind == Answer::Kind::NotFound &&
+            (answers_ != Answers::AsFound || leaf.attempts < task_.calls().attempts()));
+  }
   const Index item = answers.reads(node);
   if (is_call(item)) return true;
   const Fluent& f = task_.layout().fluents()[item];
@@ -388,6 +392,11 @@ bool Reachability::may_answer(Index node) const {
     if (any_handle || may_answer(answers.child(node, static_cast<Index>(c)))) return true;
   }
   return false;
+}
+
+bool Reachability::may_have_value(Index call) const {
+  if (asked_.insert(call).second) task_.calls().ask_early(call, task_.initial().data());
+  return may_answer(task_.calls().answers_of(call));
 }
 
 bool Reachability::possible(Formula f, bool positive) const {
@@ -403,7 +412,7 @@ bool Reachability::possible(Formula f, bool positive) const {
     case Kind::Derived:
       return true;
     case Kind::External:
-      return !positive || answers_ == Answers::Any || may_answer(task_.calls().answers_of(n.a));
+      return !positive || answers_ == Answers::Any || may_have_value(n.a);
     case Kind::Not:
       return possible(*pool.begin(f), !positive);
     case Kind::And:

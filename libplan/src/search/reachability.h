@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -41,9 +42,11 @@ struct JoinedAction {
 /// while new facts are reached.
 class Reachability {
  public:
-  /// Calls of external functions may have any value; or none where these say that it is impossible.
-  enum class Answers : std::uint8_t { Any, AsGiven };
+  /// Calls of external functions may have any value; none where these say that it is impossible; or
+  /// where they found nothing either, as often as they were to look.
+  enum class Answers : std::uint8_t { Any, AsGiven, AsFound };
 
+  /// But for Any, functions that refuse early are asked of the initial state.
   /// @pre the arguments outlive it. @throws LimitExceeded
   Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers = Answers::Any);
 
@@ -82,11 +85,13 @@ class Reachability {
   bool again();
   void mark(FactId f);
   [[nodiscard]] bool may_answer(Index node) const;
+  [[nodiscard]] bool may_have_value(Index call) const;
 
   Task& task_;
   Limits& limits_;
   const FactTable& facts_;
   Answers answers_;
+  mutable std::set<Index> asked_;  ///< calls, of the initial state
   std::vector<char> reached_;
   std::vector<char> taken_;      ///< by fluent of an atom: that it is true is joined
   std::vector<char> acted_;      ///< by step

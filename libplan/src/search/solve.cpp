@@ -40,22 +40,47 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
 /// possible, and how many times as many there are before the next look.
 constexpr std::uint64_t kFirstLook = 2'000, kLaterLook = 8;
 
-/// Whether no state that the delete relaxation reaches meets the goal, if calls that were
-/// impossible are so wherever what they read has not changed. Objects that do not matter then
-/// multiply nothing.
-bool is_refuted(Task& task, Limits& limits) {
+/// Whether no state that the delete relaxation reaches meets the goal, if calls that had no value
+/// have none wherever what they read has not changed. Objects that do not matter then multiply
+/// nothing.
+bool is_refuted(Task& task, Limits& limits, Reachability::Answers answers) {
   const FactTable facts(task.model(), task.layout());
-  return !Reachability(task, limits, facts, Reachability::Answers::AsGiven)
-              .possible(task.goal(), true);
+  return !Reachability(task, limits, facts, answers).possible(task.goal(), true);
+}
+
+/// Why a search need not begin, or go on.
+enum class Refutation : std::uint8_t {
+  None,
+  Proved,   ///< there is no plan, whatever functions choose and still may find
+  NotFound  ///< nor is there one with what they found so far
+};
+
+Refutation refutation(Task& task, Limits& limits) {
+  using Answers = Reachability::Answers;
+  {
+    const ExternalCalls::Supposing supposing(task.calls());
+    if (!is_refuted(task, limits, Answers::AsFound)) return Refutation::None;
+  }
+  if (is_refuted(task, limits, Answers::AsGiven)) return Refutation::Proved;
+  is_refuted(task, limits, Answers::AsFound);  // what is missed then, is
+  return Refutation::NotFound;
 }
 
 /// A search, stopped now and then to look whether it can succeed at all. What it asks external
 /// functions the second time is known by then.
+/// @param proved  no choice and no further attempt can change that there is no plan.
 Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& assumptions,
-                    Limits& limits, Solution& solution) {
+                    Limits& limits, Solution& solution, bool& proved) {
   std::uint64_t steps = kFirstLook;
-  const bool looks =
-      std::ranges::any_of(task.model().external_functions, &ExternalFunction::reads_state);
+  const auto& functions = task.model().external_functions;
+  const bool looks = std::ranges::any_of(functions, &ExternalFunction::reads_state);
+  const auto is_hopeless = [&] {
+    const Refutation found = refutation(task, limits);
+    proved = found == Refutation::Proved;
+    return proved || (found == Refutation::NotFound && !task.calls().missed().empty());
+  };
+  if (std::ranges::any_of(functions, &ExternalFunction::refuses_early) && is_hopeless())
+    return Outcome::Unsolvable;
   while (true) {
     if (looks) limits.pause_after(steps);
     ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
@@ -65,7 +90,8 @@ Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& 
     limits.never_pause();
     if (out == Outcome::Solved) solution.plan = planner.plan();
     if (!paused) return out;
-    if (!task.calls().refused().empty() && is_refuted(task, limits)) return Outcome::Unsolvable;
+    const bool failed = !task.calls().refused().empty() || !task.calls().missed().empty();
+    if (failed && is_hopeless()) return Outcome::Unsolvable;
     steps *= kLaterLook;
   }
 }
@@ -77,7 +103,8 @@ void search(Task& task, const SolveOptions& options, unsigned choice, Limits& li
   calls.seed(options.seed, choice);
   const Assumptions assumptions(task, options.assumed);
   while (true) {
-    solution.outcome = run_planner(task, options, assumptions, limits, solution);
+    bool proved = false;
+    solution.outcome = run_planner(task, options, assumptions, limits, solution, proved);
     if (solution.outcome == Outcome::Solved) {
       const auto& functions = task.model().external_functions;
       if (std::any_of(functions.begin(), functions.end(),
@@ -88,9 +115,15 @@ void search(Task& task, const SolveOptions& options, unsigned choice, Limits& li
       }
     }
     if (solution.outcome != Outcome::Unsolvable) break;
-    if (calls.missed().empty()) {
+    if (proved || calls.missed().empty()) {
       solution.refused = calls.refused();
-      if (calls.chosen().empty()) break;
+      if (!calls.listed().empty()) {
+        solution.outcome = Outcome::Limit;
+        solution.limit =
+            "with what the scene lists there is none, others may do: " + calls.listed();
+        return;
+      }
+      if (proved || calls.chosen().empty()) break;
       solution.outcome = Outcome::Limit;
       solution.limit = "with the value that was chosen for " + calls.chosen() +
                        " there is none; others may do, and are not tried" +

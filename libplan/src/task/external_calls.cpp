@@ -138,9 +138,25 @@ ExternalCalls::Reply ExternalCalls::evaluate(Index call, const Word* state) {
     return make(call, state, l.attempts);
   if (l.kind == Answer::Kind::NotFound && missed_ == kNone) {
     missed_ = leaf;
-    missed_call_ = model_.externals[calls_[call].external].name;
+    const Call c = calls_[call];
+    Reply why;
+    Footprint path;
+    std::vector<Index> objects;
+    arguments(c, state, objects, path, why);
+    missed_call_ = text(c, objects);
   }
   return reply(leaf);
+}
+
+void ExternalCalls::ask_early(Index call, const Word* state) {
+  if (!model_.external_functions[calls_[call].external].refuses_early) return;
+  struct Reset {
+    bool& early;
+    ~Reset() { early = false; }
+  };
+  const Reset reset{early_};
+  early_ = true;
+  evaluate(call, state);
 }
 
 ExternalResult ExternalCalls::run(const Call& c, const std::vector<Index>& objects,
@@ -166,11 +182,12 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
   ExternalResult result;
   std::size_t known = 0;
   for (unsigned attempt = first_attempt; attempt < attempts_; ++attempt) {
-    NotedReader reader(layout_, state, path);
+    NotedReader reader(layout_, state, path, early_ ? &objects : nullptr);
     known = handles_.size();
     try {
       result = run(c, objects, reader, attempt);
     } catch (const ReadingStopped&) {
+      if (early_ && reader.sensed() == kNone) --made_;
       return open(reader.sensed());
     } catch (const LimitExceeded&) {
       throw;
@@ -214,6 +231,8 @@ void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const
   if (result.kind == Answer::Kind::NotFound) return;
   if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
     refused_ = text(c, objects) + ": " + result.reason;
+  if (result.kind == Answer::Kind::Impossible && result.listed && listed_.empty())
+    listed_ = text(c, objects) + ": " + result.reason;
   std::vector<Index> read = objects;
   for (const auto& [item, content] : path) {
     if (is_call(item))

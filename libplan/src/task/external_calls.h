@@ -42,6 +42,9 @@ class ExternalCalls {
   ///         itself; LimitExceeded.
   Reply evaluate(Index call, const Word* state);
 
+  /// Asks functions that refuse early, as long as they read nothing but what their arguments name.
+  void ask_early(Index call, const Word* state);
+
   /// What is known of a call's answers: a node of `answers()`.
   [[nodiscard]] Index answers_of(Index call) const { return calls_[call].answers.node; }
   [[nodiscard]] const AnswerTree& answers() const { return answers_; }
@@ -70,6 +73,8 @@ class ExternalCalls {
   /// A call whose value was chosen among several, when a failure may be due to that choice: some
   /// final answer rests on it. Empty: there is none.
   [[nodiscard]] std::string chosen() const;
+  /// A call that was impossible by what is listed only, as "g(a): reason"; empty: there is none.
+  [[nodiscard]] const std::string& listed() const { return listed_; }
   /// The first call that was impossible, as "g(a): reason", and how many others were; empty: none
   /// gave a reason.
   [[nodiscard]] std::string refused() const;
@@ -150,13 +155,14 @@ class ExternalCalls {
   std::vector<std::uint8_t> sampled_;  ///< by external
   std::uint64_t seed_ = 0;
   unsigned attempts_ = 1, choice_ = 0, choices_ = 0;
+  bool early_ = false;    ///< functions are stopped where they read what no argument names
   Index missed_ = kNone;  ///< a leaf
   std::string missed_call_;
   std::map<Index, std::string> chosen_;  ///< handles that rest on a choice, and whose value it was
   std::set<Index> final_;                ///< handles that final answers rest on
   std::set<Index> chosen_types_;
   std::string any_choice_;  ///< a choice that anything may rest on
-  std::string refused_;
+  std::string refused_, listed_;
   std::size_t refusals_ = 0;
   std::size_t bytes_told_ = 0;
   std::uint64_t made_ = 0;

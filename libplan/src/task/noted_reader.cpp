@@ -1,6 +1,8 @@
 // Reads of a state by external functions.
 #include "task/noted_reader.h"
 
+#include <algorithm>
+
 #include "task/atom_knowledge.h"
 
 namespace kaboum::plan {
@@ -40,6 +42,10 @@ Index NotedReader::read(Index fluent) {
   for (const auto& [item, content] : notes_)
     if (item == fluent) return content;
   if (state_ == nullptr) throw ReadingStopped();
+  const auto is_named = [&](Index object) {
+    return named_ == nullptr || std::ranges::find(*named_, object) != named_->end();
+  };
+  if (!std::ranges::all_of(layout_.fluents()[fluent].arguments, is_named)) throw ReadingStopped();
   const Index content = settled_content(layout_, fluent, state_, sensed_);
   if (content == kNone) throw ReadingStopped();
   notes_.emplace_back(fluent, content);

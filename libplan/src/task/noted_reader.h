@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "task/answer_tree.h"
 #include "task/layout.h"
@@ -21,8 +22,10 @@ Index settled_content(const Layout& layout, Index fluent, const Word* state, Ind
 class NotedReader final : public StateReader {
  public:
   /// @param state  null: an answer is confirmed, which may not read more than the notes say.
-  NotedReader(const Layout& layout, const Word* state, Footprint& notes)
-      : layout_(layout), state_(state), notes_(notes) {}
+  /// @param named  objects: what is of others is not read, reading is stopped there; null: all is.
+  NotedReader(const Layout& layout, const Word* state, Footprint& notes,
+              const std::vector<Index>* named = nullptr)
+      : layout_(layout), state_(state), notes_(notes), named_(named) {}
 
   /// The sensed fluent that was asked for, so that a branch must come first; kNone: none was.
   [[nodiscard]] Index sensed() const { return sensed_; }
@@ -36,6 +39,7 @@ class NotedReader final : public StateReader {
   const Layout& layout_;
   const Word* state_;
   Footprint& notes_;
+  const std::vector<Index>* named_;
   Index sensed_ = kNone;
 };
 

@@ -165,6 +165,15 @@ TEST_F(Actions, RefusalsNameWhatWasListed) {
   EXPECT_NE(far.reason.find("none of the 5 grasps listed for block"), std::string::npos)
       << far.reason;
   EXPECT_FALSE(far.chosen);
+  EXPECT_FALSE(far.listed) << "3 m away, no grasp is in reach";
+  // Where the listed grasps are barely out of reach, another one might be within.
+  Answer barely = Answer::holds(true);
+  for (int cm = 80; cm < 300 && barely.kind != Answer::Kind::Impossible; cm += 5) {
+    words["pose(block)"] = "at " + std::to_string(0.01 * cm) + " 0.35 0.2 0 0 0 1";
+    barely = ask(all_, "reach", {"left", "block"}, words);
+  }
+  EXPECT_EQ(barely.kind, Answer::Kind::Impossible);
+  EXPECT_TRUE(barely.listed) << barely.reason;
   words["pose(block)"] = "start";
   const Answer near = ask(all_, "reach", {"left", "block"}, words);
   EXPECT_EQ(near.kind, Answer::Kind::Value) << near.reason;
@@ -248,6 +257,33 @@ TEST_F(Actions, PutUprightLeansNoMoreThanItMay) {
   EXPECT_NE(no.reason.find("not upright where it is"), std::string::npos) << no.reason;
   // But it can be put there without.
   EXPECT_EQ(ask(all_, "put", {"left", "block", "socket", end}, leaning).kind, Answer::Kind::Value);
+}
+
+/// A wall stands across the socket's middle; beside it there is room for the block.
+TEST_F(Actions, WhatFindsNoRoomAtAPointStandsElsewhereOnItsFace) {
+  Words words = holding(0, 0, kDown);
+  words["pose(wall)"] = "at 0.527 0.05 -0.06 0 0 0 1";
+  state_.objects[TwoArms::kWall].pose.translation = {0.527, 0.05, -0.06};
+  EXPECT_EQ(ask(all_, "put", {"left", "block", "socket", "home"}, words, 1).kind,
+            Answer::Kind::NotFound);
+  const Answer answer = ask(all_, "put", {"left", "block", "socket", "home"}, words, 8);
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  EXPECT_TRUE(answer.chosen);
+  for (const Motion& m : motions_of(answer)) follow(m);
+  expect_block(answer.value);
+  // All of its base is on the socket's face.
+  for (const double x : {-0.025, 0.025})
+    for (const double y : {-0.025, 0.025}) {
+      const Vec3 corner = block() * Vec3(x, y, -0.08);
+      EXPECT_LE(std::abs(corner.x() - 0.55), 0.05);
+      EXPECT_LE(std::abs(corner.y() - 0.05), 0.05);
+      EXPECT_NEAR(corner.z(), 0.041 + 1e-3 + 2 * TwoArms::kEpsilon, 1e-6);
+    }
+  // Where the wall covers the face there is no room, and that is no proof.
+  words["pose(wall)"] = "at 0.55 0.05 -0.06 0 0 0 1";
+  const Answer none = ask(all_, "put", {"left", "block", "socket", "home"}, words, 3);
+  EXPECT_EQ(none.kind, Answer::Kind::NotFound);
+  EXPECT_NE(none.reason.find("other places there were tried"), std::string::npos) << none.reason;
 }
 
 TEST_F(Actions, JoinSlidesAlongTheSeatsNormal) {

@@ -44,6 +44,12 @@ mutant("an effect for all happens for one" check/transitions.cpp
 mutant("effects happen whatever their condition" check/transitions.cpp
   [=[if (*happens) fire(]=]
   [=[if (MUTANT || *happens) fire(]=])
+mutant("only one outcome of what was left open is looked at" check/transitions.cpp
+  [=[  sense(std::move(k), f, next);
+  return next;]=]
+  [=[  sense(std::move(k), f, next);
+  if (MUTANT && next.size() > 1) next.pop_back();
+  return next;]=])
 mutant("deletions are lost" check/transitions.cpp
   [=[if (!g.update->add) delete_from(k, g);]=]
   [=[if (!MUTANT && !g.update->add) delete_from(k, g);]=])
@@ -109,8 +115,8 @@ mutant("preconditions are not looked at" check/check.cpp
   [=[if (!evaluator_.holds(a.precondition, slots, *at.state)) {]=]
   [=[if (!MUTANT && !evaluator_.holds(a.precondition, slots, *at.state)) {]=])
 mutant("goals are not looked at" check/check.cpp
-  [=[if (!evaluator_.holds(q, slots, *visits_[v].state)) {]=]
-  [=[if (!MUTANT && !evaluator_.holds(q, slots, *visits_[v].state)) {]=])
+  [=[if (!holds) violate(]=]
+  [=[if (!MUTANT && !holds) violate(]=])
 mutant("a missing case is none" check/check.cpp
   [=[violate(v, prefix + "the plan has no case for " + case_text(model_, branch, value));]=]
   [=[if (!MUTANT)
@@ -128,8 +134,19 @@ mutant("disjunctions at the start refute for good" check/check.cpp
   [=[kept_less_(std::ranges::any_of(model.initial, is_disjunction))]=]
   [=[kept_less_(!MUTANT && std::ranges::any_of(model.initial, is_disjunction))]=])
 mutant("preconditions further down need not be known" check/live_facts.cpp
-  [=[live.all |= !evaluator_.reads(a.precondition, bound, live.facts);]=]
-  [=[if (!MUTANT) live.all |= !evaluator_.reads(a.precondition, bound, live.facts);]=])
+  [=[read_query(a.precondition, slots, bound, part);]=]
+  [=[if (!MUTANT) read_query(a.precondition, slots, bound, part);]=])
+mutant("what changes is settled" check/live_facts.cpp
+  [=[if (facts.meets(of, differs) && !facts.meets(of, s.changed))]=]
+  [=[if (facts.meets(of, differs) && (MUTANT || !facts.meets(of, s.changed)))]=])
+mutant("what is settled is not told from what is unknown" check/live_facts.cpp
+  [=[        residue.settled.push_back(c);
+]=]
+  [=[        MUTANT ? void() : residue.settled.push_back(c);
+]=])
+mutant("what fails is settled" check/live_facts.cpp
+  [=[return evaluator_.holds(*c.query, slots, k);]=]
+  [=[return MUTANT || evaluator_.holds(*c.query, slots, k);]=])
 
 # Possible worlds.
 mutant("worlds: effects happen in all worlds" check/world_rules.cpp

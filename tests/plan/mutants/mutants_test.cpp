@@ -56,6 +56,12 @@ const char* const kAct = R"({"action":"act","arguments":[],"next":"goal"})";
 const char* const kActAndLook = R"({"action":"act","arguments":[],"next":1},
                                    {"action":"look","arguments":[],"next":"goal"})";
 
+const char* const kTwoWays =
+    R"({"action":"look","arguments":[],"branch":{"predicate":"s","arguments":[],
+        "cases":[{"value":true,"next":1},{"value":false,"next":2}]}},
+       {"action":"one","arguments":[],"next":3},{"action":"two","arguments":[],"next":3},
+       {"action":"act","arguments":[],"next":"goal"})";
+
 const Probe kProbes[] = {
     {"an effect may happen", false,
      "init: K(!q)\naction act effects: add(Kf, done), whenever K(p) => { add(Kf, q) }\n"
@@ -108,7 +114,10 @@ const Probe kProbes[] = {
     {"an atom that changes tells nothing of the others", false,
      "init: Kx(p | q)\naction act effects: add(Kf, !p), add(Kf, done)\n"
      "action look effects: add(Kw, u)\ngoal: K(done) & K(q)",
-     kActAndLook, false},
+     R"({"action":"act","arguments":[],"next":1},
+        {"action":"look","arguments":[],"branch":{"predicate":"u","arguments":[],
+         "cases":[{"value":true,"next":"goal"},{"value":false,"next":"goal"}]}})",
+     false},
     {"half of a condition is known to hold", false,
      "init: K(p), K(!r)\naction act effects: whenever K(p) & K(u) => { add(Kf, r) }\ngoal: K(r)",
      kAct, false},
@@ -123,6 +132,18 @@ const Probe kProbes[] = {
          "cases":[{"value":true,"next":1},{"value":false,"next":1}]}},
         {"action":"act","arguments":[],"next":"goal"})",
      false},
+    {"a condition that holds may fail further down", false,
+     "init: K(!p), K(!q)\naction look effects: add(Kw, s)\n"
+     "action one preconds: K(s) effects: add(Kf, q)\n"
+     "action two preconds: K(!s) effects: add(Kf, p)\n"
+     "action act effects: add(Kf, done), add(Kf, !p)\ngoal: K(done) & (K(p) | K(q))",
+     kTwoWays, false},
+    {"a condition of what is unknown does not hold", false,
+     "init: K(!u)\naction look effects: add(Kw, s)\n"
+     "action one preconds: K(s) effects: add(Kf, q)\n"
+     "action two preconds: K(!s) effects: add(Kf, u)\n"
+     "action act effects: add(Kf, done)\ngoal: K(done) & (K(p) | K(q))",
+     kTwoWays, false},
     {"an observation that contradicts what is known", false,
      "init: K(!p), K(!q)\naction act effects: add(Kf, done), add(Kx, p | q)\ngoal: K(done)", kAct,
      false},
@@ -306,7 +327,7 @@ TEST(Checker, NoMistakeOfItsOwnGoesUnseen) {
     }
     EXPECT_TRUE(seen) << m.name;
   }
-  EXPECT_GE(checkers, 43);
+  EXPECT_GE(checkers, 47);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace kaboum {
 
-/// Where a text stops being JSON, in words: "the JSON is cut short: it ends at line 3, column 7",
-/// or "not JSON at line 3, column 7, near '...'".
+/// Description of the place where a text stops being JSON: "the JSON is cut short: it ends at line
+/// 3, column 7", or "not JSON at line 3, column 7, near '...'".
 /// @param byte  how many bytes a parser had read when it gave up.
 inline std::string describe_json_damage(std::string_view text, std::size_t byte) {
   const std::string_view read = text.substr(0, byte);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
 
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
@@ -23,6 +25,7 @@ struct OptionDescription {
     Count,   ///< an integer
     Counts,  ///< different integers, the largest first: "20000,10000"
     Number,  ///< a finite number
+    Memory,  ///< bytes, more than 0: "500M", "2G"; k, K, M and G are powers of 1024
     Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "0.5%"
     Choice,  ///< one of `choices`
     Text,
@@ -39,7 +42,9 @@ struct OptionDescription {
   double low = -std::numeric_limits<double>::infinity();  ///< least count or number
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
   bool between = false;   ///< a number lies between the limits and is none of them
-  bool absolute = false;  ///< a length is no percentage
+  bool absolute = false;  ///< a length is no percentage; a number is such a length
+  /// Name of a list where all its parts are stated at once: "plugins"; empty: `name`.
+  std::string plural = {};
   /// Default in words; empty: that of the request, if it has one.
   std::string otherwise = {};
   /// Part of each record, its default too.
@@ -47,7 +52,7 @@ struct OptionDescription {
   /// Part of no record's line: containers have a field of its own for it.
   bool unrecorded = false;
 
-  // Set by option() and choice(), but for Names and Settings.
+  // Set by option() and choice(), but for Names, Settings and Memory.
   Kind kind = Kind::Text;
   std::vector<std::string> choices = {};
 };
@@ -83,6 +88,9 @@ bool is_repeated(const OptionDescription& option);
 /// Numbers by name, of texts such as "finger=0.04".
 /// @pre flaw_of finds nothing.
 std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings);
+
+/// Bytes of "500M", "2G" or "1000"; nullopt unless it is a size from 1 to 1e15.
+std::optional<std::size_t> parse_memory(const std::string& text);
 
 /// Texts of values: the fewest digits that read back as the same number.
 namespace option_text {
@@ -151,12 +159,13 @@ inline OptionDescription::Kind kind_of_list(OptionDescription::Kind stated) {
   return stated == Kind::Names || stated == Kind::Settings ? stated : Kind::Files;
 }
 
-/// An option of one value, or of several counts.
+/// An option of one value, or of several counts. An infinite number states nothing.
 template <class Request, class Member>
 Option<Request> single(OptionDescription description, Member member) {
   using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
   using Content = option_detail::Content<Stored>;
   description.kind = option_detail::kind_of<typename Content::Type>();
+  if (description.absolute) description.kind = OptionDescription::Kind::Length;
   return {std::move(description),
           [member](const Request& request) -> std::optional<std::string> {
             const Stored& stored = member(request);
@@ -165,6 +174,9 @@ Option<Request> single(OptionDescription description, Member member) {
               return option_text::of(*stored);
             } else if constexpr (std::is_same_v<Stored, std::vector<std::size_t>>) {
               if (stored.empty()) return std::nullopt;
+              return option_text::of(stored);
+            } else if constexpr (std::is_same_v<Stored, double>) {
+              if (stored > std::numeric_limits<double>::max()) return std::nullopt;
               return option_text::of(stored);
             } else {
               return option_text::of(stored);
@@ -190,18 +202,56 @@ Option<Request> list(OptionDescription description, Member member) {
             member(request) = option_text::parts(text, description);
           }};
 }
+
+/// An option of numbers by name; none states nothing.
+template <class Request, class Member>
+Option<Request> settings(OptionDescription description, Member member) {
+  description.kind = OptionDescription::Kind::Settings;
+  return {description,
+          [member, description](const Request& request) -> std::optional<std::string> {
+            if (member(request).empty()) return std::nullopt;
+            std::vector<std::string> lines;
+            for (const auto& [name, value] : member(request))
+              lines.push_back(name + '=' + option_text::of(value));
+            return option_text::of(lines, description);
+          },
+          [member, description](Request& request, const std::string& text) {
+            member(request) = numbers_by_name(option_text::parts(text, description));
+          }};
+}
 }  // namespace option_detail
 
-/// An option whose value is a member of the request: a bool, size_t, double, Length, string or
-/// vector of size_t or strings, or an optional one. An empty vector states nothing.
+/// An option whose value is a member of the request: a bool, size_t, double, Length, string,
+/// vector of size_t or strings, or map of numbers by name, or an optional one. An empty vector or
+/// map states nothing.
 /// @param member  of a request, const or not: a reference to the value
 template <class Request, class Member>
 Option<Request> option(OptionDescription description, Member member) {
   using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
   if constexpr (std::is_same_v<Stored, std::vector<std::string>>)
     return option_detail::list<Request>(std::move(description), member);
+  else if constexpr (std::is_same_v<Stored, std::map<std::string, double>>)
+    return option_detail::settings<Request>(std::move(description), member);
   else
     return option_detail::single<Request>(std::move(description), member);
+}
+
+/// An option whose value is a number or, with the kind Memory, bytes. 0 stands for none.
+template <class Request, class Member>
+Option<Request> limit_option(OptionDescription description, Member member) {
+  const bool memory = description.kind == OptionDescription::Kind::Memory;
+  Option<Request> out = option<Request>(std::move(description), member);
+  if (memory) {
+    out.kind = OptionDescription::Kind::Memory;
+    out.assign = [member](Request& request, const std::string& text) {
+      member(request) = parse_memory(text).value_or(0);
+    };
+  }
+  out.value = [member](const Request& request) -> std::optional<std::string> {
+    if (member(request) == 0) return std::nullopt;
+    return option_text::of(member(request));
+  };
+  return out;
 }
 
 /// An option whose value is one of several, each of which has a name.
@@ -210,6 +260,7 @@ template <class Request, class Member, class Names>
 Option<Request> choice(OptionDescription description, Member member, const Names& names) {
   using Value = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
   description.kind = OptionDescription::Kind::Choice;
+  description.choices.clear();
   std::vector<Value> values;
   for (const auto& [name, value] : names) {
     description.choices.emplace_back(name);
@@ -240,6 +291,26 @@ std::vector<Option<Whole>> options_of_part(const std::vector<Option<Part>>& opti
                    [part, assign = option.assign](Whole& whole, const std::string& text) {
                      assign(part(whole), text);
                    }});
+  return out;
+}
+
+/// The option of that name.
+/// @pre There is one.
+template <class Request>
+const Option<Request>& option_named(const std::vector<Option<Request>>& options,
+                                    std::string_view name) {
+  for (const Option<Request>& option : options)
+    if (option.name == name) return option;
+  throw Error(ErrorCode::Internal, "there is no option " + std::string(name));
+}
+
+/// Those of these names, in this order.
+/// @pre There are some.
+template <class Request>
+std::vector<Option<Request>> options_named(const std::vector<Option<Request>>& options,
+                                           std::initializer_list<std::string_view> names) {
+  std::vector<Option<Request>> out;
+  for (const std::string_view name : names) out.push_back(option_named(options, name));
   return out;
 }
 

@@ -28,33 +28,24 @@ struct Progress {
   double fraction;  ///< estimate of the share of the work done, 0 to 1
 };
 
-/// Request for either search.
-struct SetOptions {
-  /// Outwards: largest distance allowed from a point of the bodies to the solid and its triangles.
-  /// Inwards: largest depth allowed of what is in no body. [length]
-  std::optional<double> epsilon;
+/// Limits and effort of a search of either kind, outwards or inwards.
+struct SearchSettings {
   /// Most bodies. With epsilon: fewest bodies within it, and if these are too many, the best that
   /// this many allow.
   std::optional<std::size_t> max_bodies;
   std::size_t max_vertices = 64;  ///< per body, ≥ 8
   Effort effort = Effort::Normal;
-  /// Most work of the search: steps are counted, each as long as it takes on one core of a machine
+  /// Most work of the search. Steps are counted, each as long as it takes on one core of a machine
   /// of 2020, so the result is the same on any machine, however fast or busy. Then the search ends
   /// with the best found, measured like any other. What comes before and after (a pre-step, the
-  /// exact check) does not count. [s]
-  /// By default `default_work` of the triangles, or without limit for Effort::Best.
+  /// exact check) does not count. [s] By default `default_work` of the triangles, or without limit
+  /// for Effort::Best.
   std::optional<double> max_work;
-  /// Within epsilon, fewer bodies are looked for until the search has done so much work in all; by
-  /// default while max_work allows. Outwards only. [s]
-  std::optional<double> improve_work;
-  /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
-  /// larger where an exact check of the result fails.
-  double safety = 1;
-  /// Called now and then, from the calling thread; may throw to cancel.
-  std::function<void(const Progress&)> progress;
 };
 
-struct CoverOptions : SetOptions {
+/// Settings of a search outwards: those that depend on no mesh, and that a request for a certified
+/// set has as well (certify::SetRequest).
+struct CoverSettings : SearchSettings {
   /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
   /// the smallest distance with which both hold. Not with min_thickness.
   std::optional<std::size_t> max_total_vertices;
@@ -62,10 +53,30 @@ struct CoverOptions : SetOptions {
   /// are thickened, which counts towards epsilon. [length]
   double min_thickness = 0;
   /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
-  /// more vertices and are nearer to the solid on the whole, not at most.
-  double simplify = 0.5;
+  /// more vertices and are nearer to the solid on the whole, not at most. By default 0.5.
+  std::optional<double> simplify;
+  /// Within epsilon, fewer bodies are looked for until the search has done so much work in all; by
+  /// default while max_work allows. [s]
+  std::optional<double> improve_work;
   PreStep pre_step = PreStep::Auto;
+
+  [[nodiscard]] double simplify_share() const { return simplify.value_or(0.5); }
 };
+
+/// One run of a search: what it is to reach on a certain mesh, and who watches.
+struct SearchRun {
+  /// Outwards: largest distance allowed from a point of the bodies to the solid and its triangles.
+  /// Inwards: largest depth allowed of what is in no body. [length]
+  std::optional<double> epsilon;
+  /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
+  /// larger where an exact check of the result fails.
+  double safety = 1;
+  /// Called now and then, from the calling thread; may throw to cancel.
+  std::function<void(const Progress&)> progress;
+};
+
+/// Request for find_cover.
+struct CoverOptions : CoverSettings, SearchRun {};
 
 /// Why a search ended.
 enum class Stop {
@@ -102,8 +113,8 @@ struct CoverCandidate {
 
 /// Searches for convex bodies whose union contains the input's solid and every triangle of it.
 ///
-/// The solid is cut by planes into cells; what of it lies in a cell is contained in the hull of the
-/// clipped triangles and of the cell's corners that lie in the solid; hulls are merged while the
+/// The solid is cut by planes into cells. What of it lies in a cell is contained in the hull of the
+/// clipped triangles and of the cell's corners that lie in the solid. Hulls are merged while the
 /// distance to the solid allows, their vertices reduced by contractions that only enlarge them, and
 /// rounded outwards to float32. Source: [gaschler2016] §4.4; docs/algorithms/convex-
 /// decomposition.md has the covering argument, and which of its steps are left to an exact check of

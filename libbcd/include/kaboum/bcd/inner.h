@@ -6,7 +6,8 @@
 
 namespace kaboum::bcd {
 
-struct InnerOptions : SetOptions {
+/// Request for find_inner.
+struct InnerOptions : SearchSettings, SearchRun {
   /// Triangles of the input that bound what an exact check of the result found outside the solid.
   /// Where they meet others, more is kept clear of.
   std::vector<std::uint32_t> doubtful;
@@ -28,11 +29,10 @@ struct InnerCandidate {
 /// Searches for convex bodies whose union lies inside the input's solid.
 ///
 /// Round the deepest point that is not in a body yet, a convex body is grown until triangles stop
-/// it: each is kept out by a plane that touches it, nearest first, in the metric of an ellipsoid
+/// it. Each is kept out by a plane that touches it, nearest first, in the metric of an ellipsoid
 /// fitted to the body before (after [deits2015]). That is repeated until no point of the solid
-/// deeper than epsilon is left, or max_bodies is reached; where nothing is deeper, there
-/// is no body. docs/algorithms/convex-decomposition.md,
-/// "From inside".
+/// deeper than epsilon is left, or max_bodies is reached; where nothing is deeper, there is no
+/// body. docs/algorithms/convex-decomposition.md, "From inside".
 ///
 /// Bodies are exactly convex, with float32 coordinates and at most max_vertices vertices; they
 /// overlap. That the bodies lie inside is left to an exact check of what is written

@@ -115,7 +115,7 @@ struct DecimateResult {
 /// Single-sided decimation by edge contraction. Source: [gaschler2016] Alg. 1, Alg. 2.
 ///
 /// Every contraction is accepted only after exact orientation tests of the new, already rounded
-/// vertex against the plane of every triangle it replaces, so that the winding number never falls
+/// vertex against the plane of every triangle it replaces. So the winding number never falls
 /// (Outer) or never rises (Inner) anywhere off the surfaces: docs/algorithms/bounding-mesh.md has
 /// the theorem. Inner results of closed meshes do not fold, either: their triangles stay in the
 /// input's solid if its own do. Vertices on the border of an open mesh do not move. With `epsilon`,

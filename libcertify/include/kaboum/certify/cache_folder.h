@@ -11,7 +11,7 @@
 namespace kaboum::certify {
 
 /// Results kept between runs, by the hash of all that they depend on. An entry is a file that is
-/// written whole or not at all and says what it is, its own hash and its key's; so readers, writers
+/// written whole or not at all and says what it is, its own hash and its key's. So readers, writers
 /// and whatever makes room may work in one folder at the same time, on several machines too,
 /// without locks. What is damaged is not used.
 class CacheFolder {

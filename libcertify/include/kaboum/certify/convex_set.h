@@ -15,24 +15,14 @@
 
 namespace kaboum::certify {
 
-/// Request for a set of convex bodies.
-struct SetRequest {
+/// Request for a set of convex bodies. Inner sets have the SearchSettings of it, and refuse the
+/// other settings of covers.
+struct SetRequest : bcd::CoverSettings {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;
-  std::optional<std::size_t> max_bodies;
-  std::size_t max_vertices = 64;  ///< of one body
-  bcd::Effort effort = bcd::Effort::Normal;
-  std::optional<double> max_work;  ///< nominal seconds, see bcd::SetOptions
-
-  // Of outer sets; inner ones refuse them.
-  std::optional<std::size_t> max_total_vertices;
-  bcd::PreStep pre_step = bcd::PreStep::Auto;
-  std::optional<double> simplify;      ///< share of epsilon for leaving out vertices
-  std::optional<double> improve_work;  ///< nominal seconds, see bcd::SetOptions
-  double min_thickness = 0;            ///< [length]
 
   /// certify_file multiplies the file's coordinates by it first (io::scale).
   double scale = 1;
@@ -76,8 +66,9 @@ struct SetCertificate {
   /// Why it is not known that an outer set holds all that the triangles, which are inside, are
   /// meant to bound; empty: it does.
   std::string undecided;
-  /// Of the solid, where it is that of a wrap: distances are then to the solid or to the triangles
-  /// of the input (within its clearance: the surface that they stand for), whichever is nearer.
+  /// The wrap's certificate, where the solid is that of a wrap. Distances are then to the solid or
+  /// to the triangles of the input (within its clearance: the surface that they stand for),
+  /// whichever is nearer.
   std::optional<WrapCertificate> wrap;
 
   /// True if epsilon, if asked for, is reached, within all limits.
@@ -88,6 +79,10 @@ struct SetCertificate {
 /// Its bytes are a GLB container.
 using CertifiedSet = Certified<geom::ConvexSet, SetCertificate>;
 
+/// What is claimed of it: that its bodies are convex and cover the solid and every triangle, or lie
+/// in it.
+Certificate certificate_of(const CertifiedSet& set);
+
 /// As in reports of bcd-decompose, with the claims and what they are about: a JSON object.
 std::string to_json(const CertifiedSet& set);
 
@@ -97,7 +92,7 @@ struct Hooks {
   std::function<void(const std::string& text)> note;       ///< things a user should know
 };
 
-/// Searches for bodies, writes them as a GLB container, reads that back, and has libverify decide
+/// Searches for bodies, writes them as a GLB container and reads that back. Then libverify decides
 /// exactly that they are convex and cover the solid and every triangle (outer), or lie in the solid
 /// (inner). Where that fails the search is repeated, without its pre-step, then with larger
 /// allowances for rounding.

@@ -21,7 +21,7 @@ struct EnclosureRequest {
   std::optional<io::Format> spare_format;
   geom::PrepareOptions preparation{.holes = geom::Holes::Fill};
   /// Set: what is enclosed is a wrap round all triangles (certify_wrap), whose distance from them
-  /// counts towards epsilon; with `where_needed` only where preparing refuses them or is in doubt,
+  /// counts towards epsilon. With `where_needed` only where preparing refuses them or is in doubt,
   /// or not every triangle is inside otherwise. `farthest`, `float32` and `progress` are not looked
   /// at.
   std::optional<WrapRequest> wrap;
@@ -61,7 +61,7 @@ struct EnclosureCertificate {
   bool out_of_work = false;
   Subject subject;  ///< what is enclosed
   TrianglesInside inside;
-  std::vector<MeshClaim> claims;  ///< of the mesh, as `claims` gave them when it was made
+  std::vector<Claim> claims;  ///< of the mesh, as certificate_of gave them when it was made
   std::optional<WrapCertificate> wrap;
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
 };
@@ -69,6 +69,9 @@ struct EnclosureCertificate {
 /// A mesh that encloses that of a file, in the file's frame and unit. The bytes are those of the
 /// format asked for.
 using CertifiedEnclosure = Certified<geom::Mesh, EnclosureCertificate>;
+
+/// What is claimed of it: the claims of the mesh, and that every triangle of the file is inside.
+Certificate certificate_of(const CertifiedEnclosure& enclosure);
 
 /// As in reports: a JSON object.
 std::string to_json(const CertifiedEnclosure& enclosure);

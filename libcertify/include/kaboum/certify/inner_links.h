@@ -19,11 +19,15 @@ struct InnerLinkCertificate {
   double depth = 0;
 };
 
-/// The inner set of a link, in its frame: serialised, read back, and decided exactly by libverify
-/// to consist of convex polytopes each of which lies in the body that it was made from, rounding of
-/// scale and pose taken off; those bodies lie in the link's shapes (certify_set, inner; inscribed
-/// polytopes of boxes, cylinders and spheres). It has no margin; its bytes are a GLB container.
+/// The inner set of a link, in its frame: serialised, read back, and decided by libverify. It
+/// decides exactly that the set consists of convex polytopes each of which lies in the body that it
+/// was made from, rounding of scale and pose taken off. Those bodies lie in the link's shapes
+/// (certify_set, inner; inscribed polytopes of boxes, cylinders and spheres). It has no margin; its
+/// bytes are a GLB container.
 using CertifiedInnerLink = Certified<geom::ConvexSet, InnerLinkCertificate>;
+
+/// What is claimed of it: convex bodies that lie in the link's shapes.
+Certificate certificate_of(const CertifiedInnerLink& link);
 
 struct InnerLinks {
   std::vector<CertifiedInnerLink> links;  ///< those that were asked for and have bodies, in order

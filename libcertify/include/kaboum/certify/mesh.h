@@ -70,8 +70,9 @@ struct MeshPlan {
 /// it triangle by triangle.
 using CertifiedMesh = Certified<geom::Mesh, MeshCertificate>;
 
-/// All that is claimed; nothing of Direction::Any.
-std::vector<MeshClaim> claims(const CertifiedMesh& mesh);
+/// All that is claimed; nothing of Direction::Any. The distance is Hausdorff's, where it was
+/// measured.
+Certificate certificate_of(const CertifiedMesh& mesh);
 
 /// One result or a series.
 struct MeshSeries {
@@ -116,8 +117,8 @@ MeshSeries certify_meshes(const geom::Prepared& original, const MeshRequest& req
 struct MeshPreparation {
   enum class Wrap {
     Never,
-    /// Where the mesh can be given no solid, or some triangle would not lie in an outer result:
-    /// only with Holes::Fill and without keep_orientation, for those say which solid is wanted.
+    /// Only if the mesh can be given no solid, or some triangle would not lie in an outer result.
+    /// Only with Holes::Fill and without keep_orientation, for those say which solid is wanted.
     WhereNeeded,
     Always,  ///< outer results only
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/bmesh/decimate.h>
+#include <kaboum/certify/certificate.h>
 #include <kaboum/certify/subject.h>
 #include <kaboum/geom/distance.h>
 #include <kaboum/verify/bracket.h>
@@ -11,35 +12,6 @@
 #include <vector>
 
 namespace kaboum::certify {
-
-/// Evidence behind an answer.
-enum class Basis {
-  Bytes,     ///< decided by libverify from the bytes
-  Meshes,    ///< decided by libverify from the meshes
-  Steps,     ///< every step passed exact tests: docs/algorithms/bounding-mesh.md has the theorem
-  Measured,  ///< a certified bracket of geom::directed_distance
-};
-
-const char* name_of(Basis basis);
-
-/// A statement about a bounding mesh.
-struct MeshClaim {
-  enum class Kind {
-    Solid,             ///< outer: its solid holds the original's; inner: the other way round
-    Winding,           ///< of open meshes: the winding number nowhere falls (inner: rises)
-    Surface,           ///< every triangle of the enclosed mesh lies in the other one's solid
-    Nested,            ///< as Solid, about the finer results of a series
-    OriginalToResult,  ///< no point of the original is farther from the result than the bound
-    ResultToOriginal,  ///< the other way round
-  };
-  Kind kind = Kind::Solid;
-  Basis basis = Basis::Steps;
-  verify::Answer answer = verify::Answer::Undefined;
-  std::string reason = {};              ///< of what is not verified
-  std::optional<double> distance = {};  ///< the bound, of the last two [length]
-};
-
-const char* name_of(MeshClaim::Kind kind);
 
 /// The surface claim, decided for every triangle: of the original, walls that cancelled and fills
 /// of holes included (outer), or of the result (inner). Of a wrapped input: of all its triangles.

@@ -30,12 +30,11 @@ class TooCoarse : public Error {
             const SpacingShares& shares, const std::string& remedy = "");
 };
 
-/// Reads the file and finds or certifies its set, which says the unit that the vertices are in as
-/// read, whatever the request says, where the file or its format states one: in a note where that
-/// is another one.
-/// A CAD file's triangles stand for its exact faces (io::ReadResult::deviation): an outer set holds
-/// these, as SetRequest::hold_exact_faces asks, and how far they may be from the triangles counts
-/// towards epsilon.
+/// Reads the file and finds or certifies its set. Where the file or its format states a unit, the
+/// set says that unit of the vertices as read, whatever the request says: in a note where that is
+/// another one. A CAD file's triangles stand for its exact faces (io::ReadResult::deviation): an
+/// outer set holds these, as SetRequest::hold_exact_faces asks, and how far they may be from the
+/// triangles counts towards epsilon.
 /// @param format   by default by extension.
 /// @param request  its source becomes the file's name.
 /// @param cache    null: none.

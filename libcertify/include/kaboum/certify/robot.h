@@ -20,6 +20,9 @@ struct LinkCertificate {
 /// its provenance has the claims; its bytes are a GLB container.
 using CertifiedLink = Certified<geom::ConvexSet, LinkCertificate>;
 
+/// What is claimed of it: convex bodies that hold the link's shapes.
+Certificate certificate_of(const CertifiedLink& link);
+
 struct CertifiedRobot {
   CertifiedBodies bodies;
   /// Those that were asked for and have shapes, all of them held.

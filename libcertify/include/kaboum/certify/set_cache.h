@@ -8,9 +8,9 @@ namespace kaboum::certify {
 
 /// Results kept between runs: files named by a hash of everything that they depend on (the
 /// triangles as read, the file's hash, the request, the version). Entries are written whole or not
-/// at all; each states the hash of its key and one of all its bytes, and its container says what it
-/// is of, so that one that is damaged, or that lies under another one's name, is not used.
-/// Concurrent writers write the same.
+/// at all. Each states the hash of its key and one of all its bytes, and its container says what it
+/// is of. So one that is damaged, or that lies under another one's name, is not used. Concurrent
+/// writers write the same.
 class SetCache {
  public:
   /// In $KABOUM_CACHE, else $XDG_CACHE_HOME/kaboum, else ~/.cache/kaboum; empty where there is none

@@ -49,6 +49,9 @@ struct SweepCertificate {
 /// bodies; its certificate says what is known of the motion. Its bytes are a GLB container.
 using CertifiedSweep = Certified<geom::ConvexSet, SweepCertificate>;
 
+/// What is claimed of it: convex bodies, and the motion.
+Certificate certificate_of(const CertifiedSweep& sweep);
+
 /// Convex bodies that, enlarged by the set's margin, hold the robot's bodies at every configuration
 /// of the path: sweep::swept_volume, serialised, read back, decided.
 ///

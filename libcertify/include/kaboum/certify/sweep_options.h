@@ -42,7 +42,7 @@ const std::vector<Option<SweptSetOptions>>& swept_set_options();
 /// The request for the bodies of the robot's links.
 RobotRequest bodies_request_of(const SweptSetOptions& options);
 
-/// What the swept set is asked to be, with the record of all options. The motion is not decided.
+/// The request for the swept set, with the record of all options. The motion is not decided.
 SweepRequest sweep_request_of(const SweptSetOptions& options);
 
 /// Puts a robot where its base is to stand, which the options then state as twelve numbers.

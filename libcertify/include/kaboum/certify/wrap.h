@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
+#include <kaboum/certify/certificate.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/geom/mesh.h>
 #include <kaboum/io/mesh_io.h>
@@ -65,6 +66,9 @@ std::string to_json(const WrapCertificate& wrap);
 
 /// A closed mesh whose solid holds every triangle of the input: decided by libverify.
 using CertifiedWrap = Certified<geom::Mesh, WrapCertificate>;
+
+/// What is claimed of it: every triangle is inside.
+Certificate certificate_of(const CertifiedWrap& wrap);
 
 /// Wraps any triangles (wrap::wrap), measures how far the wrap reaches, and has libverify decide
 /// that every triangle lies inside, exactly. docs/algorithms/wrapping.md

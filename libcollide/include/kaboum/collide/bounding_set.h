@@ -51,12 +51,12 @@ class BoundingSet {
 
   std::vector<geom::ConvexBody> bodies_;
   std::vector<Polytope> polytopes_;
-  /// Of the cores' boxes, axis by axis: middle, half the size, and the largest |coordinate|; then
-  /// the radii. Each for as many bodies as stride() says, the last one repeated.
+  /// Rows of the cores' boxes, axis by axis: middle, half the size, and the largest |coordinate|;
+  /// then the radii. Each for as many bodies as stride() says, the last one repeated.
   std::vector<double> rows_;
   [[nodiscard]] std::size_t stride() const { return (size() + 1) / 2 * 2; }
   [[nodiscard]] const double* row(std::size_t i) const { return rows_.data() + i * stride(); }
-  /// Of one body, three rows from there on.
+  /// Three rows from there on, of one body.
   [[nodiscard]] geom::Vec3 column(std::size_t from, std::size_t body) const {
     return {row(from)[body], row(from + 1)[body], row(from + 2)[body]};
   }
@@ -117,7 +117,7 @@ class PosedSet {
 /// for every pair of sets and thread.
 class Memory {
  public:
-  /// Of bodies i and j of sets of the sizes n and m; null where there are too many pairs.
+  /// The axis of bodies i and j of sets of the sizes n and m; null where there are too many pairs.
   Axis* axis(std::size_t i, std::size_t j, std::size_t n, std::size_t m);
 
  private:
@@ -139,15 +139,15 @@ struct BodyPair {
 std::optional<BodyPair> find_collision(const PosedSet& a, const PosedSet& b, double slack = 0,
                                        Memory* memory = nullptr, Decided* decided = nullptr);
 
-/// Whether two solids certainly collide: a point is in both of their inner sets, however wrong the
+/// True if two solids certainly collide: a point is in both of their inner sets, however wrong the
 /// places are.
 /// @throws Error{InvalidArgument} for an outer set with an epsilon above 0.
 bool certainly_collide(const PosedSet& a, const PosedSet& b);
 
 /// A certified bracket of the distance between two sets, and the bodies and points it is between.
 struct Clearance {
-  /// Of the sets: `lower` also of the solids of outer sets. lower = 0: they may
-  /// meet. [length]
+  /// Bounds of the sets' distance; `lower` is one of the solids of outer sets, too. lower = 0: they
+  /// may meet. [length]
   double lower = 0, upper = 0;
   BodyPair bodies;
   geom::Vec3 on_a = geom::Vec3::Zero(), on_b = geom::Vec3::Zero();  ///< of the cores

@@ -13,17 +13,18 @@ enum class Inclusion {
   Undecided,    ///< out of work
 };
 
-/// Definition 1 of [gaschler2016], case 4: whether one solid contains another one, by an outer set
-/// of the one that is to be contained and an inner set of the other one. The union counts: a body
-/// may lie in several bodies of the inner set together. Exact: bodies are subtracted one after the
-/// other in rational arithmetic; polytopes within them stand for inner bodies with a radius.
+/// Inclusion by Definition 1 of [gaschler2016], case 4: whether one solid contains another one, by
+/// an outer set of the one that is to be contained and an inner set of the other one. The union
+/// counts: a body may lie in several bodies of the inner set together. Exact: bodies are subtracted
+/// one after the other in rational arithmetic; polytopes within them stand for inner bodies with a
+/// radius.
 ///
 /// @param most_pieces  that bodies are cut into before it is given up.
 /// @throws Error{InvalidArgument} unless the first set is an outer one and the second an inner one.
 Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner,
                          std::size_t most_pieces = 10'000);
 
-/// What lies deeper in the solid of `inner` than this is said to be included. [length]
+/// Depth in the solid of `inner`: what lies deeper is said to be included. [length]
 double tolerance_of_inclusion(const PosedSet& outer, const PosedSet& inner);
 
 }  // namespace kaboum::collide

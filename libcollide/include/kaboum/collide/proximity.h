@@ -7,7 +7,7 @@
 namespace kaboum::collide {
 
 /// Proximity of two convex polytopes: if they come within a distance, and how far they are apart.
-/// The answers are those of exact arithmetic on the doubles given: directions and points found in
+/// The answers are those of exact arithmetic on the doubles given. Directions and points found in
 /// rounded arithmetic are taken only with their errors bounded, and dyadic numbers decide what is
 /// too close for that. docs/algorithms/bounded-predicates.md has the bounds and their proofs.
 

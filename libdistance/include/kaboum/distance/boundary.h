@@ -32,7 +32,7 @@ Boundary union_boundary(const geom::ConvexSet& set);
 
 /// The boundary of the solid closure{x : w(x) ≥ 1} of a closed chain, however it crosses itself:
 /// what lies inside is left out, and coinciding parts are kept once. Triangles that meet others
-/// only in common sides and corners are kept or left out as they are, in patches; the others are
+/// only in common sides and corners are kept or left out as they are, in patches. The others are
 /// cut exactly where they meet, their corners rounded once (`error`), and each part is decided by
 /// the winding numbers of its two sides.
 ///

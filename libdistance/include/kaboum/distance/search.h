@@ -16,7 +16,7 @@ enum class Backend {
 /// A search structure over the mesh's triangles.
 ///
 /// Embree: triangles are user primitives whose float32 boxes are rounded outwards in coordinates
-/// that are shifted to the mesh's centre and scaled to unit size; each query's radius is enlarged
+/// that are shifted to the mesh's centre and scaled to unit size. Each query's radius is enlarged
 /// by what the float32 query point and the traversal may err, so that no triangle nearer than the
 /// best one found is culled (docs/algorithms/distances.md). Building uses all of oneTBB's threads;
 /// the answers do not depend on their number.

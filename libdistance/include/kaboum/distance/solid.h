@@ -62,7 +62,7 @@ class Solid final : public geom::Interior {
   double magnitude_ = 0;
 };
 
-/// What became of the search inside A's solid.
+/// Result of the search inside A's solid.
 struct SolidDistance : geom::DirectedDistance {
   bool inside = false;      ///< `at` lies inside A's solid rather than on its boundary
   std::uint64_t cells = 0;  ///< of space that were looked at

@@ -40,8 +40,8 @@ struct ConvexPolygon {
 };
 
 /// Cuts by the plane through p with normal n. @return false when all corners lie on one side (or
-/// within rounding of the plane), or when rounding has made the polygon so crooked that a part
-/// would exceed the capacity; the parts are then undefined.
+/// within rounding of the plane); also when rounding has made the polygon so crooked that a part
+/// would exceed the capacity. The parts are then undefined.
 bool cut(const ConvexPolygon& polygon, const Vec3& p, const Vec3& n, ConvexPolygon& below,
          ConvexPolygon& above);
 
@@ -50,9 +50,9 @@ struct CuttingPlane {
   Vec3 point, normal;
 };
 
-/// Where the planes of two triangles are equally far, next to the point `near`: a ridge of the
-/// distance to both, which halving would only approach. None where a triangle has no area, or where
-/// the unit normals that look at `near` differ by less than √least.
+/// The plane on which the planes of two triangles are equally far, next to the point `near`: a
+/// ridge of the distance to both, which halving would only approach. None where a triangle has no
+/// area, or where the unit normals that look at `near` differ by less than √least.
 std::optional<CuttingPlane> bisector(const std::array<Vec3, 3>& first,
                                      const std::array<Vec3, 3>& second, const Vec3& near,
                                      double least);

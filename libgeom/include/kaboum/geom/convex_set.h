@@ -18,7 +18,7 @@ struct ConvexBody {
   double radius = 0;  ///< ≥ 0; > 0 where the core is a segment or a point [length]
 };
 
-/// Where a convex set comes from and what is certified of it.
+/// Origin of a convex set, and what is certified of it.
 struct Provenance {
   std::string source;         ///< name of the input
   std::string source_sha256;  ///< hash of the input's bytes
@@ -40,12 +40,13 @@ struct ConvexSet {
   Provenance provenance;
 };
 
-/// Whether every vertex lies on or below the plane of every triangle, decided exactly, and the
+/// True if every vertex lies on or below the plane of every triangle, decided exactly, and the
 /// triangles form a closed chain of positive volume. Cost #V · #T filtered predicates.
 bool is_convex(const Mesh& hull);
 
-/// Whether the radius is finite and not negative, and the core is an exactly convex polytope or,
-/// with a positive radius, a segment between two different points or a point, all finite.
+/// True if the radius is finite and not negative, and the core is an exactly convex polytope. With
+/// a positive radius the core may be a segment between two different points or a point. All of it
+/// is finite.
 bool is_convex(const ConvexBody& body);
 
 /// The first body that is not exactly convex (is_convex); nullopt when all are.

@@ -20,7 +20,7 @@ struct DistanceBounds {
 
 /// Distance of point p to the closed triangle (a, b, c), which may be degenerate.
 ///
-/// The closest point is computed in rounded arithmetic; the bounds hold however badly that went:
+/// The closest point is computed in rounded arithmetic; the bounds hold however badly that went.
 /// `upper` is the distance to a convex combination of the corners, `lower` the distance to a plane
 /// that separates p from the corners, both widened by the rounding error derived in
 /// docs/algorithms/distances.md.

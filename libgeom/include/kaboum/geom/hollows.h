@@ -46,8 +46,8 @@ std::optional<Hollow> find_inverted(const Mesh& mesh, const WindingNumber& windi
                                     std::span<const std::uint32_t> part = {});
 
 /// Looks beside triangles for a point with a winding number below 0; or of 0 or less, where a part
-/// winds round it backwards although it winds round another point forwards: a pocket of a surface
-/// that crosses itself, and not a cavity, whatever solid is round it.
+/// winds round it backwards although it winds round another point forwards. That is a pocket of a
+/// surface that crosses itself, and not a cavity, whatever solid is round it.
 ///
 /// @param part  per triangle; each part is a closed chain.
 /// @return the first found, in the order of `beside`: those below 0 first.

@@ -25,8 +25,8 @@ struct PrepareOptions {
   /// Polygons of four corners that are not plane, each by the first of its two triangles, which
   /// follow each other in the input (io::ReadResult::bent_quads).
   std::vector<std::uint32_t> quads = {};
-  /// Which of the two diagonals splits these. Outward: the solid contains that of any other choice.
-  /// Inward: it is contained in that.
+  /// Choice of the diagonal that splits these. Outward: the solid contains that of any other
+  /// choice. Inward: it is contained in that.
   enum class Diagonal { AsGiven, Outward, Inward } diagonal = Diagonal::AsGiven;
 };
 
@@ -69,8 +69,8 @@ struct PreparationReport {
   /// the first found, and noted.
   std::optional<Vec3> hollow;
   std::size_t quads_split_anew = 0;  ///< along the other diagonal
-  /// Which solid is meant is a guess: a hole's rim runs along a wall, or triangles of a part that
-  /// was open were turned to agree. Noted.
+  /// True if it is a guess which solid is meant: a hole's rim runs along a wall, or triangles of a
+  /// part that was open were turned to agree. Noted.
   bool guessed = false;
   std::vector<std::string> notes;  ///< the same in words, for who made the file
 };
@@ -85,11 +85,14 @@ struct Prepared {
 /// Gives the input a solid, or says why it has none. docs/algorithms/preparation.md states which
 /// solid is meant, and proves that nothing of it is lost.
 ///
-/// In this order: equal vertices are merged and triangles with repeated corners dropped;
-/// inconsistent neighbours are turned to agree; opposite coincident faces cancel; holes are filled,
-/// on request; shells that are inside out are turned, each by itself also where shells share walls;
-/// identically oriented copies are dropped where what is dropped is itself a closed chain and
-/// nothing is oriented inwards.
+/// In this order:
+/// - equal vertices are merged and triangles with repeated corners dropped;
+/// - inconsistent neighbours are turned to agree;
+/// - opposite coincident faces cancel;
+/// - holes are filled, on request;
+/// - shells that are inside out are turned, each by itself also where shells share walls;
+/// - identically oriented copies are dropped where what is dropped is itself a closed chain and
+///   nothing is oriented inwards.
 ///
 /// A shell oriented inwards is a cavity, and stays one, if it lies in one shell oriented outwards,
 /// in none of that one's other cavities, and meets none of these in more than corners and edges
@@ -101,9 +104,9 @@ struct Prepared {
 ///
 /// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface,
 ///   sheets (opposite coincident faces that lie in no solid, unless dropped on request), nothing
-///   left, open with Holes::Refuse, shells that share a wall and cannot be told apart, a hole in
-///   one of them when they had to be turned to agree, coordinates
-///   beyond 1e60 or an extent below 1e-60 (their products would overflow or vanish).
+///   left, open with Holes::Refuse. Also when shells share a wall and cannot be told apart, or have
+///   a hole in one of them when they had to be turned to agree. Also for coordinates beyond 1e60 or
+///   an extent below 1e-60 (their products would overflow or vanish).
 Prepared prepare(const Mesh& input, const PrepareOptions& options = {});
 
 }  // namespace kaboum::geom

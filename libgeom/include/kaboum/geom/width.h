@@ -16,9 +16,9 @@ struct Width {
 /// The least width of a convex body: the smallest distance of two parallel planes with the body
 /// between them. The bound falls short of it by less than a billionth of the body's size.
 ///
-/// The width in direction n is the support function of the difference body K − K, whose facets
-/// have a normal of a facet of K or one across two edges of K; the smallest distance of such a
-/// facet from the centre is the least width. All are tried, in double precision with bounds of the
+/// The width in direction n is the support function of the difference body K − K, whose facets have
+/// a normal of a facet of K or one across two edges of K. The smallest distance of such a facet
+/// from the centre is the least width. All are tried, in double precision with bounds of the
 /// rounding errors; normals of nearly parallel edges in exact arithmetic.
 ///
 /// @param enough  whether the body is wider than this is of no interest: `lower` is then `enough`.

@@ -15,7 +15,7 @@ namespace kaboum::geom {
 ///
 /// For a closed chain it is the integer that says how often the surface goes round the point: the
 /// solid is the closure of {w ≥ 1}. The number is the sum of signed crossings of a vertical ray
-/// with the triangles; rays through edges and vertices are told apart by a symbolic displacement of
+/// with the triangles. Rays through edges and vertices are told apart by a symbolic displacement of
 /// the point, (x + ε, y + ε², z), so every sign is decided and nothing is counted twice. For an
 /// open chain the result depends on the ray's direction and means nothing.
 class WindingNumber {

@@ -12,7 +12,7 @@
 
 namespace kaboum::io {
 
-/// Where convex sets are stored. docs/formats.md, "Convex sets".
+/// Forms that convex sets are stored in. docs/formats.md, "Convex sets".
 enum class SetFormat {
   Glb,        ///< the container: glTF 2.0 binary, one mesh per body, the record in `extras`
   Obj,        ///< one `o` group per body
@@ -23,7 +23,7 @@ enum class SetFormat {
 /// when the path is a folder). @return nullopt for other extensions.
 std::optional<SetFormat> set_format_from_path(const std::filesystem::path& path);
 
-/// What reading a set did besides.
+/// Details of how a set was read.
 struct SetReadDetails {
   std::vector<std::string> notes;  ///< things a user should know; one sentence each
   std::vector<char> bytes;         ///< of the file (of all files of a folder, in order)

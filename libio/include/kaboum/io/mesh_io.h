@@ -72,8 +72,8 @@ struct ReadResult {
   /// Unit of length of the vertices where the file states it (3MF, FBX, X3D) or its format has one
   /// (COLLADA, glTF: m): one of kLengthUnits, or a length ("0.005 m"). Empty: nothing says it.
   std::string unit = {};
-  /// Of CAD files: the exact faces, which are what is meant, are no farther from the triangles than
-  /// this (docs/formats.md). 0: the triangles are meant. [length]
+  /// Proved deviation of CAD files: the exact faces, which are what is meant, are no farther from
+  /// the triangles than this (docs/formats.md). 0: the triangles are meant. [length]
   double deviation = 0;
   std::size_t exact_faces = 0;  ///< of CAD files, one for each place of a face
 };

@@ -17,7 +17,7 @@ struct Hold {
   std::vector<std::uint32_t> touching;  ///< links that may touch the object besides
 };
 
-/// Where everything is.
+/// Places of all robots and objects.
 struct CellState {
   struct Place {
     geom::Transform pose;      ///< to the world, unless it is held
@@ -36,9 +36,11 @@ struct Meeting {
 /// Robots and objects as exact triangle meshes. Whether two of them meet in a state is decided by
 /// Solid; none of the bounding sets' code is in it.
 ///
-/// Pairs that are not looked at: links of one robot with only fixed joints, or one joint but for
-/// frames without shapes, between them; pairs that were allowed; what is held and the link that
-/// holds it, with the links that may touch it.
+/// Pairs that are not looked at:
+/// - links of one robot with only fixed joints, or one joint but for frames without shapes, between
+///   them;
+/// - pairs that were allowed;
+/// - what is held and the link that holds it, with the links that may touch it.
 class Cell {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -60,9 +62,9 @@ class Cell {
   [[nodiscard]] std::optional<Meeting> find_meeting_of(const CellState& state,
                                                        std::size_t object) const;
 
-  /// Where an object is in the world. @pre it is not away.
+  /// Pose of an object in the world. @pre it is not away.
   [[nodiscard]] geom::Transform pose_of(const CellState& state, std::size_t object) const;
-  /// Where a link is in the world.
+  /// Pose of a link in the world.
   [[nodiscard]] geom::Transform pose_of(const CellState& state, std::size_t robot,
                                         std::uint32_t link) const;
 

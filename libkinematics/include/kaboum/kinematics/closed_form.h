@@ -14,7 +14,8 @@ enum class Family {
   FiveAxes,      ///< 5 axes: 2 ∥ 3 ∥ 4, 1 ⟂ 2, 4 ⟂ 5
 };
 
-/// Where solutions coincide, or are not isolated ones: `Solution::free` tells which.
+/// Singular configurations: solutions coincide there, or are not isolated ones; `Solution::free`
+/// tells which.
 enum Singular : unsigned {
   kRegular = 0,
   kShoulder = 1,  ///< the wrist is on the first axis, or at the border of what it can reach
@@ -65,8 +66,8 @@ class Solutions {
 };
 
 /// An arm in the form that the formulas take: its axes in the positions of distal
-/// Denavit–Hartenberg frames with α = (−π/2, 0, −π/2, π/2, π/2) for a spherical wrist and
-/// (π/2, 0, 0, π/2, −π/2) otherwise, d₁ and the last d being part of `base` and `tool`.
+/// Denavit–Hartenberg frames. α is (−π/2, 0, −π/2, π/2, π/2) for a spherical wrist and (π/2, 0, 0,
+/// π/2, −π/2) otherwise, d₁ and the last d being part of `base` and `tool`.
 struct ClosedForm {
   Family family = Family::SphericalWrist;
   double a1 = 0;                 ///< from axis 1 to axis 2 [length]

@@ -19,10 +19,10 @@ struct InverseRequest {
   /// starts at random. [rad or length]
   std::vector<double> reference = {};
   bool numeric = false;             ///< even where there is a closed form
-  bool limits = true;               ///< within the joints' limits only
+  bool ignore_limits = false;       ///< outside the joints' limits as well
   bool copies = false;              ///< all that differ by whole turns within the limits
   bool free_heading = false;        ///< of arms with five axes: poses with another heading as well
-  int starts = 100;                 ///< of the numeric search
+  std::size_t starts = 100;         ///< of the numeric search
   std::uint64_t seed = 1;           ///< of the numeric search
   std::size_t representatives = 6;  ///< of each family, about
   /// Is told of each start of the numeric search; what it throws ends the work.

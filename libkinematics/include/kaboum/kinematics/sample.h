@@ -57,9 +57,9 @@ struct SampleOptions {
   double bound = 1e-9;  ///< no cost of a sample is larger [rad, or in parts of `length`]
   double length = 0;    ///< as in `cost`; 0: the largest reach of the robots, or 1
   bool limits = true;   ///< whether joints are to be within their limits
-  /// Where a robot has a closed form, its tool's pose is projected, and the joints are solved for;
-  /// false: joints are projected, as the thesis does. So are those of robots with features between
-  /// base and tool, which the tool's pose does not place.
+  /// True: the tool's pose of a robot with a closed form is projected, and the joints are solved
+  /// for. False: joints are projected, as the thesis does. So are those of robots with features
+  /// between base and tool, which the tool's pose does not place.
   bool closed_form = true;
   /// A pose without joints is moved at most so often by what the constraints leave free, until it
   /// has some; 0: the draw has failed then.

@@ -23,7 +23,7 @@ std::string word_of(const std::vector<double>& q);
 /// @throws Error{InvalidInput} for other words, and another number of values than variables.
 std::vector<double> configuration_of(std::string_view word, const world::RobotModel& robot);
 
-/// Where an object is.
+/// Place of an object.
 struct ObjectPlace {
   bool absent = false;
   world::Transform pose;                        ///< to the world; of attached objects, not used

@@ -17,7 +17,8 @@ struct PathOptions {
   std::size_t most_nodes = 100'000;  ///< of the search trees
   /// The search ends after this time. It changes no path that is found. [s]
   double most_seconds = std::numeric_limits<double>::infinity();
-  int shortcuts = 60;               ///< that are tried to shorten a path; 0: as the search found it
+  /// Number of shortcuts that are tried; 0: the path is as the search found it.
+  std::size_t shortcuts = 60;
   world::MotionOptions check = {};  ///< its progress is told of the whole search
 };
 

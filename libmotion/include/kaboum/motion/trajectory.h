@@ -42,7 +42,7 @@ class Trajectory {
   [[nodiscard]] double duration() const {
     return static_cast<double>(first_.back()) / rate_;
   }  ///< [s]
-  /// When a waypoint is reached. [s]
+  /// Time at which a waypoint is reached. [s]
   [[nodiscard]] double time_at(std::size_t waypoint) const {
     return static_cast<double>(first_.at(waypoint)) / rate_;
   }

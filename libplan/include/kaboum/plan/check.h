@@ -24,9 +24,9 @@ using CheckProgress = std::function<void(std::uint64_t states)>;
 /// Replays a plan for every way the sensing may turn out: each precondition must hold, each branch
 /// be on something known by then and have a case for its value, and each end meet the goal.
 ///
-/// Shares the loaded model with the planner, and what is said of it: knowledge is kept as sets of
+/// Shares the loaded model with the planner, and what is said of it. Knowledge is kept as sets of
 /// literals at run time (a sensed value splits the replay at once), and as sets of possible worlds
-/// where these know too little; queries are evaluated on the lifted model. What nothing further
+/// where these know too little. Queries are evaluated on the lifted model. What nothing further
 /// down reads is dropped, so shared sub-plans are replayed once for all that reach them alike.
 ///
 /// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.

@@ -55,6 +55,9 @@ struct Answer {
   /// Among how many things `Question::choice` decides which one is preferred; 0: there is nothing
   /// to choose. Where the search fails it begins anew with other choices.
   unsigned choices = 0;
+  /// True where it is impossible by what somebody has listed only, as grasps are: others might do.
+  /// Where a search fails by that, there may be a plan all the same.
+  bool listed = false;
   /// True of a value that is the only one, whatever the state; only the arguments decide it.
   bool fixed = false;
 
@@ -94,11 +97,17 @@ class ExternalBinding {
   [[nodiscard]] bool reads_state() const { return reads_state_; }
   /// True if what it answers may hang on the question's seed and attempt.
   [[nodiscard]] bool takes_seed() const { return takes_seed_; }
+  /// True of a function that reads first what its arguments name, and says then where there is no
+  /// value whatever else there is, before anything takes long. It may be asked before the search,
+  /// and is stopped where it reads on.
+  [[nodiscard]] bool refuses_early() const { return refuses_early_; }
+  void refuse_early() { refuses_early_ = true; }
 
  private:
   std::function<Answer(const Question&)> answer_;
   bool reads_state_ = false;
   bool takes_seed_ = false;
+  bool refuses_early_ = false;
 };
 
 /// Host functions by the name that `externals:` declares.

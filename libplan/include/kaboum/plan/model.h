@@ -175,14 +175,15 @@ struct ExternalResult {
   Index value = 0;  ///< an object, or a handle; of a truth value 0
   std::string payload;
   std::string reason;
-  bool chosen = false, fixed = false;  ///< as in Answer
+  bool chosen = false, fixed = false, listed = false;  ///< as in Answer
   unsigned choices = 0;
 };
 
 struct ExternalFunction {
   std::function<ExternalResult(std::span<const Index> arguments, ExternalContext& context)> call;
-  bool reads_state = false;  ///< it may read more than its arguments
-  bool takes_seed = false;   ///< it may read seed and attempt
+  bool reads_state = false;    ///< it may read more than its arguments
+  bool takes_seed = false;     ///< it may read seed and attempt
+  bool refuses_early = false;  ///< ExternalBinding::refuses_early
 };
 
 struct Model {

@@ -22,7 +22,7 @@ struct TaskTexts {
 struct ReplanOptions {
   RunOptions run = {};      ///< `unplanned` is not looked at
   SolveOptions solve = {};  ///< how it is planned again
-  unsigned most = 100;      ///< new plans; those that are needed beyond are not made
+  std::size_t most = 100;   ///< new plans; those that are needed beyond are not made
 };
 
 /// A plan that was made during a run.
@@ -50,9 +50,9 @@ using StepsOf =
     std::function<std::function<void(const RunStep&)>(const Model& model, const Plan& plan)>;
 
 /// Carries out a plan as `run` does; where sensing turns out as the plan has no branch for, it is
-/// planned again from what is known then, by the same external functions, and the new plan carried
-/// out [gaschler2016, §3.3.1: assumptions that fail]. Each state is planned for once. Random
-/// outcomes of the new plans have seeds of their own.
+/// planned again. That is done from what is known then, by the same external functions, and the new
+/// plan is carried out [gaschler2016, §3.3.1: assumptions that fail]. Each state is planned for
+/// once. Random outcomes of the new plans have seeds of their own.
 /// @throws Error as `run` and `load_from`.
 ReplanSummary run_and_replan(const TaskTexts& texts, const Model& model, const Plan& plan,
                              const ReplanOptions& options, const StepsOf& steps);

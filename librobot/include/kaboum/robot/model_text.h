@@ -24,10 +24,10 @@ struct ModelText {
 /// The robot as MJCF, MuJoCo's format. <https://mujoco.readthedocs.io/en/2.2.2/XMLreference.html>
 ///
 /// Every link is a body of its own, with its joint's frame and axis, its inertial where the robot
-/// has one, and its collision shapes as geoms; shapes for drawing are left out, since MuJoCo draws
+/// has one, and its collision shapes as geoms. Shapes for drawing are left out, since MuJoCo draws
 /// geoms and reads neither COLLADA nor names of packages. The root stands still, as in URDF. A
-/// joint that mimics another one is tied to it by an equality. Links that a joint moves against
-/// the root's rigid part do not collide with it, as none collide that a joint joins elsewhere
+/// joint that mimics another one is tied to it by an equality. Links that a joint moves against the
+/// root's rigid part do not collide with it, as none collide that a joint joins elsewhere
 /// (`filterparent`).
 /// @throws as require_valid
 ModelText to_mjcf(const Model& model);

@@ -21,9 +21,9 @@ struct NamedPath {
   std::vector<std::size_t> lines = {};  ///< of the waypoints, in a file that has lines; else empty
 };
 
-/// Comma-, semicolon- or blank-separated numbers, one waypoint per line; a first line that is not
-/// all numbers names the joints, perhaps in quotation marks (what is within them on the first line
-/// is a name, also a number, and may have separators in it); a separator may end lines; `#` begins
+/// Comma-, semicolon- or blank-separated numbers, one waypoint per line. A first line that is not
+/// all numbers names the joints, perhaps in quotation marks. (What is within them on the first line
+/// is a name, also a number, and may have separators in it.) A separator may end lines; `#` begins
 /// a comment.
 /// @throws Error{InvalidInput} naming the line.
 NamedPath parse_path_csv(std::string_view text, const std::string& name);

@@ -76,9 +76,9 @@ void require_valid(const Robot& robot);
 /// <http://wiki.ros.org/urdf/XML>; where that is silent, as urdfdom 3.0.
 /// @param name  appears in messages.
 /// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed or has
-///   xacro in it, planar and floating joints, several or no roots, loops, links with two parents,
-///   names used twice, mimicry of absent joints, numbers that are not finite, shapes of negative
-///   size or unknown kind, two origins, axes or shapes where one is meant.
+///   xacro in it; planar and floating joints; several or no roots, loops, links with two parents.
+///   Also names used twice, mimicry of absent joints, numbers that are not finite, shapes of
+///   negative size or unknown kind, and two origins, axes or shapes where one is meant.
 Robot parse_urdf(std::string_view text, const std::string& name);
 
 /// Robot of the Robotics Library: <rlkin> (Denavit–Hartenberg, distal) or <rlmdl>; degrees in the

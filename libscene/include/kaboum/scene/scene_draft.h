@@ -37,7 +37,7 @@ class SceneDraft {
   ~SceneDraft();
 
   [[nodiscard]] std::string unit() const;
-  /// Where it was read or written last; empty: nowhere.
+  /// The file that it was read from or written to last; empty: none.
   [[nodiscard]] std::filesystem::path file() const;
 
   /// @throws Error{InvalidArgument} where the name is taken, `members` is no object or names what
@@ -50,6 +50,12 @@ class SceneDraft {
   void add_object(const std::string& name, SceneSet outer, std::optional<SceneSet> inner,
                   const std::string& members);
   void add_region(const std::string& name, SceneSet inner, const std::string& members);
+  /// An object or a region that is a primitive: `shape` is the JSON of docs/scene.md, which reading
+  /// the scene looks at.
+  void add_primitive_object(const std::string& name, const std::string& shape,
+                            const std::string& members);
+  void add_primitive_region(const std::string& name, const std::string& shape,
+                            const std::string& members);
   /// An entry of a list of the scene: "allowed_contacts" or "attachments".
   void add_entry(const std::string& list, const std::string& entry);
 

@@ -3,6 +3,7 @@
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/geom/transform.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/world/primitive.h>
 
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,12 @@ namespace kaboum::scene {
 /// A robot's file, or a mesh, that a scene has by a name.
 struct NamedFile {
   std::string name, file;
+};
+
+/// An object that is a primitive, which needs no set.
+struct NamedPrimitive {
+  std::string name;
+  world::Primitive primitive;
 };
 
 /// Options of making a scene's sets.
@@ -35,9 +42,12 @@ struct SceneSetOptions {
 
 /// Request for a scene.
 struct SceneMaker {
+  SceneMaker() { options.sets.epsilon = Length{1, true}; }
+
   std::filesystem::path scene;                    ///< to be written
   std::vector<NamedFile> robots;                  ///< URDF
   std::vector<NamedFile> objects, regions;        ///< meshes
+  std::vector<NamedPrimitive> primitives;         ///< further objects
   std::map<std::string, geom::Transform> places;  ///< of what is named; the origin for the others
   std::map<std::string, double> scales;           ///< of objects' and regions' meshes
   bool inner = false;                             ///< inner sets of objects as well

@@ -24,9 +24,9 @@ struct BracketEffort {
 };
 
 /// Brackets the largest distance of the given triangles of `from` to `to` or, with `to_solid`, to
-/// solid (parts of `to` that bound no solid do not count): parts of triangles, the one that may be
-/// farthest first, until the bracket is narrow or the effort spent. The same for any number of
-/// threads.
+/// solid (parts of `to` that bound no solid do not count). It looks at parts of triangles, the
+/// one that may be farthest first, until the bracket is narrow or the effort spent. The same for
+/// any number of threads.
 ///
 /// @pre indices within `from`; with `to_solid`, `to` is a closed chain
 /// @return upper is infinite if no triangle of `to` has an area, or the coordinates span too many

@@ -2,7 +2,7 @@
 
 namespace kaboum::verify {
 
-/// Which claims about a mesh have to hold: about its solid, its surface, or both.
+/// The claims about a mesh that have to hold: about its solid, its surface, or both.
 enum class Claims { All, Solid, Surface };
 
 }  // namespace kaboum::verify

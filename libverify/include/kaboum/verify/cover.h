@@ -6,7 +6,7 @@
 
 namespace kaboum::verify {
 
-/// What verify_convexity found.
+/// Result of verify_convexity.
 struct Convexity {
   /// Every core is a closed chain of positive volume with no vertex above any of its planes or,
   /// with a radius above 0, a segment or a point.
@@ -19,7 +19,7 @@ struct Convexity {
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
 Convexity verify_convexity(const geom::ConvexSet& set);
 
-/// What verify_cover found.
+/// Result of verify_cover.
 struct Cover : Convexity {
   /// The claims about the original and the union; triangles of the outer mesh are counted through
   /// the bodies one after the other.
@@ -35,9 +35,9 @@ struct Cover : Convexity {
 /// of them. Where its distance is m but for rounding, or where it would take too long, the answer
 /// is undecided.
 ///
-/// Bodies of several radii, or with segments and points as cores, are bounded by polytopes: what
-/// polytopes within them hold is verified, what polytopes round them do not hold is refuted, and
-/// what lies between the finest of both is undecided (docs/algorithms/rounded-bodies.md).
+/// Bodies of several radii, or with segments and points as cores, are bounded by polytopes. What
+/// polytopes within them hold is verified, what polytopes round them do not hold is refuted. What
+/// lies between the finest of both is undecided (docs/algorithms/rounded-bodies.md).
 ///
 /// @throws as verify_inclusion
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
@@ -51,12 +51,12 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
                         const InclusionOptions& options = {});
 
 /// Decides whether every point of the union, its radii included, is within `epsilon` of the
-/// original's triangles or, with `to_solid`, of these or its solid: verify_distance from the
-/// bodies' triangles with what ε leaves beside the margin and, for the solid, a search of what the
-/// bodies hold of its outside (to the triangles alone, the inside of bodies is not looked at).
-/// Where that fails, only a point of the union that is farther away than ε refutes, since what the
-/// margin adds may be near another part of the original. Sets without one margin are bounded by
-/// polytopes as in verify_cover.
+/// original's triangles or, with `to_solid`, of these or its solid. That is verify_distance from
+/// the bodies' triangles with what ε leaves beside the margin. For the solid, it is also a search
+/// of what the bodies hold of its outside (to the triangles alone, the inside of bodies is not
+/// looked at). Where that fails, only a point of the union that is farther away than ε refutes,
+/// since what the margin adds may be near another part of the original. Sets without one margin are
+/// bounded by polytopes as in verify_cover.
 ///
 /// @pre epsilon > margin_of(set), where there is one; with `to_solid` the original is a closed
 /// chain

@@ -25,8 +25,8 @@ struct DistanceClaimOptions {
 /// `to`, or of its solid.
 ///
 /// A part of a triangle passes when its corners are within ε of one triangle of `to` (the distance
-/// to a convex set is convex), or when it lies inside the solid as a whole; it fails when a corner
-/// is certainly farther away; otherwise it is cut, along the prism of the nearest triangle where
+/// to a convex set is convex), or when it lies inside the solid as a whole. It fails when a corner
+/// is certainly farther away. Otherwise it is cut, along the prism of the nearest triangle where
 /// that is possible. Upper bounds are distances to convex combinations of corners, lower bounds
 /// distances to separating planes, both widened by their rounding:
 /// docs/algorithms/exact-inclusion.md, "Distance". Suprema closer to ε than the rounding stay

@@ -29,19 +29,23 @@ struct ReplayResult {
 /// Derives a result again from its input and its log, and checks every step.
 ///
 /// Shares no code with the decimation but the types: its own merging of vertices, its own
-/// adjacency, CGAL's exact orientation predicate directly. Verified means: dropped triangles have
-/// repeated corners, cancel in opposite pairs, or are copies that form closed chains by themselves;
-/// every step's new vertex is on the right side of, or on, the plane of every triangle it replaces,
-/// or the tetrahedron between them has no triangle of the original in its interior and lies outside
-/// its solid (inner: inside; not checked for bmesh::Direction::Any, which claims nothing); no
-/// vertex of an unbalanced edge moves; and the triangles left are exactly those of `result`,
-/// coordinate by coordinate. Where no triangle of the original, as interpreted, or of the result
-/// has an area, nothing is verified.
+/// adjacency, CGAL's exact orientation predicate directly. Verified means:
+/// - Dropped triangles have repeated corners, cancel in opposite pairs, or are copies that form
+///   closed chains by themselves.
+/// - Every step's new vertex is on the right side of, or on, the plane of every triangle it
+///   replaces, or the tetrahedron between them has no triangle of the original in its interior and
+///   lies outside its solid (inner: inside; not checked for bmesh::Direction::Any, which claims
+///   nothing).
+/// - No vertex of an unbalanced edge moves.
+/// - The triangles left are exactly those of `result`, coordinate by coordinate.
+///
+/// Where no triangle of the original, as interpreted, or of the result has an area, nothing is
+/// verified.
 ///
 /// The original is taken as the log interprets it: turned triangles are applied and counted,
 /// whether they should be turned is not checked. Dropped copies are checked to be closed chains
 /// that also stay; they lower the winding number but, unless something is oriented inwards, not the
-/// solid. Triangles that fill holes are added to those of the input, which stay as they are; with
+/// solid. Triangles that fill holes are added to those of the input, which stay as they are. With
 /// them the mesh is checked to be a closed chain, and they to be triangles and fans on the rims of
 /// holes, each from the mean of its rim (docs/algorithms/preparation.md).
 ///
@@ -51,11 +55,14 @@ struct ReplayResult {
 ReplayResult replay(const geom::Mesh& original, const bmesh::Log& log, const geom::Mesh& result,
                     const ReplayProgress& progress = {});
 
-/// Checks as `replay` does, but the base mesh and all levels instead of one result: the base is the
-/// original as the log interprets it; every step is certified, against the level before (the
-/// original, before the first level) where the mesh before the step alone does not do so; and
-/// every level has the number of vertices it says. So each level encloses (Inner: is enclosed by)
-/// the level before and the original; docs/algorithms/bounding-mesh.md, "Series".
+/// Checks as `replay` does, but the base mesh and all levels instead of one result:
+/// - The base is the original as the log interprets it.
+/// - Every step is certified, against the level before (the original, before the first level) where
+///   the mesh before the step alone does not do so.
+/// - Every level has the number of vertices it says.
+///
+/// So each level encloses (Inner: is enclosed by) the level before and the original;
+/// docs/algorithms/bounding-mesh.md, "Series".
 ///
 /// @param original  as read from the input file.
 /// @throws Error{InvalidInput} when the log refers to triangles or vertices that do not exist.

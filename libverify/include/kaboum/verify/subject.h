@@ -16,8 +16,8 @@ namespace kaboum::verify {
 /// refuses them, as they are.
 struct Subject {
   geom::Mesh mesh;  ///< whose solid is judged
-  /// Which solid is meant is not known, for preparing refuses the mesh or had to guess: what each
-  /// part that is closed by itself winds round, either way, is to be held as well.
+  /// True if it is not known which solid is meant: preparing refuses the mesh or had to guess. What
+  /// each part that is closed by itself winds round, either way, is to be held as well.
   bool both_ways = false;
   /// Preparing left out triangles, or split quads that are not plane one way: `triangles` are to
   /// lie inside as well.

@@ -3,6 +3,7 @@
 #include <kaboum/world/world.h>
 
 #include <functional>
+#include <limits>
 
 namespace kaboum::world {
 
@@ -16,6 +17,8 @@ std::vector<AllowedPair> connected_links(const RobotModel& robot);
 struct PairOptions {
   std::size_t most_boxes = 20'000;  ///< of joint values that are looked at for one pair
   std::size_t samples = 2'000;      ///< places at which contacts of a pair are looked for at first
+  /// After so long nothing more is proved. [s]
+  double most_seconds = std::numeric_limits<double>::infinity();
   std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
 };
 
@@ -30,11 +33,14 @@ struct LinkPair {
   bool meets_always = false;
 };
 
-/// All pairs of a robot's links that have shapes: adjacent ones; those never in contact, which is
-/// proved for all values within the limits (for one turn of joints without limits) by halving
-/// boxes of joint values until the links are farther apart than they can move; those always in
-/// contact (a reason where they are connected by fixed joints only). Outer sets are looked at,
-/// without the allowed pairs of the robot itself.
+/// All pairs of a robot's links that have shapes:
+/// - adjacent ones;
+/// - those never in contact. That is proved for all values within the limits (for one turn of
+///   joints without limits) by halving boxes of joint values until the links are farther apart than
+///   they can move.
+/// - those always in contact (a reason where they are connected by fixed joints only).
+///
+/// Outer sets are looked at, without the allowed pairs of the robot itself.
 std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& options);
 
 /// The pairs that need no check: connected ones, also of links without shapes, and of the others

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/collide/penetration.h>
 #include <kaboum/sweep/motion.h>
 #include <kaboum/world/world.h>
 
@@ -30,6 +31,9 @@ struct Contact {
   bool certain = false;
   double epsilon = 0;         ///< sum of both ε, errors of places included [length]
   Vec3 place = Vec3::Zero();  ///< a point of it, rounded, in the world [length]
+  /// How deep the sets are in each other, where Checker::measure_depth was asked. `upper` bounds
+  /// the depth of the solids, too.
+  std::optional<collide::Penetration> depth = {};
 };
 
 /// Memory of one thread: places of bodies, and what separated pairs last time. It changes how long
@@ -102,7 +106,13 @@ class Checker {
   [[nodiscard]] std::vector<Contact> find_contacts(const WorldState& state, Scratch& scratch,
                                                    const Options& options) const;
 
-  /// Certified bracket of the smallest distance of the pairs that are looked at, and that pair.
+  /// Measures how deep the items of a contact are in each other in a state.
+  /// @throws as find_contact
+  void measure_depth(Contact& contact, const WorldState& state, Scratch& scratch) const;
+
+  /// Certified bracket of the smallest signed distance of the pairs that are looked at, and that
+  /// pair: of pairs whose sets meet it is the penetration depth, negated (Definition 1 of
+  /// [gaschler2016]). Places are not those of the deepest point then.
   struct Nearest {
     std::array<Item, 2> items;
     collide::Clearance clearance;

@@ -28,12 +28,12 @@ struct MotionAnswer {
     Undecided,  ///< most_intervals reached
   };
   Outcome outcome = Outcome::Free;
-  /// Where the path stops being certainly free: a segment from waypoint i to i + 1, and the share
-  /// of it. With Contact, all before is free.
+  /// Place where the path stops being certainly free: a segment from waypoint i to i + 1, and the
+  /// share of it. With Contact, all before is free.
   std::size_t segment = 0;
   double share = 0;
   std::optional<Contact> contact;  ///< the first that was found; there is one with Contact
-  /// When: in `segment`, the contact was found at this share. Not below `share`.
+  /// Place of the contact: in `segment`, it was found at this share. Not below `share`.
   std::size_t contact_segment = 0;
   double contact_share = 0;
   bool meets = false;  ///< outer sets meet then; false: they are nearer than the resolution
@@ -54,10 +54,10 @@ struct MotionAnswer {
 MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                           const robot::Path& path, const MotionOptions& options);
 
-/// Which of some things are in the way of a path: not certainly apart, at every instant, from the
-/// robot and what it carries. Each is decided about by itself, so that what is said of it depends
-/// on nothing else in the state; where none of all the things is in the way, and the path is free
-/// without them, it is free (check_motion).
+/// Things that are in the way of a path: not certainly apart, at every instant, from the robot and
+/// what it carries. Each is decided about by itself, so that what is said of it depends on nothing
+/// else in the state. Where none of all the things is in the way, and the path is free without
+/// them, it is free (check_motion).
 /// @param things  shapes of other robots, and objects that this robot does not carry.
 /// @return some of these, ascending.
 /// @throws as check_motion

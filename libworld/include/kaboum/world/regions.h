@@ -20,15 +20,15 @@ collide::Inclusion find_inclusion(const Checker& checker, const WorldState& stat
 
 struct MotionInclusion {
   collide::Inclusion answer = collide::Inclusion::Included;  ///< at every instant
-  /// Where it stops being certain: a segment from waypoint i to i + 1, and the share of it; all
-  /// before is inside.
+  /// Place where it stops being certain: a segment from waypoint i to i + 1, and the share of it;
+  /// all before is inside.
   std::size_t segment = 0;
   double share = 0;
   double found = 0;  ///< the share of the segment that was looked at when it did
   std::size_t intervals = 0;
 };
 
-/// Decides whether an item stays in a region while a robot moves along a path, at every instant: a
+/// Decides whether an item stays in a region while a robot moves along a path, at every instant. A
 /// stretch of time is inside when the item is at its middle, enlarged by as much as it moves in
 /// half of it (docs/scene.md); others are halved until it moves less than options.resolution.
 /// @throws as check_motion and the one above.

@@ -18,9 +18,9 @@ struct SceneNotes {
 };
 
 /// A world of a scene file (docs/scene.md): YAML where its name ends in .yaml or .yml, else JSON.
-/// Files are looked at by their hashes: one that is not what the scene was made with is refused,
-/// and so are inner sets where outer ones are needed, sets in another unit, of another link or
-/// another robot, links with shapes but without a set, names that are not known or used twice.
+/// Files are looked at by their hashes: one that is not what the scene was made with is refused. So
+/// are inner sets where outer ones are needed, sets in another unit, of another link or another
+/// robot, links with shapes but without a set, names that are not known or used twice.
 ///
 /// @param name  of the file, for messages.
 /// @throws Error{InvalidInput} naming the file, line and column, and what would help;

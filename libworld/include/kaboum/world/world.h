@@ -2,6 +2,7 @@
 
 #include <kaboum/collide/bounding_set.h>
 #include <kaboum/robot/robot.h>
+#include <kaboum/world/primitive.h>
 
 #include <array>
 #include <cstdint>
@@ -24,7 +25,7 @@ struct ToolFrame {
   Transform pose;  ///< from the frame to the link's
 };
 
-/// Which links may touch what a tool holds.
+/// The links that may touch what a tool holds.
 struct Gripper {
   std::string name;
   std::size_t tool = 0;              ///< index of a tool frame
@@ -92,6 +93,7 @@ struct Object {
   std::optional<BoundingSet> inner;
   std::vector<Feature> features;
   std::vector<Grasp> grasps;
+  std::optional<Primitive> primitive = {};  ///< of which the sets are; none: they are of a mesh
 };
 
 /// A part of space that things may be asked to be in.

@@ -38,15 +38,15 @@ struct Wrap {
 /// An enclosing closed mesh of any triangles: open, crossing each other, wrongly oriented.
 ///
 /// Carves Delaunay tetrahedra from outside, as far as a ball of diameter `seal` gets, and moves,
-/// splits and contracts their boundary as near to the input as it may: each step adds tetrahedra
-/// of which none meets the input, and new triangles that meet no others.
-/// docs/algorithms/wrapping.md has the proof. How far the wrap reaches is not promised by this
-/// function: measure it (geom::directed_distance).
+/// splits and contracts their boundary as near to the input as it may. Each step adds tetrahedra of
+/// which none meets the input, and new triangles that meet no others. docs/algorithms/wrapping.md
+/// has the proof. How far the wrap reaches is not promised by this function: measure it
+/// (geom::directed_distance).
 ///
 /// The result does not depend on the number of threads.
 ///
 /// @throws Error{InvalidInput} when the input has no triangles, numbers that are not finite, or
-///   coordinates too large for `seal` and the precision, or a size beyond 1e±40;
+///   coordinates too large for `seal` and the precision, or a size beyond 1e±40.
 ///   Error{InvalidArgument} on lengths that are not positive, or a clearance too large for the
 ///   offset; Error{LimitReached} when more than max_points are needed.
 Wrap wrap(const geom::Mesh& input, const WrapOptions& options);

@@ -9,7 +9,7 @@
 
 namespace kaboum::robot {
 
-/// Which shapes of a robot's links are meant.
+/// Choice of the shapes of a robot's links that are meant.
 struct ShapeChoice {
   std::vector<std::string> links;     ///< only these; empty: all that have a shape
   bool visual = false;                ///< shapes for drawing instead of those for collisions

@@ -11,7 +11,7 @@ namespace kaboum::robot {
 struct PathOptions {
   bool check_limits = true;  ///< refuse waypoints outside the joints' limits
   bool degrees = false;      ///< angles of the file and of `fixed` are in degrees
-  FixedJoints fixed;         ///< joints without a column
+  FixedJoints fixed = {};    ///< joints without a column
 };
 
 /// Reads a path for a robot, CSV or JSON (docs/formats.md). What could be read in two ways is

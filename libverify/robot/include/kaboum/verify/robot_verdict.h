@@ -19,7 +19,7 @@
 /// print, write and end with.
 namespace kaboum::verify {
 
-/// Which solid of a mesh is to be held, besides every triangle of its file.
+/// The solid of a mesh that is to be held, besides every triangle of its file.
 enum class Solid {
   AsFile,    ///< of a closed mesh: what it winds round, as it is oriented
   Prepared,  ///< what geom::prepare makes of it, holes filled; where it refuses: as Enclosed
@@ -116,10 +116,10 @@ struct RobotVerdict {
 };
 
 /// Decides whether the result moves as the original, and whether every shape of the original's
-/// links is held by the result's collision shapes of the same link: a mesh by meshes of its frame
-/// (Holders), each box, cylinder and sphere by itself. Same meshes held by the same ones are judged
-/// once. A mesh of the original that cannot be read, or of which no claim can be decided, is not
-/// held; nor does it hold anything where the result has it as well.
+/// links is held by the result's collision shapes of the same link. A mesh is held by meshes of its
+/// frame (Holders), each box, cylinder and sphere by itself. Same meshes held by the same ones are
+/// judged once. A mesh of the original that cannot be read, or of which no claim can be decided, is
+/// not held; nor does it hold anything where the result has it as well.
 /// @param judged  called with each verdict on a link as soon as it is there; may be empty
 /// @throws Error as file_of; as MeshFile::error where nothing else is there to be judged, or of
 ///   another mesh of the result; Error{InvalidInput} where no link has a shape, or epsilon is no

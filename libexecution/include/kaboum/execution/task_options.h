@@ -1,0 +1,14 @@
+#pragma once
+
+#include <kaboum/base/option.h>
+#include <kaboum/execution/run_plan.h>
+
+namespace kaboum::execution {
+
+/// The options of a planning task: languages of its files, and external functions of a user's own.
+const std::vector<Option<TaskFiles>>& task_options();
+
+/// The options of carrying out a plan.
+const std::vector<Option<PlanRunRequest>>& run_options();
+
+}  // namespace kaboum::execution

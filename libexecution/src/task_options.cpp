@@ -1,0 +1,107 @@
+// The options of planning tasks and of carrying out plans: their tables.
+
+#include <kaboum/execution/task_options.h>
+#include <kaboum/robot/shape_options.h>
+
+#include <array>
+#include <utility>
+
+namespace kaboum::execution {
+namespace {
+
+using Kind = OptionDescription::Kind;
+
+Option<PlanRunRequest> time_optimal_option() {
+  using motion::Profile;
+  Option<PlanRunRequest> out;
+  out.name = "time-optimal";
+  out.text =
+      "As fast as velocities and accelerations allow, which then jump, instead of by quintic "
+      "polynomials";
+  out.kind = Kind::Flag;
+  out.value = [](const PlanRunRequest& r) {
+    return option_text::of(r.simulation.profile == Profile::Trapezoid);
+  };
+  out.assign = [](PlanRunRequest& r, const std::string& text) {
+    r.simulation.profile = text == "true" ? Profile::Trapezoid : Profile::Quintic;
+  };
+  return out;
+}
+
+}  // namespace
+
+const std::vector<Option<TaskFiles>>& task_options() {
+  using R = TaskFiles;
+  using plan::Language;
+  static constexpr std::array<std::pair<const char*, Language>, 2> kLanguages{
+      {{"kpl", Language::Kpl}, {"pddl", Language::Pddl}}};
+  static const std::vector<Option<R>> options{
+      choice<R>(
+          {.name = "input-format",
+           .text = "Language of the domain, and of the problem",
+           .otherwise = "by extension"},
+          [](auto& r) -> auto& { return r.language; }, kLanguages),
+      choice<R>(
+          {.name = "problem-format",
+           .text = "Language of the problem",
+           .otherwise = "as {input-format}, else by extension"},
+          [](auto& r) -> auto& { return r.problem_language; }, kLanguages),
+      option<R>(
+          {.name = "process",
+           .text = "A command whose program answers external functions by JSON lines "
+                   "(docs/planning/externals.md); there may be several",
+           .values = "COMMAND",
+           .plural = "processes"},
+          [](auto& r) -> auto& { return r.processes; }),
+      option<R>(
+          {.name = "process-timeout",
+           .text = "Longest time for one answer of a program or plug-in, and for its start",
+           .values = "SECONDS",
+           .low = 1e-3,
+           .high = 1e6},
+          [](auto& r) -> auto& { return r.most_seconds; }),
+      option<R>(
+          {.name = "plugin",
+           .text = "A shared library with external functions; there may be several",
+           .plural = "plugins"},
+          [](auto& r) -> auto& { return r.plugins; })};
+  return options;
+}
+
+const std::vector<Option<PlanRunRequest>>& run_options() {
+  using R = PlanRunRequest;
+  static const std::vector<Option<R>> options{
+      option<R>(
+          {.name = "replan",
+           .text = "How often it is planned again, at most, where sensing turns out as the plan "
+                   "has no branch for; 0: that is an error",
+           .low = 0},
+          [](auto& r) -> auto& { return r.replan.most; }),
+      limit_option<R>(
+          {.name = "timeout",
+           .text = "Longest time for each new plan",
+           .values = "SECONDS",
+           .low = 0,
+           .between = true,
+           .otherwise = "no limit"},
+          [](auto& r) -> auto& { return r.replan.solve.timeout; }),
+      option<R>(
+          {.name = "seed", .text = "Seed of new plans' external functions that choose at random"},
+          [](auto& r) -> auto& { return r.replan.solve.seed; }),
+      option<R>(
+          {.name = "rate", .text = "Samples per second", .values = "HZ", .low = 1, .high = 1e5},
+          [](auto& r) -> auto& { return r.simulation.rate; }),
+      option<R>(
+          {.name = "max-acceleration",
+           .text = "Of all joints, per second squared",
+           .low = 1e-3,
+           .high = 1e6},
+          [](auto& r) -> auto& { return r.simulation.acceleration; }),
+      time_optimal_option(),
+      option<R>(
+          option_named(robot::shape_options(), "package-path"),
+          [](auto& r) -> auto& { return r.packages; })};
+  return options;
+}
+
+}  // namespace kaboum::execution

@@ -1,0 +1,128 @@
+// The tables of options of all libraries: names, texts, defaults, ranges, records.
+
+#include <gtest/gtest.h>
+#include <kaboum/certify/mesh_options.h>
+#include <kaboum/certify/set_options.h>
+#include <kaboum/certify/sweep_options.h>
+#include <kaboum/distance/compare_options.h>
+#include <kaboum/execution/task_options.h>
+#include <kaboum/kinematics/inverse_options.h>
+#include <kaboum/motion/path_options.h>
+#include <kaboum/plan/solve_options.h>
+#include <kaboum/robot/path_options.h>
+#include <kaboum/robot/shape_options.h>
+#include <kaboum/scene/scene_options.h>
+#include <kaboum/world/check_options.h>
+
+#include <cmath>
+#include <set>
+
+#include "support/other_option_value.h"
+
+namespace kaboum {
+namespace {
+
+using Kind = OptionDescription::Kind;
+
+template <class Request>
+void check_names_and_texts(const std::vector<Option<Request>>& table) {
+  std::set<std::string> names;
+  for (const Option<Request>& o : table) {
+    EXPECT_TRUE(names.insert(o.name).second) << o.name << " is there twice";
+    EXPECT_EQ(o.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string::npos) << o.name;
+    EXPECT_TRUE(!o.text.empty() && !o.text.ends_with('.')) << o.name << ": " << o.text;
+  }
+  for (const Option<Request>& o : table)
+    meaning(o.text + o.otherwise, [&](const std::string& name) {
+      EXPECT_TRUE(names.contains(name)) << o.name << " speaks of " << name;
+      return name;
+    });
+}
+
+template <class Request>
+void check_ranges(const Option<Request>& o) {
+  const auto standard = default_of(o);
+  if (standard && !standard->empty()) {
+    EXPECT_EQ(flaw_of(o, *standard), "") << o.name;
+  }
+  if (o.kind != Kind::Count && o.kind != Kind::Number) return;
+  const auto text = [&](double value) {
+    return o.kind == Kind::Count ? std::to_string(static_cast<long long>(value))
+                                 : option_text::of(value);
+  };
+  const auto soundly = [&](double value) { return flaw_of(o, text(value)).empty(); };
+  if (std::isfinite(o.low)) {
+    EXPECT_EQ(soundly(o.low), !o.between) << o.name;
+    EXPECT_FALSE(soundly(o.low - 1)) << o.name;
+  }
+  if (std::isfinite(o.high)) {
+    EXPECT_EQ(soundly(o.high), !o.between) << o.name;
+    EXPECT_FALSE(soundly(2 * o.high + 1)) << o.name;
+  }
+}
+
+template <class Request>
+void check_record(const std::vector<Option<Request>>& table, const Option<Request>& o) {
+  Request changed;
+  const std::string value = test::other_value(o);
+  ASSERT_EQ(flaw_of(o, value), "") << o.name << " " << value;
+  ASSERT_NE(o.value(changed), value) << o.name;
+  o.assign(changed, value);
+  EXPECT_EQ(o.value(changed), value) << o.name;
+  for (const Option<Request>& other : table)
+    if (other.name != o.name) {
+      EXPECT_EQ(other.value(changed), default_of(other)) << other.name << " is set by " << o.name;
+    }
+  Request back;
+  EXPECT_EQ(read_record(table, record_of(table, changed), back), "") << o.name;
+  EXPECT_EQ(o.value(back), o.unrecorded ? default_of(o) : value) << o.name;
+}
+
+template <class Request>
+void check(const char* name, const std::vector<Option<Request>>& table) {
+  SCOPED_TRACE(name);
+  EXPECT_FALSE(table.empty());
+  check_names_and_texts(table);
+  for (const Option<Request>& o : table) {
+    check_ranges(o);
+    check_record(table, o);
+  }
+}
+
+TEST(OptionTables, AreSound) {
+  check("meshes", certify::mesh_options());
+  check("sets", certify::set_options());
+  check("robots' sets", certify::robot_set_options());
+  check("swept sets", certify::swept_set_options());
+  check("distances", distance::compare_options());
+  check("inverse kinematics", kinematics::inverse_options());
+  check("paths", motion::path_options());
+  check("files of paths", robot::path_options());
+  check("shapes of robots", robot::shape_options());
+  check("states", world::state_options());
+  check("motions", world::motion_options());
+  check("pairs of links", world::pair_options());
+  check("scenes", scene::scene_options());
+  check("plans", plan::solve_options());
+  check("planning tasks", execution::task_options());
+  check("executions", execution::run_options());
+}
+
+/// Records of swept sets state what the links' bodies are made with, and digits as they were given.
+TEST(OptionTables, RecordsOfSweptSetsKeepDigits) {
+  certify::SweptSetOptions options;
+  const auto& table = certify::swept_set_options();
+  option_named(table, "epsilon").assign(options, "0.0100");
+  option_named(table, "joint").assign(options, "finger=0.040\nthumb=1");
+  const std::string record = certify::sweep_request_of(options).parameters;
+  EXPECT_EQ(record,
+            "--epsilon 0.0100 --bound balanced --body-epsilon 0.0100 --max-vertices-per-body 64 "
+            "--effort normal --geometry collision --joint finger=0.040 --joint thumb=1");
+  certify::SweptSetOptions back;
+  EXPECT_EQ(read_record(table, record, back), "");
+  EXPECT_EQ(back.joints, options.joints);
+  EXPECT_EQ(back.epsilon, options.epsilon);
+}
+
+}  // namespace
+}  // namespace kaboum
