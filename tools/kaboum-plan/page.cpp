@@ -19,8 +19,8 @@ int write_page(const PlanOptions& o) {
   inputs.insert(inputs.end(), {o.plan, o.task.domain, o.task.problem});
   require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = task.load();
-  const execution::PlanPage page = execution::plan_page(task, model, read_plan_file(model, o.plan),
-                                                        {.tree = o.tree, .packages = o.run.packages});
+  const execution::PlanPage page = execution::plan_page(
+      task, model, read_plan_file(model, o.plan), {.tree = o.tree, .packages = o.run.packages});
   for (const std::string& note : page.notes) log(o.common.quiet, note);
   io::write_file(o.html, page.html);
   return kDone;
