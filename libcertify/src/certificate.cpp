@@ -67,14 +67,18 @@ const char* name_of(Claim::Kind kind) {
 }
 
 bool Certificate::holds() const {
-  return std::ranges::all_of(claims, [](const Claim& claim) {
-    return claim.answer == Answer::Verified || claim.answer == Answer::Undefined;
-  });
+  bool any = false;
+  for (const Claim& claim : claims) {
+    if (claim.answer == Answer::Refuted || claim.answer == Answer::Undecided) return false;
+    any = any || claim.answer == Answer::Verified;
+  }
+  return any;
 }
 
 std::string to_json(const Certificate& certificate) {
   Json j;
-  j["direction"] = certificate.direction == Certificate::Direction::Outer ? "outer" : "inner";
+  constexpr std::array<const char*, 3> kDirections{"outer", "inner", "any"};
+  j["direction"] = kDirections.at(static_cast<std::size_t>(certificate.direction));
   j["of"] = certificate.subject;
   j["claims"] = Json::array();
   for (const Claim& claim : certificate.claims) {
@@ -143,8 +147,6 @@ Certificate certificate_of(const CertifiedSweep& sweep) {
   out.subject = c.margin > 0
                     ? "what the robot's links sweep along the path, by the bodies with their margin"
                     : "what the robot's links sweep along the path";
-  const double distance = (c.excess + c.bodies_distance) * (1 + 0x1p-50);  // rounded up
-  out.distance = {0, distance};
   out.claims.push_back(verified(Kind::Convex));
   Claim motion =
       verified(Kind::Motion, c.motion == MotionClaim::Decided ? Basis::Bytes : Basis::Steps);
@@ -153,6 +155,9 @@ Certificate certificate_of(const CertifiedSweep& sweep) {
     motion.reason = "the rule of steps has no proof";
   }
   out.claims.push_back(std::move(motion));
+  if (c.motion == MotionClaim::None) return out;                           // nor for the distance
+  const double distance = (c.excess + c.bodies_distance) * (1 + 0x1p-50);  // rounded up
+  out.distance = {0, distance};
   out.claims.push_back(distance_claim(Kind::ResultToOriginal, distance));
   return out;
 }

@@ -59,8 +59,9 @@ bool MeshCertificate::reached() const {
 Certificate certificate_of(const CertifiedMesh& mesh) {
   const MeshCertificate& c = mesh.certificate();
   Certificate out;
-  out.direction = c.direction == bmesh::Direction::Inner ? Certificate::Direction::Inner
-                                                         : Certificate::Direction::Outer;
+  out.direction = c.direction == bmesh::Direction::Any     ? Certificate::Direction::Any
+                  : c.direction == bmesh::Direction::Inner ? Certificate::Direction::Inner
+                                                           : Certificate::Direction::Outer;
   out.subject = in_words(c.subject);
   if (c.original_to_result && c.result_to_original)
     out.distance = {std::max(c.original_to_result->max_lower, c.result_to_original->max_lower),

@@ -36,7 +36,6 @@ struct MeshFormat {
   Writer write = nullptr;        ///< null: it is only read
   bool doubles = false;          ///< its files can hold doubles exactly
   std::string_view floats = {};  ///< in messages, where it is written with floats alone
-  bool listed = true;            ///< where messages list formats
   bool (*available)() = always;
 };
 
@@ -55,11 +54,7 @@ constexpr std::array kFormats = {
                .read = read<read_gltf>,
                .write = write_glb,
                .floats = "GLB"},
-    MeshFormat{.format = Format::Gltf,
-               .name = "gltf",
-               .other_name = "",
-               .read = read<read_gltf>,
-               .listed = false},
+    MeshFormat{.format = Format::Gltf, .name = "gltf", .other_name = "", .read = read<read_gltf>},
     MeshFormat{.format = Format::Iges,
                .name = "iges",
                .other_name = "igs",
@@ -105,7 +100,7 @@ template <typename Accept>
 std::vector<std::string> names_of(const Accept& accept) {
   std::vector<std::string> names;
   for (const MeshFormat& known : kFormats)
-    if (known.listed && accept(known)) names.emplace_back(known.name);
+    if (accept(known)) names.emplace_back(known.name);
   return names;
 }
 

@@ -85,10 +85,16 @@ bool Sequence::is_beyond_reach(std::size_t robot, std::size_t object) const {
       (inverse(model.base) * (pose_of_object(object) * ball.center)).norm() - ball.radius;
   double aside =
       0;  // how far from the ball tools may be, as they are at the grasps that are listed
+  std::vector<world::ToolFrame> tools;
+  for (const world::ToolFrame& tool : model.tools)
+    if (std::ranges::any_of(thing.grasps,
+                            [&](const world::Grasp& grasp) { return fits(tool, grasp); }))
+      tools.push_back(tool);
+  if (tools.empty()) return false;
   for (const world::Grasp& grasp : thing.grasps)
-    aside = std::max(aside, (grasp.pose.translation - ball.center).norm() - ball.radius);
+    aside = std::max(aside, (grasp.pose * ball.center).norm() - ball.radius);
   const robot::Robot& robot_of = model.kinematics;
-  return std::ranges::all_of(model.tools, [&](const world::ToolFrame& tool) {
+  return std::ranges::all_of(tools, [&](const world::ToolFrame& tool) {
     const kinematics::Arm arm =
         kinematics::arm_of(robot_of, robot_of.links[0].name, robot_of.links[tool.link].name);
     // From one axis to the next nothing but sliding changes how far their points are apart.

@@ -26,6 +26,9 @@ constexpr double kStep = 0.01, kUprightStep = 0.02;
 constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
 /// How far from one plane points of an upper face may be, with the sets' ε. [m]
 constexpr double kFlat = 1e-4;
+/// A base is at least so many epsilons of its support wide: slots up to 2 wide may be closed in
+/// sets.
+constexpr double kBridges = 4;
 /// How far above or below a face a point may be that is meant to be on it. [m]
 constexpr double kOfFace = 0.01;
 /// How far from level a support may lie. [1 - cosine]
@@ -36,10 +39,11 @@ constexpr std::size_t kPlaces = 64;
 /// What of a convex body is at its top, seen from above: in the object's frame.
 class UpperFace {
  public:
-  UpperFace(const geom::ConvexBody& body, double close) {
+  /// @param inside  the outline is taken so much smaller all round
+  UpperFace(const geom::ConvexBody& body, double inside) : inside_(inside) {
     for (const geom::Vec3& v : body.core.vertices) height_ = std::max(height_, v.z());
     for (const geom::Vec3& v : body.core.vertices)
-      if (v.z() >= height_ - close) corners_.push_back(v);
+      if (v.z() >= height_ - kFlat) corners_.push_back(v);
     height_ += body.radius;
     for (const geom::Vec3& v : corners_) {
       low_ = low_.cwiseMin(v);
@@ -52,8 +56,10 @@ class UpperFace {
   /// Whether a point is above it, seen from above.
   [[nodiscard]] bool holds(const geom::Vec3& p) const {
     if (outline_.size() < 3) return false;
-    for (std::size_t i = 0; i < outline_.size(); ++i)
-      if (turn(outline_[i], outline_[(i + 1) % outline_.size()], p) < 0) return false;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      const geom::Vec3 &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+      if (turn(a, b, p) < inside_ * (b - a).head<2>().norm()) return false;
+    }
     return true;
   }
   /// A point of the box round it, by shares of its sides.
@@ -82,6 +88,7 @@ class UpperFace {
     if (!outline_.empty()) outline_.pop_back();
   }
 
+  double inside_ = 0;
   double height_ = -std::numeric_limits<double>::infinity();
   geom::Vec3 low_ = geom::Vec3::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
   std::vector<geom::Vec3> corners_, outline_;
@@ -250,8 +257,16 @@ std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_
       if (at.z() <= close + thing.outer.body(i).radius) base.push_back(at);
     }
   if (base.empty()) return out;
+  // Bodies reach beyond the support by epsilon, and close slots twice as wide: a base has to bridge
+  // these, and to stand clear of the edges.
+  geom::Vec3 low = base.front(), high = base.front();
+  for (const geom::Vec3& v : base) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  if (!((high - low).head<2>().minCoeff() >= kBridges * below.outer.epsilon())) return out;
   for (std::size_t i = 0; i < below.outer.size(); ++i) {
-    const UpperFace face(below.outer.body(i), close);
+    const UpperFace face(below.outer.body(i), below.outer.epsilon());
     const bool meant = std::ranges::any_of(tops, [&](const geom::Vec3& point) {
       return face.holds(point) && std::abs(point.z() - face.height()) <= kOfFace;
     });

@@ -108,6 +108,10 @@ MadeScene make_scene(const SceneMaker& maker) {
     if (maker.scales.contains(robot.name))
       throw Error(ErrorCode::InvalidArgument,
                   "scale: '" + robot.name + "' is a robot, which states its meshes' scales itself");
+  for (const NamedPrimitive& p : maker.primitives)
+    if (maker.scales.contains(p.name))
+      throw Error(ErrorCode::InvalidArgument,
+                  "scale: '" + p.name + "' is a primitive, which states its sizes itself");
   require_names("scale", keys_of(maker.scales), names);
   // What is not there is noticed before anything is computed, which takes long.
   for (const auto* files : {&maker.robots, &maker.objects, &maker.regions})

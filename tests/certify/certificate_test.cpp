@@ -81,6 +81,19 @@ TEST(CertificateOf, ABoundingMeshStatesHausdorffsDistance) {
   EXPECT_EQ(c.distance->upper, made->certificate().hausdorff_upper());
 }
 
+TEST(CertificateOf, AMeshOfAnyDirectionClaimsNothing) {
+  MeshRequest request;
+  request.vertices = {60};
+  request.direction = bmesh::Direction::Any;
+  request.decide = false;
+  const auto made = certify_mesh(prepare_mesh(torus()), request);
+  ASSERT_TRUE(made);
+  const Certificate c = certificate_of(*made);
+  EXPECT_EQ(c.direction, Certificate::Direction::Any);
+  EXPECT_TRUE(c.claims.empty());
+  EXPECT_FALSE(c.holds());
+}
+
 TEST(CertificateOf, AWrapHoldsEveryTriangle) {
   const auto wrap = certify_wrap(open_box(), {});
   const Certificate c = certificate_of(wrap);
@@ -90,7 +103,7 @@ TEST(CertificateOf, AWrapHoldsEveryTriangle) {
 
 TEST(Certificate, HoldsOnlyWhereNothingIsRefutedOrOpen) {
   Certificate c;
-  EXPECT_TRUE(c.holds());
+  EXPECT_FALSE(c.holds());  // of nothing
   for (const Answer answer : {Answer::Refuted, Answer::Undecided}) {
     c.claims = {{.kind = Kind::Convex, .basis = Basis::Bytes, .answer = Answer::Verified},
                 {.kind = Kind::Solid, .basis = Basis::Bytes, .answer = answer}};

@@ -247,6 +247,33 @@ TEST(Check, AConditionThatHoldsMayFailFurtherDown) {
   EXPECT_FALSE(verdict("", "del(Kf, !q)").valid);  // neither is known then
 }
 
+/// f is sensed, a fact that is tied to another one is, and f again: f is open all the while.
+TEST(Check, WhatIsSensedTwiceInOneStepIsDoneOnce) {
+  const auto verdict = [](const std::string& text) {
+    const Model m = model_of("types: t, bottle\nconstants: t a, b; bottle x, y\n" + text);
+    return check(m, read_plan(m,
+                              R"({"format":"kaboum-plan","version":1,"domain":"","root":0,"nodes":[
+      {"action":"look","arguments":[],"next":"goal"}]})",
+                              "plan.json"));
+  };
+  const std::string sensed_for_all =
+      "predicates: p(bottle), q, g\nfunctions: f : t\naction look effects: forall(?o : bottle) "
+      "(add(Kv, f), add(Kw, p(?o)))\ninit: Kx(p(x) | q)\n";
+  EXPECT_FALSE(verdict(sensed_for_all + "goal: K(q)").valid);
+  EXPECT_TRUE(verdict(sensed_for_all + "goal: Kw(q) & Kv(f)").valid);
+  const std::string facts = "predicates: p, q, g\nfunctions: f : t\n";
+  const std::string twice =
+      facts +
+      "action look effects: add(Kv, f), add(Kw, p), add(Kv, f), K(f = a) => add(Kf, g), "
+      "K(f = b) => add(Kf, g)\ninit: Kx(p | q)\n";
+  EXPECT_FALSE(verdict(twice + "goal: K(g) & Kw(p)").valid);  // f was not known before
+  EXPECT_TRUE(verdict(twice + "goal: Kw(p) & Kv(f)").valid);
+  EXPECT_TRUE(verdict(facts +
+                      "action look effects: add(Kf, g)\ninit: Kx(p | q), Kv(f), Kw(p), Kv(f)\n"
+                      "goal: K(g) & Kw(p) & Kv(f)")
+                  .valid);
+}
+
 TEST(Check, TreeAndGraphAreBothValid) {
   const Model m = scenario("bartender", "3");
   const Plan plan = good_plan(m);

@@ -26,7 +26,8 @@ std::string describe(const world::World& world, const world::Contact& contact) {
     out << " are within epsilon: no farther apart than " << contact.epsilon;
   if (contact.depth) {
     const auto& [lower, upper, direction] = *contact.depth;
-    out << (contact.certain ? ", " : "; their sets are ");
+    // Outer sets reach beyond their solids: only without epsilon is it the solids' depth.
+    out << (contact.certain && contact.epsilon == 0 ? ", " : "; their sets are ");
     // As many digits as both ends share.
     if (upper - lower <= 1e-3 * upper)
       out << upper << " deep";

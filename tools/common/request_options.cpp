@@ -38,6 +38,10 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
         app.add_option_function<std::vector<std::string>>(
                name,
                [name, assign, option](const std::vector<std::string>& parts) {
+                 for (const std::string& part : parts)
+                   if (part.find('\n') != std::string::npos)
+                     throw CLI::ValidationError(
+                         name, "a value with a line break; write it on one line, or a script");
                  const std::string value = option_text::of(parts, option);
                  const std::string flaw = flaw_of(option, value);
                  if (!flaw.empty()) throw CLI::ValidationError(name, flaw);

@@ -204,6 +204,8 @@ class Checker {
       else
         carry_out(v);
     } catch (const LeftOpen& open) {
+      // What stops a step was open before it: else the step would be done anew for ever, or never.
+      ensure(at.state->is_open(open.fact), "what a step looks at was open before it");
       for (RuntimeKnowledge& k : transitions_.look_at(*at.state, open.fact))
         visit(at.node, std::move(k), at.parent, at.label);
     }

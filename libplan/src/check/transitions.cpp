@@ -21,6 +21,11 @@ const std::vector<Index>& Transitions::range(Index function) const {
 /// The states that the sensing of one fact may lead to.
 void Transitions::sense(RuntimeKnowledge state, const Fact& f,
                         std::vector<RuntimeKnowledge>& next) const {
+  // It was sensed before, and stays open until something looks at it.
+  if (state.is_open(f)) {
+    next.push_back(std::move(state));
+    return;
+  }
   if (f[0] == 1 ? state.value(f) != nullptr : state.knows_whether(f)) {
     next.push_back(std::move(state));
     return;

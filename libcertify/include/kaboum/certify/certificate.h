@@ -44,8 +44,9 @@ const char* name_of(Claim::Kind kind);
 /// Certificate in the shape that all artefacts share: what is claimed, of what, and how far they
 /// are apart. `certificate_of` a certified artefact makes it.
 struct Certificate {
-  enum class Direction { Outer, Inner } direction = Direction::Outer;
-  /// What the artefact holds, or lies in, in words: "the input", and how it was changed.
+  /// Any: the artefact is near the subject, on both sides of it.
+  enum class Direction { Outer, Inner, Any } direction = Direction::Outer;
+  /// What the artefact holds, lies in or is near to, in words: "the input", and how it was changed.
   std::string subject;
   std::vector<Claim> claims;
   /// Largest distance of the artefact's points from the subject; of inner ones, the largest depth
@@ -55,7 +56,7 @@ struct Certificate {
   };
   std::optional<Distance> distance;
 
-  /// True where every claim that means something is verified.
+  /// True where something is claimed, and every claim that means something is verified.
   [[nodiscard]] bool holds() const;
 };
 
