@@ -304,10 +304,10 @@ sed 's/again/cell/' again.json | cmp -s - cell.json || fail "another scene of th
 # Primitives: exact, so that contacts are certain, and how deep they are.
 expect 0 '0 sets' "$BIN/kaboum-scene" make solids.json --primitive floor=plane:4,4,0.5 --primitive ball=sphere:0.25 --primitive can=cylinder:0.1,0.5 \
   --primitive pill=capsule:0.1,0.5 --primitive crate=box:1,1,1 --at ball=0,0,0.125 --at can=2,0,1 --at pill=-2,0,1 --at crate=0,2,3
-shows 1 'floor and ball collide, 0.375 deep' "$BIN/kaboum-check" solids.json --resting --report solids-report.json
-shows 1 'nearest: floor and ball, sets 0.375 to 0.375 deep in each other' "$BIN/kaboum-check" solids.json --resting --distance
+shows 1 'floor and ball collide, 0.125 deep' "$BIN/kaboum-check" solids.json --resting --report solids-report.json
+shows 1 'nearest: floor and ball, sets 0.125 to 0.125 deep in each other' "$BIN/kaboum-check" solids.json --resting --distance
 grep -q '"depth"' solids-report.json || fail "no depth in the report"
-expect 0 'solids.json: 0 sets' "$BIN/kaboum-scene" update solids.json
+expect 0 'nothing is out of date' "$BIN/kaboum-scene" update solids.json
 sed 's/0\.125/0.2500001/' solids.json >apart.json
 shows 0 '^free$' "$BIN/kaboum-check" apart.json --resting
 for bad in floor=plane floor=plane:4,4 ball=sphere:0 ball=sphere:1,2 can=cylinder:1 tube=tube:1 =box:1,1,1 ball=sphere:nan; do
