@@ -98,6 +98,7 @@ Primitive SceneValues::primitive(const Located& value) const {
   using P = Primitive::Kind;
   constexpr std::array kKinds{P::Box, P::Sphere, P::Cylinder, P::Capsule, P::Plane};
   std::vector<std::string> names;
+  names.reserve(kKinds.size());
   for (const P kind : kKinds) names.emplace_back(world::name_of(kind));
   known(value, names);
   if (value.names.size() != 1)
