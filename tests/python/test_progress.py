@@ -114,7 +114,7 @@ def test_interrupt_ends_the_search_for_a_path(world):
 
 def test_interrupt_ends_the_check_of_a_motion(world):
     path = [[0, 0], [0.1, 0.1]] * 100_000
-    interrupted(lambda: world.check_motion(path, max_intervals=10**12))
+    interrupted(lambda: world.check_motion(path, max_intervals=10**9))
 
 
 def test_interrupt_ends_checks_of_configurations(world):
