@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "claim_record.h"
+
 namespace kaboum::certify {
 namespace {
 
@@ -66,6 +68,15 @@ const char* name_of(Claim::Kind kind) {
   return "depth of what is left out";
 }
 
+Json record_of(const Claim& claim) {
+  Json j{{"claim", name_of(claim.kind)},
+         {"basis", name_of(claim.basis)},
+         {"answer", name_of(claim.answer)}};
+  if (!claim.reason.empty()) j["reason"] = claim.reason;
+  if (claim.distance) j["distance"] = *claim.distance;
+  return j;
+}
+
 bool Certificate::holds() const {
   bool any = false;
   for (const Claim& claim : claims) {
@@ -81,14 +92,7 @@ std::string to_json(const Certificate& certificate) {
   j["direction"] = kDirections.at(static_cast<std::size_t>(certificate.direction));
   j["of"] = certificate.subject;
   j["claims"] = Json::array();
-  for (const Claim& claim : certificate.claims) {
-    Json one{{"claim", name_of(claim.kind)},
-             {"answer", verify::name_of(claim.answer)},
-             {"basis", name_of(claim.basis)}};
-    if (!claim.reason.empty()) one["reason"] = claim.reason;
-    if (claim.distance) one["distance"] = *claim.distance;
-    j["claims"].push_back(std::move(one));
-  }
+  for (const Claim& claim : certificate.claims) j["claims"].push_back(record_of(claim));
   j["distance"] = certificate.distance ? Json{{"lower", certificate.distance->lower},
                                               {"upper", certificate.distance->upper}}
                                        : Json();

@@ -35,15 +35,6 @@ auto named(const Values& values, const std::string& name) {
   throw Error(ErrorCode::InvalidInput, "no certificate of a mesh: unknown word '" + name + "'");
 }
 
-Json record_of(const Claim& claim) {
-  Json j{{"claim", name_of(claim.kind)},
-         {"basis", name_of(claim.basis)},
-         {"answer", name_of(claim.answer)}};
-  if (!claim.reason.empty()) j["reason"] = claim.reason;
-  if (claim.distance) j["distance"] = *claim.distance;
-  return j;
-}
-
 Json record_of(const EnclosureCertificate& c) {
   Json j{{"vertices_in", c.vertices_in},
          {"vertices", c.vertices},

@@ -20,13 +20,11 @@ namespace kaboum::collide {
 namespace {
 
 using detail::kSumUp;
+using detail::kUnit;
+using detail::kUp;
 using geom::Vec3;
 
 constexpr int kMostSteps = 128;
-/// Of the sum of magnitudes: bounds the error of a product with a direction, and of a difference's
-/// components (docs/algorithms/bounded-predicates.md).
-constexpr double kUnit = 0x1p-48;
-constexpr double kUp = 1 + 0x1p-48;
 /// Of the upper end: brackets as narrow end the search.
 constexpr double kNarrow = 1e-10;
 /// Lengths of directions that are safe to square.

@@ -12,18 +12,18 @@
 
 #include "exact_proximity.h"
 #include "farthest.h"
+#include "lengths.h"
 #include "simplex.h"
 
 namespace kaboum::collide {
 namespace {
 
+using detail::kUnit;
+using detail::kUp;
 using detail::Simplex;
 using geom::Vec3;
 
 constexpr int kMostSteps = 32;
-/// Of the sum of magnitudes: bounds the error of a gap, and of the components of a difference.
-constexpr double kUnit = 0x1p-48;
-constexpr double kUp = 1 + 0x1p-48;
 /// Of |direction| · extents: bounds the error of products in floats, twice over.
 constexpr double kFloatUnit = 0x1p-19;
 /// Magnitudes below it: products may lose digits to underflow.

@@ -264,7 +264,7 @@ std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_
     low = low.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  if (!((high - low).head<2>().minCoeff() >= kBridges * below.outer.epsilon())) return out;
+  if (!((high - low).head<2>().minCoeff() > kBridges * below.outer.epsilon())) return out;
   for (std::size_t i = 0; i < below.outer.size(); ++i) {
     const UpperFace face(below.outer.body(i), below.outer.epsilon());
     const bool meant = std::ranges::any_of(tops, [&](const geom::Vec3& point) {

@@ -1,6 +1,7 @@
 // Robots that stand somewhere in the world.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_numbers.h>
 #include <kaboum/robot/base_pose.h>
 
 #include <Eigen/Geometry>
@@ -10,26 +11,6 @@
 #include <vector>
 
 namespace kaboum::robot {
-namespace {
-
-std::vector<double> numbers(std::string_view text, const std::string& option) {
-  std::vector<double> out;
-  const char *at = text.data(), *end = at + text.size();
-  while (at <= end) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value) || (stop != end && *stop != ','))
-      throw Error(ErrorCode::InvalidArgument,
-                  option + ": expected numbers with commas between, as 0,0,0.8,0,0,1.57, not '" +
-                      std::string(text) + "'");
-    out.push_back(value);
-    at = stop + 1;
-  }
-  return out;
-}
-
-}  // namespace
-
 Robot placed(const Robot& robot, const Transform& base) {
   std::string world = "world";
   while (robot.find_link(world)) world += '_';
@@ -51,7 +32,12 @@ Robot placed(const Robot& robot, const Transform& base) {
 }
 
 Transform parse_pose(std::string_view text, const std::string& option) {
-  const std::vector<double> x = numbers(text, option);
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers)
+    throw Error(ErrorCode::InvalidArgument,
+                option + ": expected numbers with commas between, as 0,0,0.8,0,0,1.57, not '" +
+                    std::string(text) + "'");
+  const std::vector<double>& x = *numbers;
   Transform out;
   if (x.size() != 3 && x.size() != 6 && x.size() != 7 && x.size() != 12)
     throw Error(ErrorCode::InvalidArgument,

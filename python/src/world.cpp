@@ -30,6 +30,7 @@ struct WorldValue {
 /// Things in contact in one state.
 struct ContactList {
   WorldValue in;
+  world::WorldState state;
   std::vector<world::Contact> contacts;
 };
 
@@ -132,11 +133,20 @@ std::vector<ContactList> contacts_at(const WorldValue& in, std::size_t robot,
     world::Scratch scratch;
     std::vector<ContactList> out;
     for_rows(rows, watch, [&](const std::vector<double>& q) {
-      const world::WorldState state = state_at(in, robot, q);
-      std::vector<world::Contact> contacts = in.checker->find_contacts(state, scratch, options);
-      for (world::Contact& contact : contacts) in.checker->measure_depth(contact, state, scratch);
-      out.push_back({in, std::move(contacts)});
+      ContactList& list = out.emplace_back(ContactList{in, state_at(in, robot, q), {}});
+      list.contacts = in.checker->find_contacts(list.state, scratch, options);
     });
+    return out;
+  });
+}
+
+/// Depths take longer than contacts: they are measured when somebody asks.
+std::vector<world::Contact> with_depths(const ContactList& list) {
+  return run(0, [&] {
+    world::Scratch scratch;
+    std::vector<world::Contact> out = list.contacts;
+    for (world::Contact& contact : out)
+      list.in.checker->measure_depth(contact, list.state, scratch);
     return out;
   });
 }
@@ -397,7 +407,7 @@ void bind_answers(py::module_& module) {
           "pairs",
           [](const ContactList& c) {
             py::list out;
-            for (const world::Contact& contact : c.contacts)
+            for (const world::Contact& contact : with_depths(c))
               out.append(dict_of(c.in.world(), contact));
             return out;
           },

@@ -2,13 +2,11 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/batch/batch.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <iostream>
 
 #include "common/cli.h"
 
@@ -144,15 +142,13 @@ int run(const Options& o) {
   request.timeout = o.timeout;
   request.pictures = !o.no_pictures;
   request.note = [&](const std::string& text) { tools::log(o.common.quiet, text); };
-  const bool shows = !o.common.quiet && isatty(STDERR_FILENO) == 1;
-  if (shows)
-    request.progress = [](const std::string& text) {
-      std::cerr << '\r' << text.substr(0, 120) << "\033[K" << std::flush;
-    };
   request.stop = [] { return is_stopped != 0; };
   catch_signals();
-  const batch::BatchResult result = batch::run_batch(request);
-  if (shows) std::cerr << "\r\033[K";
+  const batch::BatchResult result = [&] {
+    tools::Progress progress(o.common.quiet);
+    request.progress = [&](const std::string& text) { progress.show(text.substr(0, 120)); };
+    return batch::run_batch(request);
+  }();
   report(o, result,
          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (result.stopped) return tools::kLimit;

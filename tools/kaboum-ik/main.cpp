@@ -1,10 +1,10 @@
 // kaboum-ik: the configurations with which a robot's chain reaches a pose.
+#include <kaboum/base/parse_numbers.h>
 #include <kaboum/kinematics/inverse.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
@@ -27,17 +27,11 @@ using Options = tools::IkOptions;
 /// "0.1,-2,3": a value per joint, in radians after that.
 std::vector<double> parse_joints(const std::string& text, const char* option, const Answer& answer,
                                  bool degrees) {
-  std::vector<double> q;
-  const char *at = text.data(), *end = at + text.size();
-  while (at <= end) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value) || (stop != end && *stop != ','))
-      usage(std::string(option) + ": expected numbers with commas between, as 0.5,-1.2,0, not '" +
-            text + "'");
-    q.push_back(value);
-    at = stop + 1;
-  }
+  const std::optional<std::vector<double>> given = parse_numbers(text);
+  if (!given)
+    usage(std::string(option) + ": expected numbers with commas between, as 0.5,-1.2,0, not '" +
+          text + "'");
+  std::vector<double> q = *given;
   if (q.size() != answer.joints.size())
     usage(std::string(option) + ": " + std::to_string(q.size()) + " values for the " +
           std::to_string(answer.joints.size()) + " joints " + robot::names_of(answer.joints));

@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/parse_length.h>
+#include <kaboum/base/parse_numbers.h>
 #include <kaboum/robot/base_pose.h>
 
 #include <CLI/CLI.hpp>
@@ -35,15 +36,11 @@ scene::NamedPrimitive parse_primitive(const std::string& text, const char* optio
   if (equals == std::string::npos || equals == 0 || colon == std::string::npos || colon < equals)
     refuse("");
   const std::string kind = text.substr(equals + 1, colon - equals - 1);
-  std::vector<double> sizes;
-  for (std::size_t at = colon + 1; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    std::string number = text.substr(at, comma - at);
-    if (const std::string why = number_from(1e-9, 1e9)(number); !why.empty())
-      refuse("; a size " + why);
-    sizes.push_back(parse_length(number)->value);
-    at = comma + 1;
-  }
+  const std::vector<double> sizes =
+      parse_numbers(std::string_view(text).substr(colon + 1)).value_or(std::vector<double>());
+  if (sizes.empty() ||
+      std::ranges::any_of(sizes, [](double size) { return !(size >= 1e-9 && size <= 1e9); }))
+    refuse("; sizes are numbers from 1e-9 to 1e9");
   scene::NamedPrimitive out{text.substr(0, equals), {}};
   world::Primitive& p = out.primitive;
   const auto need = [&](std::size_t count) {

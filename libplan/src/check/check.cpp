@@ -37,8 +37,9 @@ class Checker {
         kept_less_(std::ranges::any_of(model.initial, is_disjunction)) {}
 
   CheckResult run() {
-    for (RuntimeKnowledge& k : transitions_.initial_states())
-      visit(plan_.root, std::move(k), kNoParent, "");
+    std::vector<RuntimeKnowledge> initial = transitions_.initial_states();
+    const bool begins = !initial.empty();
+    for (RuntimeKnowledge& k : initial) visit(plan_.root, std::move(k), kNoParent, "");
     if (depth_first_) replay_depth_first();
     while (!queue_.empty() && result_.violation.empty()) {
       if (!tried_at_once_ && visits_.size() >= kManyVisits && confirmed_at_once()) return result_;
@@ -52,6 +53,7 @@ class Checker {
         violate(v, "what " + action_text(model_, plan_.nodes[node].action) +
                        " observes contradicts what is known");
     result_.valid = result_.violation.empty();
+    ensure(!result_.valid || result_.leaves > 0 || !begins, "some run comes to an end of the plan");
     return result_;
   }
 

@@ -16,7 +16,6 @@ class BitSet {
   void insert(const BitSet& other) {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
   }
-  [[nodiscard]] std::size_t size() const { return words_.size() * kBits; }
 
  private:
   static constexpr std::size_t kBits = 64;

@@ -79,8 +79,16 @@ Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& 
     proved = found == Refutation::Proved;
     return proved || (found == Refutation::NotFound && !task.calls().missed().empty());
   };
-  if (std::ranges::any_of(functions, &ExternalFunction::refuses_early) && is_hopeless())
-    return Outcome::Unsolvable;
+  if (std::ranges::any_of(functions, &ExternalFunction::refuses_early)) {
+    // What was not found ends no first search: that may prove more without it.
+    if (task.calls().attempts() > 1) {
+      if (is_hopeless()) return Outcome::Unsolvable;
+    } else {
+      const ExternalCalls::Supposing supposing(task.calls());
+      proved = is_refuted(task, limits, Reachability::Answers::AsGiven);
+      if (proved) return Outcome::Unsolvable;
+    }
+  }
   while (true) {
     if (looks) limits.pause_after(steps);
     ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,

@@ -32,7 +32,7 @@ struct Shard {
   std::size_t number = 1;  ///< from 1
   std::size_t count = 1;
 
-  /// Whether a file of this name belongs to it: by the name's hash.
+  /// True of a file of this part, which its name's hash decides.
   [[nodiscard]] bool has(const std::string& name) const;
 };
 
@@ -49,7 +49,7 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 
-/// What became of a job.
+/// Record of a job that was done, or not.
 struct Record {
   std::string name, key, output;
   std::string sha256;              ///< of the result, of a folder of its files'; empty: none
@@ -60,7 +60,7 @@ struct Record {
   std::string reason;  ///< what the program said last, where it is not done
   std::uintmax_t input_bytes = 0, output_bytes = 0;
   double wall_seconds = 0, cpu_seconds = 0, peak_megabytes = 0;
-  // Of the program's report, where it has them.
+  // From the program's report; none where it does not say.
   std::optional<std::uint64_t> vertices_before, vertices_after, bodies;
   std::optional<double> ratio;     ///< of the vertices
   std::optional<double> distance;  ///< certified bound, both ways or of the set [length]
@@ -71,7 +71,7 @@ struct Record {
   [[nodiscard]] bool has_result() const { return !sha256.empty(); }
 };
 
-/// What is done with which files.
+/// Request for a batch: files, and what is done with each.
 struct BatchRequest {
   std::vector<std::string> inputs;  ///< folders, lists of files (.txt, a line each) and files
   /// The first whose pattern matches a file counts; commands without `{input}` get what KABouM's
@@ -83,7 +83,7 @@ struct BatchRequest {
   bool only_summary = false;        ///< nothing is worked on
   bool retry = false;               ///< what was not done for a reason is done again
   std::size_t jobs = 0;             ///< at a time; 0: one per core
-  /// Of all programs at a time, as earlier ones needed; 0: no limit. [bytes]
+  /// Memory of all programs at a time, as earlier ones needed; 0: no limit. [bytes]
   std::uintmax_t memory = free_memory();
   std::uintmax_t most_memory = 0;  ///< of one, of address space; 0: no limit [bytes]
   double timeout = 0;              ///< of one; 0: none [s]
@@ -100,7 +100,7 @@ struct BatchRequest {
   static std::uintmax_t free_memory();
 };
 
-/// What a batch has come to.
+/// Result of a batch.
 struct BatchResult {
   std::vector<Record> records;  ///< in the order of their files' names
   std::size_t done_before = 0;  ///< by earlier runs
