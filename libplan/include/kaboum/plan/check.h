@@ -25,9 +25,10 @@ using CheckProgress = std::function<void(std::uint64_t states)>;
 /// be on something known by then and have a case for its value, and each end meet the goal.
 ///
 /// Shares the loaded model with the planner, and what is said of it. Knowledge is kept as sets of
-/// literals at run time (a sensed value splits the replay when something looks at it), and as sets of possible worlds
-/// where these know too little. Queries are evaluated on the lifted model. What nothing further
-/// down reads is dropped, so shared sub-plans are replayed once for all that reach them alike.
+/// literals at run time (a sensed value splits the replay when something looks at it), and as sets
+/// of possible worlds where these know too little. Queries are evaluated on the lifted model. What
+/// nothing further down reads is dropped, so shared sub-plans are replayed once for all that reach
+/// them alike.
 ///
 /// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = kMostStates,
