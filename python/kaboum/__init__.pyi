@@ -19,8 +19,6 @@ _Length = Union[float, str]
 _Progress = Callable[[str], object]
 _Bracket = tuple[float, float]
 _Answer = Literal["verified", "refuted", "undecided", "undefined"]
-_Claims = Literal["all", "solid", "surface"]
-_Geometry = Literal["collision", "visual"]
 _Effort = Literal["fast", "normal", "best"]
 _Language = Literal["kpl", "pddl"]
 
@@ -656,13 +654,8 @@ def verify_mesh(
     approximation: _Mesh | ConvexSet | CertifiedSet,
     *,
     relation: Literal["outer", "inner"] = "outer",
-    claims: _Claims = "all",
-    epsilon: _Length | None = None,
-    prepare: bool = False,
-    drop_sheets: bool = False,
-    max_contacts: int = 100000000,
-    max_work: float | None = None,
-    exact_points: int = 17,
+    # options of verify_mesh
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -670,13 +663,8 @@ def verify_cover(
     original: _Mesh,
     set: _Set,
     *,
-    claims: _Claims = "all",
-    epsilon: _Length | None = None,
-    prepare: bool = False,
-    drop_sheets: bool = False,
-    max_contacts: int = 100000000,
-    max_work: float | None = None,
-    exact_points: int = 17,
+    # options of verify_cover
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -685,18 +673,8 @@ def verify_sweep(
     path: _Path | ArrayLike,
     swept: _Set,
     *,
-    claims: Literal["all", "surface"] = "all",
-    joint: Mapping[str, float] = {},
-    degrees: bool = False,
-    base_pose: str = "",
-    links: Sequence[str] | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
-    prepare: bool = False,
-    drop_sheets: bool = False,
-    gap: float | None = None,
-    max_cells: int = 20000,
-    exact_points: int = 17,
+    # options of verify_sweep
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
@@ -704,15 +682,8 @@ def verify_robot(
     original: _Robot,
     result: _Robot,
     *,
-    claims: _Claims = "all",
-    epsilon: _Length | None = None,
-    geometry: _Geometry = "collision",
-    package_path: _Path | Sequence[_Path] = (),
-    prepare: bool | Literal["auto", "wrap"] = False,
-    drop_sheets: bool = False,
-    max_contacts: int = 100000000,
-    max_work: float | None = None,
-    exact_points: int = 17,
+    # options of verify_robot
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <kaboum/certify/certificate.h>
-#include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/verify/points.h>
 
@@ -9,11 +8,6 @@
 
 /// What the verifier answered.
 namespace kaboum::python {
-
-inline constexpr std::array<std::pair<const char*, verify::Claims>, 3> kClaims{
-    {{"all", verify::Claims::All},
-     {"solid", verify::Claims::Solid},
-     {"surface", verify::Claims::Surface}}};
 
 /// An answer to all that was asked, and what it is made of.
 struct Verdict {

@@ -106,17 +106,6 @@ std::optional<Length> length_of(const py::object& value, const char* argument) {
           py::repr(value).cast<std::string>());
 }
 
-std::optional<double> plain_length_of(const py::object& value, const char* argument) {
-  const auto length = length_of(value, argument);
-  if (!length) return std::nullopt;
-  if (length->percent)
-    throw Error(ErrorCode::InvalidArgument,
-                std::string(argument) +
-                    " must be a length; there is no diagonal that it could be "
-                    "a percentage of");
-  return length->value;
-}
-
 void refuse_name(const char* argument, const std::string& name,
                  const std::vector<std::string>& known) {
   std::string text = std::string(argument) + " must be ";

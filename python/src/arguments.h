@@ -26,8 +26,6 @@ std::optional<double> number_of(const py::handle& value);
 /// A number, or a text as the tools take it ('1%', '0.002'); None: nullopt.
 /// @throws Error{InvalidArgument} naming the argument.
 std::optional<Length> length_of(const py::object& value, const char* argument);
-/// The same of a length that is no percentage.
-std::optional<double> plain_length_of(const py::object& value, const char* argument);
 
 /// @throws Error{InvalidArgument} naming the names that there are.
 [[noreturn]] void refuse_name(const char* argument, const std::string& name,

@@ -10,6 +10,7 @@
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/scene/scene_options.h>
+#include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
 
 #include "request_options.h"
@@ -29,6 +30,10 @@ void bind_option_tables(py::module_& module) {
         out["shapes"] = table_of(keywords_of(robot::shape_options()));
         out["sweep"] = table_of(keywords_of(certify::swept_set_options()));
         out["hausdorff"] = table_of(keywords_of(distance::compare_options()));
+        out["verify_mesh"] = table_of(keywords_of(verify::mesh_verdict_options()));
+        out["verify_cover"] = table_of(keywords_of(verify::cover_verdict_options()));
+        out["verify_robot"] = table_of(keywords_of(verify::robot_verdict_options()));
+        out["verify_sweep"] = table_of(keywords_of(verify::motion_verdict_options()));
         out["check"] = table_of(keywords_of(world::state_options()));
         out["check_motion"] = table_of(keywords_of(world::motion_options()));
         out["find_path"] = table_of(keywords_of(motion::path_options()));

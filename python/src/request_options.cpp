@@ -45,6 +45,8 @@ const char* type_words(const OptionDescription& option) {
     case Kind::Settings:
       return "dict";
     case Kind::Choice:
+      if (!option.implied.empty()) return "bool or str";
+      break;
     case Kind::Text:
       break;
   }
@@ -103,7 +105,7 @@ std::string text_of_settings(const OptionDescription& option, const py::object& 
 
 /// A default as Python writes it.
 std::string literal(const Keyword& keyword) {
-  if (!keyword.initial) return "None";
+  if (!keyword.initial) return keyword.option.implied.empty() ? "None" : "False";
   switch (keyword.option.kind) {
     case Kind::Flag:
       return *keyword.initial == "true" ? "True" : "False";
@@ -236,6 +238,12 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       if (text.empty()) return std::nullopt;
       break;
     case Kind::Choice:
+      if (!option.implied.empty() && py::isinstance<py::bool_>(value)) {
+        if (!value.cast<bool>()) return std::nullopt;
+        text = option.implied;
+        break;
+      }
+      [[fallthrough]];
     case Kind::Text:
       if (!is_text) refuse(option, "a str", value);
       text = value.cast<std::string>();

@@ -348,12 +348,6 @@ py::dict dict_of(const robot_folder::WrittenRobot& written, const std::vector<st
   return out;
 }
 
-bool is_visual(const std::string& geometry) {
-  static constexpr std::array<std::pair<const char*, bool>, 2> kNames{
-      {{"collision", false}, {"visual", true}}};
-  return value_of(kNames, geometry, "geometry");
-}
-
 void bind_robots(py::module_& module) {
   bind_robot(module);
   bind_certified(module);

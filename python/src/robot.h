@@ -44,7 +44,5 @@ robot_folder::FolderOptions folder_options_of(const std::string& folder, const p
 py::dict dict_of(const robot_folder::WrittenRobot& written, const std::vector<std::string>& notes);
 /// Options of a mesh that a robot's meshes can have: they are enclosed.
 std::vector<Option<certify::MeshOptions>> link_mesh_options();
-/// 'collision' or 'visual'. @return whether it is the latter
-bool is_visual(const std::string& geometry);
 
 }  // namespace kaboum::python

@@ -4,12 +4,12 @@
 #include <kaboum/base/sha256.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/mesh_files.h>
-#include <kaboum/verify/exact_points.h>
-#include <kaboum/verify/robot_verdict.h>
+#include <kaboum/verify/robot_options.h>
 
 #include <map>
 
 #include "answers.h"
+#include "request_options.h"
 #include "robot.h"
 #include "running.h"
 
@@ -75,75 +75,35 @@ Verdict verdict_of(const verify::RobotVerdict& found) {
   return out;
 }
 
-/// False, True ('auto'), 'auto' or 'wrap'.
-verify::Solid solid_of(const py::object& prepare) {
-  if (py::isinstance<py::bool_>(prepare))
-    return prepare.cast<bool>() ? verify::Solid::Prepared : verify::Solid::AsFile;
-  if (py::isinstance<py::str>(prepare)) {
-    const auto name = prepare.cast<std::string>();
-    if (name == "auto") return verify::Solid::Prepared;
-    if (name == "wrap") return verify::Solid::Enclosed;
-  }
-  throw Error(ErrorCode::InvalidArgument, "prepare: True, False, 'auto' or 'wrap'");
-}
-
 Verdict verify_robot(const py::object& original, const py::object& result,
-                     const std::string& claims, const py::object& epsilon,
-                     const std::string& geometry, const py::object& package_path,
-                     const py::object& prepare, bool drop_sheets, std::size_t max_contacts,
-                     const std::optional<double>& max_work, std::size_t exact_points, int threads,
-                     const py::object& progress) {
+                     const py::kwargs& given) {
+  verify::RobotVerdictOptions options;
+  const RunKeywords running = take_keywords("verify_robot", verify::robot_verdict_options(), given,
+                                            options, Runs::Threads);
+  require_none(contradiction(options));
   const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
-  Files files(packages_of(package_path), exact_points);
-  verify::RobotQuestion question{
+  robot::require_links(*first.file, options.shapes.links);
+  Files files(options.shapes.packages, options.exact_points);
+  verify::RobotQuestion question = verify::question_of(
       first.file->robot, second.file->robot,
       [&](const robot::Geometry& mesh, bool of_result) -> const verify::MeshFile& {
         return files.of(mesh, of_result ? *second.file : *first.file);
-      }};
-  question.visual = is_visual(geometry);
-  question.claims = value_of(kClaims, claims, "claims");
-  question.solid = solid_of(prepare);
-  question.drop_sheets = drop_sheets;
-  question.epsilon = length_of(epsilon, "epsilon");
-  question.limits.max_contacts = max_contacts;
-  question.limits.max_work = max_work;
-  Watch watch(progress);
+      },
+      options);
+  Watch watch(running.progress);
   question.limits.progress = watch.hook();
   verify::RobotVerdict found;
-  run(threads, [&] { found = verify::decide(question); });
+  run(running.threads, [&] { found = verify::decide(question); });
   return verdict_of(found);
 }
 
-}  // namespace
-
-void bind_robot_verification(py::module_& module) {
-  module.def(
-      "verify_robot", &verify_robot, py::arg("original"), py::arg("result"), py::kw_only(),
-      py::arg("claims") = "all", py::arg("epsilon") = py::none(), py::arg("geometry") = "collision",
-      py::arg("package_path") = py::tuple(), py::arg("prepare") = false,
-      py::arg("drop_sheets") = false,
-      py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts,
-      py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-      py::arg("threads") = 0, py::arg("progress") = py::none(),
-      R"(Decides whether the collision shapes of a robot hold the shapes of another, as `bound-verify robot`.
+constexpr const char* kDoc =
+    R"(Decides whether the collision shapes of a robot hold the shapes of another, as `bound-verify robot`.
 
 Parameters
 ----------
 original, result : Robot or path
-claims : str
-    Those that decide: 'all', 'solid' or 'surface'.
-epsilon : float or str, optional
-    Also decide that no body is farther than this from what it holds: a length in the robot's unit,
-    or a percentage of the meshes' diagonal.
-geometry : str
-    Which shapes of the original are to be held: 'collision' or 'visual'.
-package_path : str or sequence of str
-    Folders that package:// is looked up in.
-prepare : bool or str
-    Also judge the solid of each mesh as the tools prepare it (True, 'auto'); 'wrap': all that closed
-    meshes wind round, whichever way. Every triangle of the file is judged anyway.
-drop_sheets, max_contacts, max_work, exact_points, threads, progress
-    As for `verify_mesh`.
+{keywords}
 
 Returns
 -------
@@ -155,7 +115,17 @@ Verdict
 Raises
 ------
 Error
-    'invalid_input' naming the file.)");
+    'invalid_input' naming the file.)";
+
+}  // namespace
+
+void bind_robot_verification(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document("verify_robot", "original: object, result: object",
+                                    keywords_of(verify::robot_verdict_options()), "kaboum.Verdict",
+                                    kDoc, Runs::Threads);
+  module.def("verify_robot", &verify_robot, py::arg("original"), py::arg("result"), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -3,7 +3,7 @@
 #include <kaboum/certify/sweep_options.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
-#include <kaboum/verify/motion_verdict.h>
+#include <kaboum/verify/robot_options.h>
 
 #include "answers.h"
 #include "convex_set.h"
@@ -181,38 +181,29 @@ py::dict claims_of(const verify::MotionVerdict& found, const verify::MotionShape
 }
 
 Verdict verify_sweep(const py::object& robot, const py::object& path, const py::object& swept,
-                     const std::string& claims, const robot::FixedJoints& joint, bool degrees,
-                     const std::string& base_pose, const py::object& links,
-                     const std::string& geometry, const py::object& package_path, bool prepare,
-                     bool drop_sheets, const py::object& gap, std::size_t max_cells,
-                     std::size_t exact_points, int threads, const py::object& progress) {
+                     const py::kwargs& given) {
+  verify::MotionVerdictOptions options;
+  const RunKeywords running = take_keywords("verify_sweep", verify::motion_verdict_options(), given,
+                                            options, Runs::Threads);
+  require_none(contradiction(options));
   robot::RobotFile placed = *robot_of(robot, "robot").file;
-  if (!base_pose.empty())
-    placed.robot = robot::placed(placed.robot, robot::parse_pose(base_pose, "base_pose"));
+  if (!options.base_pose.empty())
+    placed.robot =
+        robot::placed(placed.robot, robot::parse_pose(options.base_pose, "base_pose"));
   Verdict out;
-  const robot::Path waypoints = path_from(path, placed.robot, {false, degrees, joint}, out.notes);
-  const verify::MotionShapeOptions reading{
-      {links_of(links), is_visual(geometry), packages_of(package_path)},
-      prepare,
-      drop_sheets,
-      exact_points};
-  const auto set = swept_of(swept, reading.choice.packages, out.notes);
-  const verify::Claims deciding = value_of(kClaims, claims, "claims");
-  if (deciding == verify::Claims::Solid)
-    throw Error(ErrorCode::InvalidArgument,
-                "claims 'solid': it follows from the surface claim; use 'all'");
-  const auto finest = plain_length_of(gap, "gap");
-  Watch watch(progress);
+  const robot::Path waypoints = path_from(path, placed.robot, options.reading, out.notes);
+  const auto set = swept_of(swept, options.shapes.choice.packages, out.notes);
+  Watch watch(running.progress);
   verify::MotionShapes shapes;
-  const verify::MotionVerdict found = run(threads, [&] {
-    shapes = verify::read_motion_shapes(placed, reading);
-    return verify::decide(
-        {placed.robot, shapes, waypoints, *set, deciding, finest, max_cells, watch.hook()});
+  const verify::MotionVerdict found = run(running.threads, [&] {
+    shapes = verify::read_motion_shapes(placed, options.shapes);
+    return verify::decide({placed.robot, shapes, waypoints, *set, options.claims, options.gap,
+                           options.max_cells, watch.hook()});
   });
   for (const auto& more : {shapes.notes, shapes.mesh_notes.lines()})
     out.notes.insert(out.notes.end(), more.begin(), more.end());
   out.answer = found.answer;
-  out.claims = claims_of(found, shapes, deciding);
+  out.claims = claims_of(found, shapes, options.claims);
   return out;
 }
 
@@ -246,21 +237,7 @@ path : path or array
     As for `sweep`.
 swept : SweptSet, ConvexSet, name of a file or folder, or list of meshes
     A file may be a URDF as sweep-approx writes it.
-claims : str
-    'all' or 'surface'.
-joint, degrees, base_pose, links, geometry, package_path
-    As for `sweep`.
-prepare, drop_sheets : bool
-    Judge the links' meshes as `prepare` gives them; one that it refuses, as it is.
-gap : float, optional
-    Parts that move and measure less are not divided further. [length]
-max_cells : int
-    Give up, 'undecided', beyond so many parts of a triangle per segment.
-exact_points : int
-    Of links read from STEP or IGES: how densely points of their exact faces are looked at along the
-    path, which refute where they stick out; 0: the triangles alone are judged.
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Raises
 ------
@@ -282,14 +259,13 @@ void bind_sweeps(py::module_& module) {
 }
 
 void bind_sweep_verification(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document("verify_sweep", "robot: object, path: object, swept: object",
+                                    keywords_of(verify::motion_verdict_options()),
+                                    "kaboum.Verdict", kVerifyDoc, Runs::Threads);
   module.def("verify_sweep", &verify_sweep, py::arg("robot"), py::arg("path"), py::arg("swept"),
-             py::kw_only(), py::arg("claims") = "all", py::arg("joint") = py::dict(),
-             py::arg("degrees") = false, py::arg("base_pose") = "", py::arg("links") = py::none(),
-             py::arg("geometry") = "collision", py::arg("package_path") = py::tuple(),
-             py::arg("prepare") = false, py::arg("drop_sheets") = false,
-             py::arg("gap") = py::none(), py::arg("max_cells") = verify::SweepOptions{}.max_cells,
-             py::arg("exact_points") = verify::kPointDensity, py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kVerifyDoc);
+             text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -4,35 +4,28 @@
 #include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
 #include <kaboum/verify/subject.h>
+#include <kaboum/verify/verdict_options.h>
 
 #include <cmath>
 
 #include "answers.h"
 #include "convex_set.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
 
 namespace kaboum::python {
 namespace {
 
-struct Question {
-  verify::Relation relation = verify::Relation::Outer;
-  verify::Claims claims = verify::Claims::All;
-  std::optional<Length> epsilon;
-  bool prepare = false, drop_sheets = false;
-  std::size_t max_contacts = 0;
-  std::optional<double> max_work;
-  int threads = 0;
-  std::size_t exact_points = verify::kPointDensity;
-};
+using Options = verify::MeshVerdictOptions;
 
 /// The original as it is, or as the tools prepare it.
-std::optional<verify::Subject> subject_of(const MeshValue& original, const Question& asked,
-                                          std::vector<std::string>& notes) {
+std::optional<verify::Subject> subject_of(const MeshValue& original, verify::Relation relation,
+                                          const Options& asked, std::vector<std::string>& notes) {
   notes = original.notes;
   if (!asked.prepare) return std::nullopt;
   using Diagonal = geom::PrepareOptions::Diagonal;
-  const bool inner = asked.relation == verify::Relation::Inner;
+  const bool inner = relation == verify::Relation::Inner;
   verify::Subject out = verify::prepared_subject(
       *original.mesh, {.drop_sheets = asked.drop_sheets,
                        .holes = geom::Holes::Fill,
@@ -40,7 +33,7 @@ std::optional<verify::Subject> subject_of(const MeshValue& original, const Quest
                        .diagonal = inner ? Diagonal::Inward : Diagonal::Outward});
   notes.insert(notes.end(), out.report.notes.begin(), out.report.notes.end());
   if (out.refusal.empty()) return out;
-  if (asked.relation == verify::Relation::Inner) throw Error(ErrorCode::InvalidInput, out.refusal);
+  if (inner) throw Error(ErrorCode::InvalidInput, out.refusal);
   notes.push_back("every triangle is judged as it is, for which solid they bound cannot be told (" +
                   out.refusal + ")");
   return out;
@@ -48,14 +41,14 @@ std::optional<verify::Subject> subject_of(const MeshValue& original, const Quest
 
 /// Of a mesh that was read from a file with exact faces, unless it is to enclose.
 std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original,
-                                                   const Question& asked) {
-  if (!original.format || asked.exact_points == 0 || asked.relation == verify::Relation::Inner)
-    return std::nullopt;
+                                                   verify::Relation relation,
+                                                   std::size_t density) {
+  if (!original.format || density == 0 || relation == verify::Relation::Inner) return std::nullopt;
   const std::vector<char> bytes = io::read_file(original.source);
   if (io::sha256(bytes) != original.sha256)
     throw Error(ErrorCode::InvalidInput,
                 original.source + ": it has changed since the mesh was read; read it again");
-  return verify::read_exact_points(bytes, *original.format, original.source, asked.exact_points, 1,
+  return verify::read_exact_points(bytes, *original.format, original.source, density, 1,
                                    original.exact_faces);
 }
 
@@ -76,14 +69,15 @@ py::dict claims_of(const verify::MeshVerdict& found) {
   return out;
 }
 
-Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
-               const geom::ConvexSet* set, const Question& asked, const py::object& progress) {
-  Watch watch(progress);
+Verdict decide(verify::Relation relation, const MeshValue& original,
+               const geom::Mesh& approximation, const geom::ConvexSet* set, const Options& asked,
+               const RunKeywords& running) {
+  Watch watch(running.progress);
   Verdict out;
-  const verify::MeshVerdict found = run(asked.threads, [&] {
-    const auto subject = subject_of(original, asked, out.notes);
+  const verify::MeshVerdict found = run(running.threads, [&] {
+    const auto subject = subject_of(original, relation, asked, out.notes);
     const geom::Mesh& mesh = subject ? subject->mesh : *original.mesh;
-    const bool cover = asked.relation == verify::Relation::Cover && set != nullptr;
+    const bool cover = relation == verify::Relation::Cover && set != nullptr;
     const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
     std::optional<double> bound;
     if (asked.epsilon) {
@@ -92,14 +86,14 @@ Verdict decide(const MeshValue& original, const geom::Mesh& approximation,
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");
     }
-    const auto exact = exact_points_of(original, asked);
+    const auto exact = exact_points_of(original, relation, asked.exact_points);
     std::optional<verify::PointQuestion> points;
     if (exact) points = verify::PointQuestion{exact->points, exact->of_face, exact->rounding};
     std::optional<verify::MeasuredMesh> measured;
-    if (subject && asked.relation == verify::Relation::Cover &&
+    if (subject && relation == verify::Relation::Cover &&
         (subject->has_more || !subject->refusal.empty()))
       measured = verify::measured_mesh(*subject, *original.mesh);
-    return verify::decide({mesh, approximation, set, asked.relation, asked.claims, bound,
+    return verify::decide({mesh, approximation, set, relation, asked.claims, bound,
                            asked.max_contacts, asked.max_work, watch.hook(), points,
                            subject ? &*subject : nullptr, measured ? &*measured : nullptr});
   });
@@ -138,34 +132,17 @@ Approximation approximation_of(const py::object& value, verify::Relation relatio
   return out;
 }
 
-Verdict verify_relation(verify::Relation relation, const py::object& original,
-                        const py::object& approximation, const std::string& claims,
-                        const py::object& epsilon, bool prepare, bool drop_sheets,
-                        std::size_t max_contacts, const std::optional<double>& max_work,
-                        std::size_t exact_points, int threads, const py::object& progress) {
-  const Question asked{relation,
-                       value_of(kClaims, claims, "claims"),
-                       length_of(epsilon, "epsilon"),
-                       prepare,
-                       drop_sheets,
-                       max_contacts,
-                       max_work,
-                       threads,
-                       exact_points};
+using Table = std::vector<Option<Options>>;
+
+Verdict verify_relation(const char* function, verify::Relation relation, const Table& table,
+                        const py::object& original, const py::object& approximation,
+                        const py::kwargs& given) {
+  Options asked;
+  const RunKeywords running = take_keywords(function, table, given, asked, Runs::Threads);
+  require_none(contradiction(asked));
   const MeshValue first = mesh_of(original, "original");
   const Approximation second = approximation_of(approximation, relation);
-  return decide(first, second.triangles(), second.set.get(), asked, progress);
-}
-
-/// Binds a question about a mesh with the keywords that all of them have.
-template <class Function, class... Arguments>
-void bind_question(py::module_& module, const char* name, const Function& function,
-                   const char* text, const Arguments&... first) {
-  module.def(name, function, first..., py::arg("claims") = "all", py::arg("epsilon") = py::none(),
-             py::arg("prepare") = false, py::arg("drop_sheets") = false,
-             py::arg("max_contacts") = verify::InclusionOptions{}.max_contacts,
-             py::arg("max_work") = py::none(), py::arg("exact_points") = verify::kPointDensity,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), text);
+  return decide(relation, first, second.triangles(), second.set.get(), asked, running);
 }
 
 void bind_class(py::module_& module) {
@@ -197,23 +174,7 @@ original, approximation : mesh
     With relation 'inner', the approximation may be a ConvexSet.
 relation : str
     'outer': the approximation encloses the original; 'inner': the other way round.
-claims : str
-    Those that decide: 'all', 'solid' or 'surface'.
-epsilon : float or str, optional
-    Also decide that no point of either is farther than this from the other: a length, or a
-    percentage of the original's diagonal.
-prepare, drop_sheets : bool
-    Judge the original as `prepare` gives it.
-max_contacts : int
-    Give up, 'undecided', beyond this many pairs of triangles that touch.
-max_work : float, optional
-    Leave the claims of enclosure undecided after so much work, at most about so many seconds of
-    one core. Default: 60, and 5 per 1000 triangles.
-exact_points : int
-    Of an original that was read from STEP or IGES: how densely points of its exact faces are
-    looked at, which refute where they stick out; 0: the triangles alone are judged.
-threads, progress
-    As for `decimate`.
+{keywords}
 
 Raises
 ------
@@ -227,10 +188,7 @@ Parameters
 ----------
 original : mesh
 set : ConvexSet, name of a file or folder, or list of meshes
-epsilon : float or str, optional
-    Also decide that no point of the union is farther than this from the solid.
-claims, prepare, drop_sheets, max_contacts, max_work, exact_points, threads, progress
-    As for `verify_mesh`.
+{keywords}
 
 Raises
 ------
@@ -273,32 +231,33 @@ py::dict exact_points_not_looked_at() {
 
 void bind_verification(py::module_& module) {
   bind_class(module);
-  using Optional = std::optional<double>;
-  bind_question(
-      module, "verify_mesh",
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  std::string text = document("verify_mesh", "original: object, approximation: object",
+                              keywords_of(verify::mesh_verdict_options()), "kaboum.Verdict",
+                              kMeshDoc, Runs::Threads);
+  text.replace(text.find("*,"), 2, "*, relation: str = 'outer',");
+  module.def(
+      "verify_mesh",
       [](const py::object& original, const py::object& approximation, const std::string& relation,
-         const std::string& claims, const py::object& epsilon, bool prepare, bool drop_sheets,
-         std::size_t max_contacts, const Optional& max_work, std::size_t exact_points, int threads,
-         const py::object& progress) {
+         const py::kwargs& given) {
         static constexpr std::array<std::pair<const char*, verify::Relation>, 2> kRelations{
             {{"outer", verify::Relation::Outer}, {"inner", verify::Relation::Inner}}};
-        return verify_relation(value_of(kRelations, relation, "relation"), original, approximation,
-                               claims, epsilon, prepare, drop_sheets, max_contacts, max_work,
-                               exact_points, threads, progress);
+        return verify_relation("verify_mesh", value_of(kRelations, relation, "relation"),
+                               verify::mesh_verdict_options(), original, approximation, given);
       },
-      kMeshDoc, py::arg("original"), py::arg("approximation"), py::kw_only(),
-      py::arg("relation") = "outer");
-  bind_question(
-      module, "verify_cover",
-      [](const py::object& original, const py::object& set, const std::string& claims,
-         const py::object& epsilon, bool prepare, bool drop_sheets, std::size_t max_contacts,
-         const Optional& max_work, std::size_t exact_points, int threads,
-         const py::object& progress) {
-        return verify_relation(verify::Relation::Cover, original, set, claims, epsilon, prepare,
-                               drop_sheets, max_contacts, max_work, exact_points, threads,
-                               progress);
+      py::arg("original"), py::arg("approximation"), py::kw_only(), py::arg("relation") = "outer",
+      text.c_str());
+  text = document("verify_cover", "original: object, set: object",
+                  keywords_of(verify::cover_verdict_options()), "kaboum.Verdict", kCoverDoc,
+                  Runs::Threads);
+  module.def(
+      "verify_cover",
+      [](const py::object& original, const py::object& set, const py::kwargs& given) {
+        return verify_relation("verify_cover", verify::Relation::Cover,
+                               verify::cover_verdict_options(), original, set, given);
       },
-      kCoverDoc, py::arg("original"), py::arg("set"), py::kw_only());
+      py::arg("original"), py::arg("set"), text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -12,6 +12,7 @@
 #include <kaboum/robot/path_options.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/scene/scene_options.h>
+#include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
 
 #include <cmath>
@@ -95,6 +96,10 @@ TEST(OptionTables, AreSound) {
   check("robots' sets", certify::robot_set_options());
   check("swept sets", certify::swept_set_options());
   check("distances", distance::compare_options());
+  check("verdicts on meshes", verify::mesh_verdict_options());
+  check("verdicts on covers", verify::cover_verdict_options());
+  check("verdicts on robots", verify::robot_verdict_options());
+  check("verdicts on motions", verify::motion_verdict_options());
   check("inverse kinematics", kinematics::inverse_options());
   check("paths", motion::path_options());
   check("files of paths", robot::path_options());

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/request_options.h"
+
 namespace kaboum::tools {
 namespace {
 
@@ -14,84 +16,112 @@ constexpr const char* kClaims =
     "Surface claim: every triangle of the enclosed mesh lies in the solid of the enclosing one.\n"
     "Both are answered; --claims says which decide the exit code.";
 
-/// What decides where a bound is given.
-constexpr const char* kBetweenMeshes =
-    "Also decide that no distance between the surfaces, both ways, exceeds this: a length, or a "
-    "percentage of ORIGINAL's bounding-box diagonal (0.5%); of an inner set, that it leaves out no "
-    "point deeper than this inside ORIGINAL";
-constexpr const char* kFromUnion =
-    "Also decide that no point of the union is farther than this from ORIGINAL's solid (its "
-    "surface when it is open and --prepare is not given): a length, or a percentage of ORIGINAL's "
-    "bounding-box diagonal (0.5%)";
-constexpr const char* kOfEachMesh =
-    "Also decide that no body is farther than this from the meshes it holds: a length in the "
-    "robot's unit, or a percentage of each mesh's diagonal (0.5%)";
-
-CLI::Option* add_file(CLI::App& app, const char* name, std::string& file, const char* what) {
-  return app.add_option(name, file, what)->type_name("FILE");
-}
-
-CLI::App* add_command(CLI::App& app, const char* name, const std::string& what,
-                      const std::string& more) {
+/// A command.
+/// @param decide  what it does
+CLI::App* add_command(CLI::App& app, VerifyOptions& o, const char* name, const std::string& what,
+                      const std::string& more, const std::function<int()>& decide) {
   CLI::App* command = app.add_subcommand(name, what);
   command->footer(more + (more.empty() ? "" : "\n\n") + kVerifyExitCodes);
+  command->preparse_callback([&o, decide](std::size_t) { o.decide = decide; });
   return command;
+}
+
+void add_file(CLI::App& app, const char* name, std::string& file, const char* what) {
+  app.add_option(name, file, what)->type_name("FILE")->required();
+}
+
+void add_witness(CLI::App& app, std::string& witness) {
+  app.add_option("--witness", witness,
+                 "When refuted, write the offending triangles to this mesh file")
+      ->type_name("FILE");
+}
+
+void add_input_format(CLI::App& app, std::string& format) {
+  app.add_option("--input-format", format, "Format of ORIGINAL [by extension]")->type_name("NAME");
+}
+
+/// @param of  the file
+void add_approximation_format(CLI::App& app, std::string& format, const std::string& of) {
+  app.add_option("--approximation-format", format, "Format of " + of + " [by extension]")
+      ->type_name("NAME");
+}
+
+/// Short for the claim about the surface of the file as it is.
+void add_raw(CLI::App& app, verify::Claims& claims) {
+  app.add_flag_callback(
+         "--raw", [&claims] { claims = verify::Claims::Surface; },
+         "Judge the triangles of the file as they are, open, one-sided or in pieces: whether each "
+         "of them lies in the result's solid; the same as --claims surface without --prepare")
+      ->excludes("--prepare")
+      ->excludes("--claims");
+}
+
+void add_visual(CLI::App& app, robot::ShapeChoice& shapes) {
+  app.add_flag_callback(
+      "--visual", [&shapes] { shapes.visual = true; }, "The same as --geometry visual");
+}
+
+/// What `mesh` and `cover` have alike.
+/// @param result  name of the approximation
+void add_mesh_options(CLI::App& app, VerifyOptions& o,
+                      const std::vector<Option<verify::MeshVerdictOptions>>& options,
+                      const char* result) {
+  add_request_options(app, options, o.mesh.how, o.stated);
+  add_raw(app, o.mesh.how.claims);
+  add_witness(app, o.mesh.witness);
+  add_unit_options(app, o.mesh.unit, "ORIGINAL");
+  add_input_format(app, o.mesh.original_format);
+  add_approximation_format(app, o.mesh.approximation_format, result);
+  add_common_options(app, o.common);
+}
+
+int decide_meshes(VerifyOptions& o) {
+  require_none(contradiction(o.mesh.how));
+  return verify_mesh(o.mesh, o.common);
 }
 
 void add_mesh_command(CLI::App& app, VerifyOptions& o) {
   CLI::App* c = add_command(
-      app, "mesh", std::string("Decides whether one mesh encloses the other.\n\n") + kClaims,
+      app, o, "mesh", std::string("Decides whether one mesh encloses the other.\n\n") + kClaims,
       "A set of convex bodies that is to lie inside ORIGINAL (bcd-decompose --direction inner) is "
       "judged with --inner, too; add --prepare, and --epsilon E with the epsilon that was asked "
-      "for or is recorded. A set that is to cover ORIGINAL: bound-verify cover.");
+      "for or is recorded. A set that is to cover ORIGINAL: bound-verify cover.",
+      [&o] { return decide_meshes(o); });
   CLI::Option_group* relation = c->add_option_group("Relation", "One of");
-  relation->add_flag("--outer", o.outer, "APPROXIMATION encloses ORIGINAL");
-  relation->add_flag("--inner", o.inner, "APPROXIMATION is enclosed by ORIGINAL");
+  const auto add_relation = [&](const char* flag, verify::Relation value, const char* text) {
+    relation->add_flag_callback(flag, [&o, value] { o.mesh.relation = value; }, text);
+  };
+  add_relation("--outer", verify::Relation::Outer, "APPROXIMATION encloses ORIGINAL");
+  add_relation("--inner", verify::Relation::Inner, "APPROXIMATION is enclosed by ORIGINAL");
   relation->require_option(1);
-  add_file(*c, "ORIGINAL", o.original, "The mesh that was approximated (- for standard input)")
-      ->required();
-  add_file(*c, "APPROXIMATION", o.approximation,
-           "The result: a mesh (- for standard input); with --inner also a set of convex bodies")
-      ->required();
-  add_claims(*c, o, {"all", "solid", "surface"});
-  add_epsilon(*c, o, kBetweenMeshes);
-  add_preparation(*c, o, "ORIGINAL");
-  add_set(*c, o);
-  add_witness(*c, o);
-  add_unit(*c, o);
-  add_input_format(*c, o);
-  add_approximation_format(*c, o, "APPROXIMATION");
-  add_exact_points(*c, o);
-  add_limits(*c, o);
-  add_common_options(*c, o.common);
+  add_file(*c, "ORIGINAL", o.mesh.original, "The mesh that was approximated (- for standard input)");
+  add_file(*c, "APPROXIMATION", o.mesh.approximation,
+           "The result: a mesh (- for standard input); with --inner also a set of convex bodies");
+  c->add_flag("--set", o.mesh.set,
+              "With --inner: APPROXIMATION is a set of convex bodies (known anyway of folders and "
+              "of containers)");
+  add_mesh_options(*c, o, verify::mesh_verdict_options(), "APPROXIMATION");
 }
 
 void add_cover_command(CLI::App& app, VerifyOptions& o) {
   CLI::App* c = add_command(
-      app, "cover",
+      app, o, "cover",
       std::string("Decides whether the union of a set's convex bodies covers a mesh.\n\n") +
           kClaims,
       "A result of bcd-decompose: --prepare --epsilon E, E the epsilon that was asked for or is "
-      "recorded, and --drop-sheets where it was given.");
-  add_file(*c, "ORIGINAL", o.original, "The mesh that is to be covered (- for standard input)")
-      ->required();
-  add_file(*c, "SET", o.approximation, "The bodies: .glb, .obj, a folder of .stl")->required();
-  add_claims(*c, o, {"all", "solid", "surface"});
-  add_epsilon(*c, o, kFromUnion);
-  add_preparation(*c, o, "ORIGINAL");
-  add_witness(*c, o);
-  add_unit(*c, o);
-  add_input_format(*c, o);
-  add_approximation_format(*c, o, "SET");
-  add_exact_points(*c, o);
-  add_limits(*c, o);
-  add_common_options(*c, o.common);
-  c->preparse_callback([&o](std::size_t) { o.cover = true; });
+      "recorded, and --drop-sheets where it was given.",
+      [&o] {
+        o.mesh.relation = verify::Relation::Cover;
+        return decide_meshes(o);
+      });
+  add_file(*c, "ORIGINAL", o.mesh.original, "The mesh that is to be covered (- for standard input)");
+  add_file(*c, "SET", o.mesh.approximation, "The bodies: .glb, .obj, a folder of .stl");
+  add_mesh_options(*c, o, verify::cover_verdict_options(), "SET");
 }
 
 void add_robot_command(CLI::App& app, VerifyOptions& o) {
   CLI::App* c = add_command(
-      app, "robot",
+      app, o, "robot",
       "Decides whether two robots move alike, and the collision shapes of each link of the second "
       "hold those of the first.",
       "A mesh is held by the meshes of the same pose and scale in the same link, so that no "
@@ -100,63 +130,54 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "how much.\n\n"
       "A result of bcd-decompose or bmesh-decimate: bound-verify robot INPUT.urdf DIR/INPUT.urdf "
       "--prepare, with --visual, --links, --drop-sheets and --package-path where these were given, "
-      "and --prepare=wrap where that was; their --html-report has the command.");
-  add_file(*c, "ORIGINAL", o.original, "A robot (URDF)")->required();
-  add_file(*c, "RESULT", o.approximation, "The robot whose shapes hold those of the first (URDF)")
-      ->required();
-  add_claims(*c, o, {"all", "solid", "surface"});
-  add_epsilon(*c, o, kOfEachMesh);
-  add_preparation(*c, o, "each mesh of ORIGINAL");
-  add_links(*c, o);
-  add_exact_points(*c, o);
-  add_limits(*c, o);
-  add_geometry(*c, o, "ORIGINAL");
+      "and --prepare=wrap where that was; their --html-report has the command.",
+      [&o] {
+        require_none(contradiction(o.robot.how));
+        return verify_robot(o.robot, o.common);
+      });
+  add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
+  add_file(*c, "RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)");
+  add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
+  add_raw(*c, o.robot.how.claims);
+  add_visual(*c, o.robot.how.shapes);
   add_common_options(*c, o.common);
-  c->preparse_callback([&o](std::size_t) { o.robot = true; });
 }
 
 void add_sweep_command(CLI::App& app, VerifyOptions& o) {
   CLI::App* c = add_command(
-      app, "sweep", "Decides whether a set of convex bodies holds a robot during a motion.",
+      app, o, "sweep", "Decides whether a set of convex bodies holds a robot during a motion.",
       "Every triangle of the links' meshes, every box, cylinder and sphere, at every "
       "configuration of PATH, lies in a body enlarged by the margin: during the whole motion, not "
       "only at samples (docs/algorithms/swept-volumes.md); so do the insides of closed meshes. It "
       "shares the parsers of ROBOT and PATH with sweep-approx, and with --prepare what prepares "
       "meshes; nothing else. Meshes that sweep-approx prepared (its notes say so) need --prepare, "
-      "and --drop-sheets where it was given.");
-  const auto file = [&](const char* name, std::size_t index, const char* text) {
-    const auto set = [&o, index](const std::string& value) {
-      o.sweep.resize(3);
-      o.sweep[index] = value;
-    };
-    c->add_option_function<std::string>(name, set, text)->type_name("FILE")->required();
-  };
-  file("ROBOT", 0, "The robot (URDF, rlkin, rlmdl)");
-  file("PATH", 1, "Its motion (.csv, .json)");
-  file("SWEPT", 2, "The bodies: .glb, .obj, a folder of .stl, .urdf");
-  add_claims(*c, o, {"all", "surface"});
-  add_preparation(*c, o, "each mesh of ROBOT");
-  add_witness(*c, o);
-  add_approximation_format(*c, o, "SWEPT");
-  add_links(*c, o);
-  add_exact_points(*c, o);
-  add_geometry(*c, o, "ROBOT");
-  add_motion(*c, o);
+      "and --drop-sheets where it was given.",
+      [&o] {
+        require_none(contradiction(o.sweep.how));
+        return verify_sweep(o.sweep, o.common);
+      });
+  add_file(*c, "ROBOT", o.sweep.robot, "The robot (URDF, rlkin, rlmdl)");
+  add_file(*c, "PATH", o.sweep.path, "Its motion (.csv, .json)");
+  add_file(*c, "SWEPT", o.sweep.swept, "The bodies: .glb, .obj, a folder of .stl, .urdf");
+  add_request_options(*c, verify::motion_verdict_options(), o.sweep.how, o.stated);
+  add_raw(*c, o.sweep.how.claims);
+  add_visual(*c, o.sweep.how.shapes.choice);
+  add_witness(*c, o.sweep.witness);
+  add_approximation_format(*c, o.sweep.set_format, "SWEPT");
   add_common_options(*c, o.common);
 }
 
 void add_progressive_command(CLI::App& app, VerifyOptions& o) {
-  CLI::App* c = add_command(app, "progressive",
+  CLI::App* c = add_command(app, o, "progressive",
                             "Replays a progressive file of bmesh-decimate: all its steps and "
                             "levels, every step checked exactly.",
-                            "");
-  add_file(*c, "ORIGINAL", o.original, "The mesh that it was made from (- for standard input)")
-      ->required();
-  add_file(*c, "FILE", o.approximation, "The progressive file")->required();
-  add_unit(*c, o);
-  add_input_format(*c, o);
+                            "", [&o] { return verify_progressive(o.progressive, o.common); });
+  add_file(*c, "ORIGINAL", o.progressive.original,
+           "The mesh that it was made from (- for standard input)");
+  add_file(*c, "FILE", o.progressive.progressive, "The progressive file");
+  add_unit_options(*c, o.progressive.unit, "ORIGINAL");
+  add_input_format(*c, o.progressive.original_format);
   add_common_options(*c, o.common);
-  c->preparse_callback([&o](std::size_t) { o.progressive = true; });
 }
 
 }  // namespace

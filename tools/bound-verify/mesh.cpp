@@ -29,10 +29,11 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
   if (const geom::Provenance& made = run.approximation.set.provenance;
       made.source_sha256 == run.original.sha256)
     io::require_recorded_scale(o.approximation, made.parameters, o.unit.scale);
-  if (o.prepare) naming(o.original, [&] { prepare(run.original, o.relation, o.drop_sheets); });
+  if (o.how.prepare)
+    naming(o.original, [&] { prepare(run.original, o.relation, o.how.drop_sheets); });
   for (const std::string& note : run.original.notes) log(quiet, o.original + ": " + note);
   for (const std::string& note : run.approximation.notes) log(quiet, o.approximation + ": " + note);
-  if (!o.prepare) run.inside_out = geom::find_inside_out(run.original.mesh);
+  if (!o.how.prepare) run.inside_out = geom::find_inside_out(run.original.mesh);
   if (run.inside_out) log(false, "warning: " + o.original + ": " + text_of(*run.inside_out));
   run.diagonal = diagonal_of(run.original.mesh);
   return run;
@@ -63,11 +64,10 @@ std::optional<verify::PointQuestion> points_of(const MeshCase& run) {
 int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
   require_possible(o, common);
   const ThreadLimit threads(common.threads);
-  const std::optional<Length> epsilon = epsilon_of(o.epsilon);
   if (o.original == "-" && o.approximation == "-")
     throw Error(ErrorCode::InvalidArgument, "only one of the two files can be standard input");
   MeshCase run = read(o, common.quiet);
-  if (epsilon) set_bound(run, *epsilon);
+  if (o.how.epsilon) set_bound(run, *o.how.epsilon);
 
   Progress progress(common.quiet);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
@@ -81,10 +81,10 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       run.approximation.mesh,
                                       run.approximation.is_set ? &run.approximation.set : nullptr,
                                       o.relation,
-                                      claims_of(o.claims),
+                                      o.how.claims,
                                       run.bound,
-                                      o.max_contacts,
-                                      o.max_work,
+                                      o.how.max_contacts,
+                                      o.how.max_work,
                                       [&](const std::string& what) { progress.show(what); },
                                       points_of(run),
                                       run.original.subject ? &*run.original.subject : nullptr,
@@ -100,7 +100,7 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
       write_witness(o.witness, mesh, "triangles that bound what refutes the claim");
   if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   say(lines_of_distances(run));
-  if (answer != Answer::Verified && answer != Answer::Undecided && !o.prepare)
+  if (answer != Answer::Verified && answer != Answer::Undecided && !o.how.prepare)
     if (const std::string change = change_by_preparing(run.original); !change.empty())
       log(common.quiet, "note: bmesh-decimate and bcd-decompose speak of " + o.original +
                             " as prepared; --prepare judges that: " + change);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
+#include <kaboum/verify/verdict_options.h>
 
 #include <string>
 
@@ -16,12 +16,9 @@ struct VerifyMeshOptions {
   std::string original, approximation;  ///< `-`: standard input
   std::string original_format, approximation_format;
   UnitOption unit;  ///< of the original
-  std::string epsilon, witness, claims = "all";
-  bool prepare = false, drop_sheets = false;
+  std::string witness;
   bool set = false;  ///< the approximation is a set, whatever the file looks like
-  std::size_t max_contacts = verify::InclusionOptions{}.max_contacts;
-  std::optional<double> max_work;
-  std::size_t exact_points = verify::kPointDensity;  ///< of CAD files; 0: triangles alone
+  verify::MeshVerdictOptions how;
 };
 
 /// Decides the claims, prints and reports them.

@@ -48,7 +48,7 @@ MeshInput read_original(const VerifyMeshOptions& o) {
   const bool inner = o.relation == verify::Relation::Inner;
   // Whether points of exact faces are inside what encloses, or is covered, is what they can tell.
   MeshInput out =
-      read(o.original, o.original_format, "--input-format", o.unit, inner ? 0 : o.exact_points);
+      read(o.original, o.original_format, "--input-format", o.unit, inner ? 0 : o.how.exact_points);
   out.diagonal = inner ? Diagonal::Inward : Diagonal::Outward;
   return out;
 }

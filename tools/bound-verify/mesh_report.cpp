@@ -353,7 +353,7 @@ Json file(const std::string& path, const MeshInput& input, bool closed, std::siz
 
 /// What preparing did to the original, or would have to do.
 void add_preparation(const MeshCase& run, Json& original) {
-  if (run.asked.prepare) {
+  if (run.asked.how.prepare) {
     original["filled_triangles"] = run.original.filled_triangles;
     original["dropped_sheet_triangles"] = run.original.dropped_sheets;
     if (!run.original.subject->refusal.empty())
@@ -391,7 +391,7 @@ Json report_of(const MeshCase& run) {
   Json json{
       {"relation", name_of_relation(run.asked.relation)},
       {"verdict", name_of(run.verdict.answer)},
-      {"deciding_claims", run.asked.claims},
+      {"deciding_claims", name_of(run.asked.how.claims)},
       {"original", file(run.asked.original, run.original, swap ? in.outer_closed : in.inner_closed,
                         swap ? in.outer_open_edges : in.inner_open_edges)},
       {"approximation",

@@ -86,9 +86,8 @@ std::vector<std::string> lines_of(const ProgressiveCase& run) {
 
 }  // namespace
 
-int verify_progressive(const std::string& original, const std::string& original_format,
-                       const UnitOption& unit, const std::string& progressive,
-                       const CommonOptions& common) {
+int verify_progressive(const VerifyProgressiveOptions& o, const CommonOptions& common) {
+  const auto& [original, original_format, progressive, unit] = o;
   require_apart({{"--report", common.report}}, {original, progressive});
   std::vector<char> bytes;
   io::ReadResult input =

@@ -7,10 +7,14 @@
 
 namespace kaboum::tools {
 
-/// `bound-verify progressive`: checks a progressive file against the mesh it was made from.
+/// What `bound-verify progressive ORIGINAL FILE` is asked.
+struct VerifyProgressiveOptions {
+  std::string original, original_format, progressive;
+  UnitOption unit;  ///< of the original
+};
+
+/// Checks a progressive file against the mesh it was made from.
 /// @return exit code
-int verify_progressive(const std::string& original, const std::string& original_format,
-                       const UnitOption& unit, const std::string& progressive,
-                       const CommonOptions& common);
+int verify_progressive(const VerifyProgressiveOptions& options, const CommonOptions& common);
 
 }  // namespace kaboum::tools

@@ -107,14 +107,13 @@ class RobotVerifier {
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
-        epsilon_(epsilon_of(o_.epsilon)),
         original_(robot::read_robot(o_.original)),
         result_(robot::read_robot(o_.result)),
-        meshes_(o_.packages, o_.exact_points),
+        meshes_(o_.how.shapes.packages, o_.how.exact_points),
         progress_(common.quiet) {}
 
   int run() {
-    robot::require_links(original_, o_.links);
+    robot::require_links(original_, o_.how.shapes.links);
     const verify::RobotQuestion question = question_of();
     read_meshes(question);
     find_bare_links();
@@ -137,11 +136,11 @@ class RobotVerifier {
                                  : "";
     say(name_of(verdict.answer) + open + ": " +
         robot::links_judged(verdict.links.size(),
-                            o_.links.empty() ? original_.robot.links.size() : o_.links.size(),
+                            o_.how.shapes.links.empty() ? original_.robot.links.size() : o_.how.shapes.links.size(),
                             bare_) +
         except_sheets(dropped_in(verdict)) +
         (verdict.answer == Answer::Verified && has_exact_faces(verdict)
-             ? o_.exact_points > 0 ? "; of the triangles, which stand for exact faces; no point of "
+             ? o_.how.exact_points > 0 ? "; of the triangles, which stand for exact faces; no point of "
                                      "these that was looked at sticks out"
                                    : kOfTriangles
              : ""));
@@ -149,23 +148,15 @@ class RobotVerifier {
   }
 
  private:
-  [[nodiscard]] bool visual() const { return o_.geometry == "visual"; }
+  [[nodiscard]] bool is_prepared() const { return o_.how.solid != verify::Solid::AsFile; }
+  [[nodiscard]] bool visual() const { return o_.how.shapes.visual; }
 
   verify::RobotQuestion question_of() {
     const auto file_of = [this](const Geometry& mesh, bool of_result) -> const verify::MeshFile& {
       return meshes_.file_of(mesh, of_result ? result_ : original_);
     };
-    verify::RobotQuestion q{original_.robot, result_.robot, file_of};
-    q.visual = visual();
-    q.links = o_.links;
-    q.claims = claims_of(o_.claims);
-    q.solid = o_.prepare == "auto"   ? verify::Solid::Prepared
-              : o_.prepare == "wrap" ? verify::Solid::Enclosed
-                                     : verify::Solid::AsFile;
-    q.drop_sheets = o_.drop_sheets;
-    q.epsilon = epsilon_;
-    q.limits.max_contacts = o_.max_contacts;
-    q.limits.max_work = o_.max_work;
+    verify::RobotQuestion q =
+        verify::question_of(original_.robot, result_.robot, file_of, o_.how);
     q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
     return q;
   }
@@ -180,17 +171,17 @@ class RobotVerifier {
 
   /// What is drawn, but does not collide, is easily overlooked.
   void find_bare_links() {
-    bare_ = robot::bare_links(original_.robot, visual(), o_.links);
+    bare_ = robot::bare_links(original_.robot, visual(), o_.how.shapes.links);
     if (visual()) bare_.other.clear();  // their shapes for collisions are judged
     for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
       log(common_.quiet, "note: " + o_.original + ": " + note);
-    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.links))
+    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.how.shapes.links))
       log(common_.quiet, "note: " + note);
   }
 
   void take_notes(const verify::RobotVerdict& verdict) {
     for (const auto& [file, text] : verdict.notes) notes_.add(file, text);
-    if (o_.prepare.empty())
+    if (!is_prepared())
       for (const verify::LinkVerdict& link : verdict.links)
         for (const verify::ShapeVerdict& shape : link.shapes)
           if (shape.file != nullptr) note_on_unprepared(shape);
@@ -267,10 +258,11 @@ class RobotVerifier {
     return {
         {"relation", "robot"},
         {"verdict", name_of(verdict.answer)},
-        {"deciding_claims", o_.claims},
-        {"geometry", o_.geometry},
-        {"prepared", !o_.prepare.empty()},
-        {"prepare", o_.prepare.empty() ? "off" : o_.prepare},
+        {"deciding_claims", name_of(o_.how.claims)},
+        {"geometry", visual() ? "visual" : "collision"},
+        {"prepared", is_prepared()},
+        {"prepare",
+         is_prepared() ? value_of(verify::robot_verdict_options(), "prepare", o_.how) : "off"},
         {"dropped_sheet_triangles", dropped_in(verdict)},
         {"original", file(o_.original, original_)},
         {"result", file(o_.result, result_)},
@@ -284,7 +276,6 @@ class RobotVerifier {
 
   const VerifyRobotOptions& o_;
   const CommonOptions& common_;
-  std::optional<Length> epsilon_;
   robot::RobotFile original_, result_;
   RobotMeshes meshes_;
   Progress progress_;

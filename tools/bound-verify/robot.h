@@ -1,7 +1,8 @@
 #pragma once
 
+#include <kaboum/verify/robot_options.h>
+
 #include <string>
-#include <vector>
 
 #include "common/cli.h"
 
@@ -10,13 +11,7 @@ namespace kaboum::tools {
 /// What `bound-verify robot ORIGINAL RESULT` is asked.
 struct VerifyRobotOptions {
   std::string original, result;  ///< URDF files
-  std::string claims = "all", geometry = "collision", epsilon;
-  std::vector<std::string> packages, links;
-  std::string prepare;  ///< empty, auto or wrap
-  bool drop_sheets = false;
-  std::size_t max_contacts = 0;
-  std::optional<double> max_work;
-  std::size_t exact_points = 0;  ///< of CAD files; 0: triangles alone
+  verify::RobotVerdictOptions how;
 };
 
 /// Decides whether the collision shapes of RESULT hold ORIGINAL's shapes, link by link, and both

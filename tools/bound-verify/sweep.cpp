@@ -7,9 +7,7 @@
 
 #include <iostream>
 #include <optional>
-#include <sstream>
 
-#include "common/motion_options.h"
 #include "common/verdict.h"
 #include "mesh_input.h"
 #include "sweep_report.h"
@@ -20,54 +18,40 @@ namespace {
 
 using verify::Answer;
 
-std::vector<std::string> listed(const std::string& text) {
-  std::vector<std::string> names;
-  std::istringstream list(text);
-  for (std::string name; std::getline(list, name, ',');)
-    if (!name.empty()) names.push_back(name);
-  return names;
-}
-
 /// A container, a mesh file, a folder, or a URDF as sweep-approx writes it.
 verify::SweptBodies read_swept(const std::string& path, const VerifySweepOptions& o) {
   std::optional<io::Format> format;
   const bool urdf = o.set_format.empty() && std::filesystem::path(path).extension() == ".urdf";
   if (!urdf && !is_folder(path)) format = format_for(path, o.set_format, "--approximation-format");
-  return verify::read_swept_bodies(path, format, o.packages);
+  return verify::read_swept_bodies(path, format, o.how.shapes.choice.packages);
 }
 
 /// Reads everything, and says what is to be known of it.
 SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
-  SweepCase run{o, robot::read_robot(o.files[0]), {}, {}, {}, {}};
-  if (!o.base_pose.empty())
-    naming(o.files[0], [&] {
+  SweepCase run{o, robot::read_robot(o.robot), {}, {}, {}, {}};
+  if (!o.how.base_pose.empty())
+    naming(o.robot, [&] {
       run.robot.robot =
-          robot::placed(run.robot.robot, robot::parse_pose(o.base_pose, "--base-pose"));
+          robot::placed(run.robot.robot, robot::parse_pose(o.how.base_pose, "--base-pose"));
     });
-  // Limits are no matter of the set.
   std::vector<std::string> notes;
-  run.path = robot::read_path(o.files[1], run.robot.robot,
-                              {false, o.degrees, fixed_joints(o.joints)}, notes);
-  run.shapes =
-      verify::read_motion_shapes(run.robot, {{listed(o.links), o.geometry == "visual", o.packages},
-                                             o.prepare,
-                                             o.drop_sheets,
-                                             o.exact_points});
+  run.path = robot::read_path(o.path, run.robot.robot, o.how.reading, notes);
+  run.shapes = verify::read_motion_shapes(run.robot, o.how.shapes);
   require_apart({{"--report", common.report}, {"--witness", o.witness}}, run.shapes.files);
-  run.swept = read_swept(o.files[2], o);
+  run.swept = read_swept(o.swept, o);
   for (const auto& more : {run.shapes.notes, run.shapes.mesh_notes.lines()})
     notes.insert(notes.end(), more.begin(), more.end());
   for (const std::string& note : notes) log(common.quiet, note);
-  for (const std::string& note : run.swept.notes) log(common.quiet, o.files[2] + ": " + note);
+  for (const std::string& note : run.swept.notes) log(common.quiet, o.swept + ": " + note);
   return run;
 }
 
 void decide(SweepCase& run, Progress& progress) {
   const VerifySweepOptions& o = run.asked;
   verify::MotionQuestion question{run.robot.robot, run.shapes, run.path, run.swept.set,
-                                  claims_of(o.claims)};
-  if (!o.gap.empty()) question.gap = parse_length(o.gap)->value;
-  question.max_cells = o.max_cells;
+                                  o.how.claims};
+  question.gap = o.how.gap;
+  question.max_cells = o.how.max_cells;
   question.progress = [&](const std::string& what) { progress.show("deciding: " + what); };
   run.verdict = verify::decide(question);
 }
@@ -99,7 +83,8 @@ std::string preparing_hint(const verify::MotionShapes& shapes) {
 }  // namespace
 
 int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
-  require_apart({{"--report", common.report}, {"--witness", o.witness}}, o.files);
+  require_apart({{"--report", common.report}, {"--witness", o.witness}},
+                {o.robot, o.path, o.swept});
   require_witness_format(o.witness);
   const ThreadLimit threads(common.threads);
   SweepCase run = read(o, common);
@@ -114,7 +99,7 @@ int verify_sweep(const VerifySweepOptions& o, const CommonOptions& common) {
   if (common.quiet) return exit_code(found.answer);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   for (const std::string& line : lines_of(run)) out << line << '\n';
-  if (found.answer != Answer::Verified && !o.prepare)
+  if (found.answer != Answer::Verified && !o.how.shapes.prepare)
     if (const std::string hint = preparing_hint(run.shapes); !hint.empty())
       log(common.quiet, "note: " + hint);
   return exit_code(found.answer);

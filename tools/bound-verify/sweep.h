@@ -1,7 +1,8 @@
 #pragma once
 
+#include <kaboum/verify/robot_options.h>
+
 #include <string>
-#include <vector>
 
 #include "common/cli.h"
 
@@ -9,14 +10,10 @@ namespace kaboum::tools {
 
 /// What `bound-verify sweep ROBOT PATH SWEPT` is asked.
 struct VerifySweepOptions {
-  std::vector<std::string> files;  ///< robot, path, swept set
-  std::string links, geometry = "collision", gap, claims = "all", witness, set_format;
-  std::vector<std::string> packages, joints;  ///< joints: of --joint
-  std::string base_pose;                      ///< as --base-pose; empty: the origin
-  bool prepare = false, drop_sheets = false;  ///< the links' meshes, as bcd-decompose does
-  bool degrees = false;                       ///< angles of the path and of --joint
-  std::size_t max_cells = 20000;
-  std::size_t exact_points = 0;  ///< of CAD files; 0: triangles alone
+  std::string robot, path, swept;
+  std::string set_format;  ///< of `swept`; empty: by its name
+  std::string witness;
+  verify::MotionVerdictOptions how;
 };
 
 /// Decides the claims, prints and reports them. @return the exit code.

@@ -62,7 +62,7 @@ std::vector<std::string> lines_of(const SweepCase& run) {
     lines.push_back("  farthest of " + std::to_string(claims.samples) +
                     " places sampled: " + number(claims.farthest.distance) + ", " +
                     (claims.farthest.distance > 0 ? say(claims.farthest, run) : "none is outside"));
-  if (run.asked.claims != "surface" && claims.solid.answer != Answer::Undefined)
+  if (run.asked.how.claims != verify::Claims::Surface && claims.solid.answer != Answer::Undefined)
     lines.push_back(line("solid claim", claims.solid, "so do the insides of the closed shapes"));
   if (claims.open_meshes > 0)
     lines.push_back(std::to_string(claims.open_meshes) +
@@ -109,11 +109,11 @@ Json report_of(const SweepCase& run) {
   Json json{
       {"relation", "sweep"},
       {"verdict", name_of(run.verdict.answer)},
-      {"deciding_claims", o.claims},
-      {"robot", {{"file", o.files[0]}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
-      {"path", {{"file", o.files[1]}, {"waypoints", run.path.size()}}},
+      {"deciding_claims", name_of(o.how.claims)},
+      {"robot", {{"file", o.robot}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
+      {"path", {{"file", o.path}, {"waypoints", run.path.size()}}},
       {"swept",
-       {{"file", o.files[2]},
+       {{"file", o.swept},
         {"sha256", run.swept.sha256},
         {"bodies", run.swept.set.bodies.size()},
         {"margin", margin_json(run.swept.set)}}},
@@ -140,7 +140,7 @@ Json report_of(const SweepCase& run) {
     }
   }
   if (run.knows_farthest()) json["largest_found"] = to_json(claims.farthest, run);
-  json["prepared"] = o.prepare;
+  json["prepared"] = o.how.shapes.prepare;
   json["dropped_sheet_triangles"] = shapes.dropped;
   json["open_meshes"] = claims.open_meshes;
   json["shapes"] = shapes.shapes.size();

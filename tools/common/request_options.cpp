@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
 
 namespace kaboum::tools {
 namespace {
@@ -30,6 +31,14 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
   if (option.kind == OptionDescription::Kind::Flag) {
     app.add_flag_callback(
         name, [assign] { assign("true"); }, text);
+    return;
+  }
+  if (!option.implied.empty()) {
+    const auto stated = std::make_shared<std::string>();
+    app.add_flag(name + '{' + option.implied + '}', *stated, text)
+        ->check(CLI::Validator(
+            [option](const std::string& value) { return flaw_of(option, value); }, ""))
+        ->each([assign, stated](const std::string& value) { assign(value); });
     return;
   }
   const bool names = option.kind == OptionDescription::Kind::Names;

@@ -67,19 +67,4 @@ int exit_code(Answer answer) {
   return kBadInput;
 }
 
-verify::Claims claims_of(const std::string& name) {
-  return name == "solid"     ? verify::Claims::Solid
-         : name == "surface" ? verify::Claims::Surface
-                             : verify::Claims::All;
-}
-
-std::optional<kaboum::Length> epsilon_of(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  const auto length = parse_length(text);
-  if (!length)
-    throw Error(ErrorCode::InvalidArgument,
-                "--epsilon: '" + text + "' is neither a positive length nor a percentage");
-  return length;
-}
-
 }  // namespace kaboum::tools

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <kaboum/base/length.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/verify/bracket.h>
-#include <kaboum/verify/claims.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
-/// What the relations of bound-verify share in what they are asked, and in telling what they found.
+/// What the relations of bound-verify share in telling what they found.
 namespace kaboum::tools {
 
 using kaboum::number_down;
@@ -47,12 +44,5 @@ using DroppedSheets = std::map<std::string, std::size_t>;
 std::string except_sheets(const DroppedSheets& dropped);
 
 int exit_code(verify::Answer answer);
-
-/// What --claims says: all, solid or surface.
-verify::Claims claims_of(const std::string& name);
-
-/// What --epsilon says; nullopt if it is not given.
-/// @throws Error{InvalidArgument} on what is no length.
-std::optional<kaboum::Length> epsilon_of(const std::string& text);
 
 }  // namespace kaboum::tools

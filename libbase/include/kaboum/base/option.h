@@ -47,6 +47,9 @@ struct OptionDescription {
   std::string plural = {};
   /// Default in words; empty: that of the request, if it has one.
   std::string otherwise = {};
+  /// Of a choice that may be stated without a value: the one that is meant then. A value is joined
+  /// to the option's name on command lines: "--prepare=wrap".
+  std::string implied = {};
   /// Part of each record, its default too.
   bool always_recorded = false;
   /// Part of no record's line: containers have a field of its own for it.

@@ -9,6 +9,9 @@
 
 namespace kaboum::verify {
 
+/// Parts of an interval between knots, where nothing else is asked for.
+inline constexpr std::size_t kPointDensity = 17;
+
 /// Points of the exact faces and edges of a CAD file, by a reading of its own.
 struct ExactPoints {
   std::vector<geom::Vec3> points;

@@ -11,9 +11,6 @@
 
 namespace kaboum::verify {
 
-/// Parts of an interval between knots, where nothing else is asked for.
-inline constexpr std::size_t kPointDensity = 17;
-
 /// Evaluates faces inside their loops, edges in both of their forms, and vertices, at all knots and
 /// between them. docs/algorithms/exact-inclusion.md, "Exact faces".
 ///
