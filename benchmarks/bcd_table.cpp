@@ -167,7 +167,7 @@ class Table {
     geom::ConvexSet set;
     set.bodies = std::move(result.bodies);
     const verify::Cover cover = verify::verify_cover(closed, set);
-    const bool verified = cover.convex.answer == verify::Answer::Verified &&
+    const bool verified = cover.convexity.convex.answer == verify::Answer::Verified &&
                           cover.inclusion.solid.answer == verify::Answer::Verified &&
                           cover.inclusion.surface.answer == verify::Answer::Verified;
     nlohmann::ordered_json out{{"model", name},

@@ -67,7 +67,7 @@ bool covers(const geom::ConvexSet& set, const geom::Mesh& closed) {
   verify::InclusionOptions options;
   options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided
   const verify::Cover cover = verify::verify_cover(closed, set, options);
-  return cover.convex.answer == verify::Answer::Verified &&
+  return cover.convexity.convex.answer == verify::Answer::Verified &&
          cover.inclusion.solid.answer == verify::Answer::Verified &&
          cover.inclusion.surface.answer == verify::Answer::Verified;
 }

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   for (const certify::CertifiedLink& link : links.links)
     std::cout << arm.robot.links[link.certificate().link].name << ": "
               << link.artefact().bodies.size() << " bodies hold it, no farther from it than "
-              << link.artefact().provenance.epsilon << '\n';
+              << link.artefact().provenance.epsilon.value() << '\n';
 
   std::vector<std::string> notes;
   const robot::Path path =

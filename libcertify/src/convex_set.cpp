@@ -76,7 +76,8 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
   options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided
   if (r.direction == SetRequest::Direction::Outer) {
     const verify::Cover cover = verify::verify_cover(solid, set, options);
-    return {first_of({&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface}), {}};
+    return {first_of({&cover.convexity.convex, &cover.inclusion.solid, &cover.inclusion.surface}),
+            {}};
   }
   // Of a solid that is deep nowhere: nothing is claimed to lie in it.
   if (set.bodies.empty()) return {};

@@ -98,7 +98,8 @@ void add_inner_shape(InnerParts& parts, const robot::Link& link, std::uint32_t i
   const CertifiedSet& made = mesh->made.found.set;
   const double scale = g.size.cwiseAbs().maxCoeff();
   parts.half_diagonals += 0.5 * scale * made.certificate().diagonal * (1 + 1e-9);
-  parts.shape_depth = std::max(parts.shape_depth, scale * made.artefact().provenance.epsilon);
+  parts.shape_depth =
+      std::max(parts.shape_depth, scale * made.artefact().provenance.epsilon.value());
   if (made.artefact().bodies.empty()) return;
   ++parts.shapes;
   const bool exact = is_placed_exactly(g);

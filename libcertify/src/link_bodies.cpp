@@ -187,7 +187,7 @@ double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodie
   if (!shape.mesh) return robot::bounding_excess(g);
   if (!bodies.meshes[*shape.mesh].held) return 0;  // the shape stays
   const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
-  return g.size.cwiseAbs().maxCoeff() * std::max(set.provenance.epsilon, 0.0);
+  return g.size.cwiseAbs().maxCoeff() * set.provenance.epsilon.value_or(0);
 }
 
 CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest& request,

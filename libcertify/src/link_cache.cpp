@@ -169,7 +169,7 @@ void LinkCache::store(const CertifiedLink& made) const {
          "a link's set claims something else");
   if (folder_ == nullptr) return;
   Writer w;
-  w.value(set.provenance.epsilon);
+  w.value(set.provenance.epsilon.value());
   w.value(std::uint64_t{set.bodies.size()});
   for (const geom::ConvexBody& body : set.bodies) {
     w.text(body.name);

@@ -88,7 +88,7 @@ Direction direction_of(const geom::ConvexSet& set) {
 }
 
 std::vector<geom::ConvexBody> bodies_of(const geom::ConvexSet& set) {
-  if (set.provenance.epsilon < 0)
+  if (!set.provenance.epsilon)
     throw Error(ErrorCode::InvalidInput,
                 "the set states no epsilon: how far it is from its solid is not certified");
   if (const auto i = geom::find_not_convex(set))
@@ -126,7 +126,7 @@ BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction directi
 }
 
 BoundingSet::BoundingSet(const geom::ConvexSet& set)
-    : BoundingSet(bodies_of(set), direction_of(set), set.provenance.epsilon) {}
+    : BoundingSet(bodies_of(set), direction_of(set), set.provenance.epsilon.value()) {}
 
 PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error)
     : set_(&set), boxes_(6 * set.stride()) {

@@ -375,7 +375,7 @@ Json record_of(const geom::ConvexSet& set) {
           {"unit", p.unit},
           {"frame", p.frame},
           {"direction", p.direction},
-          {"epsilon", p.epsilon >= 0 ? Json(p.epsilon) : Json(nullptr)},
+          {"epsilon", p.epsilon ? Json(*p.epsilon) : Json(nullptr)},
           {"covers_solid", p.covers_solid},
           {"covers_surface", p.covers_surface},
           {"source", p.source},
@@ -416,7 +416,7 @@ void take_record(const Json& record, const Source& source, geom::ConvexSet& set)
     record.at("unit").get_to(p.unit);
     record.at("frame").get_to(p.frame);
     record.at("direction").get_to(p.direction);
-    p.epsilon = record.at("epsilon").is_null() ? -1 : record.at("epsilon").get<double>();
+    if (!record.at("epsilon").is_null()) p.epsilon = record.at("epsilon").get<double>();
     record.at("covers_solid").get_to(p.covers_solid);
     record.at("covers_surface").get_to(p.covers_surface);
     record.at("source").get_to(p.source);

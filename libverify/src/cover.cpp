@@ -186,18 +186,18 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
       return verify_inclusion(original, sum_of(polytopes), options);
     };
     cover.inclusion = decide_between(
-        set, original.vertices, open_inclusion(cover.convex),
+        set, original.vertices, open_inclusion(cover.convexity.convex),
         [&](const BodyBounds& bounds) { return with(bounds.inside); },
         [&](const BodyBounds& bounds) { return with(bounds.outside); });
-    if (cover.convex.answer == Answer::Verified && is_open(cover.inclusion.surface))
+    if (cover.convexity.convex.answer == Answer::Verified && is_open(cover.inclusion.surface))
       look_at_corners(original, set, cover.inclusion.surface);
     return cover;
   }
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
   if (*margin > 0)
-    allow_margin(original, sum, set, cover.convex.answer == Answer::Verified, options.max_cells,
-                 cover.inclusion);
+    allow_margin(original, sum, set, cover.convexity.convex.answer == Answer::Verified,
+                 options.max_cells, cover.inclusion);
   return cover;
 }
 

@@ -9,19 +9,25 @@ using R = MeshVerdictOptions;
 
 /// @param epsilon  what it decides
 std::vector<Option<R>> table(const std::string& epsilon) {
-  return {choice<R>(claims_option(), [](auto& r) -> auto& { return r.claims; }, kClaims),
-          option<R>({.name = "epsilon", .text = epsilon},
-                    [](auto& r) -> auto& { return r.epsilon; }),
-          option<R>({.name = "prepare",
-                     .text = "Judge the original as decimation and decomposition prepare it, which "
-                             "is what their claims and a container's epsilon are about, instead of "
-                             "the file as it is: " +
-                             preparation_words()},
-                    [](auto& r) -> auto& { return r.prepare; }),
-          option<R>(drop_sheets_option(), [](auto& r) -> auto& { return r.drop_sheets; }),
-          option<R>(exact_points_option(), [](auto& r) -> auto& { return r.exact_points; }),
-          option<R>(max_contacts_option(), [](auto& r) -> auto& { return r.max_contacts; }),
-          option<R>(max_work_option(), [](auto& r) -> auto& { return r.max_work; })};
+  return {choice<R>(
+              claims_option(), [](auto& r) -> auto& { return r.claims; }, kClaims),
+          option<R>(
+              {.name = "epsilon", .text = epsilon}, [](auto& r) -> auto& { return r.epsilon; }),
+          option<R>(
+              {.name = "prepare",
+               .text = "Judge the original as decimation and decomposition prepare it, which "
+                       "is what their claims and a container's epsilon are about, instead of "
+                       "the file as it is: " +
+                       preparation_words()},
+              [](auto& r) -> auto& { return r.prepare; }),
+          option<R>(
+              drop_sheets_option(), [](auto& r) -> auto& { return r.drop_sheets; }),
+          option<R>(
+              exact_points_option(), [](auto& r) -> auto& { return r.exact_points; }),
+          option<R>(
+              max_contacts_option(), [](auto& r) -> auto& { return r.max_contacts; }),
+          option<R>(
+              max_work_option(), [](auto& r) -> auto& { return r.max_work; })};
 }
 
 }  // namespace
@@ -59,9 +65,10 @@ OptionDescription claims_option() {
 
 OptionDescription drop_sheets_option() {
   return {.name = "drop-sheets",
-          .text = "With {prepare}: drop sheets (faces back to back without volume), as decimation "
-                  "and decomposition do with this option; nothing is then said about them, and the "
-                  "verdict names them"};
+          .text =
+              "With {prepare}: drop sheets (faces back to back without volume), as decimation "
+              "and decomposition do with this option; nothing is then said about them, and the "
+              "verdict names them"};
 }
 
 OptionDescription max_contacts_option() {
@@ -73,9 +80,10 @@ OptionDescription max_contacts_option() {
 
 OptionDescription max_work_option() {
   return {.name = "max-work",
-          .text = "Leave what encloses what undecided after so much work, counted in steps that "
-                  "take at most about so many seconds of one core, so that the answer is the same "
-                  "on any machine",
+          .text =
+              "Leave what encloses what undecided after so much work, counted in steps that "
+              "take at most about so many seconds of one core, so that the answer is the same "
+              "on any machine",
           .values = "SECONDS",
           .low = 0.001,
           .high = 1e9,
@@ -84,9 +92,10 @@ OptionDescription max_work_option() {
 
 OptionDescription exact_points_option() {
   return {.name = "exact-points",
-          .text = "Of STEP and IGES: how densely points of the exact faces are looked at, which "
-                  "refute where they stick out; parts of each interval between knots of an edge, "
-                  "and of a face in each direction; 0: the triangles alone are judged",
+          .text =
+              "Of STEP and IGES: how densely points of the exact faces are looked at, which "
+              "refute where they stick out; parts of each interval between knots of an edge, "
+              "and of a face in each direction; 0: the triangles alone are judged",
           .low = 0,
           .high = 10'000};
 }

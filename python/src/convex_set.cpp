@@ -271,7 +271,7 @@ py::dict record_of(const geom::Provenance& p) {
   out["unit"] = p.unit;
   out["frame"] = p.frame;
   out["direction"] = p.direction;
-  out["epsilon"] = p.epsilon < 0 ? py::object(py::none()) : py::object(py::float_(p.epsilon));
+  out["epsilon"] = p.epsilon ? py::object(py::float_(*p.epsilon)) : py::object(py::none());
   out["covers_solid"] = p.covers_solid;
   out["covers_surface"] = p.covers_surface;
   return out;

@@ -78,8 +78,8 @@ Verdict verdict_of(const verify::RobotVerdict& found) {
 Verdict verify_robot(const py::object& original, const py::object& result,
                      const py::kwargs& given) {
   verify::RobotVerdictOptions options;
-  const RunKeywords running = take_keywords("verify_robot", verify::robot_verdict_options(), given,
-                                            options, Runs::Threads);
+  const RunKeywords running =
+      take_keywords("verify_robot", verify::robot_verdict_options(), given, options, Runs::Threads);
   require_none(contradiction(options));
   const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
   robot::require_links(*first.file, options.shapes.links);
@@ -122,9 +122,9 @@ Error
 void bind_robot_verification(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text = document("verify_robot", "original: object, result: object",
-                                    keywords_of(verify::robot_verdict_options()), "kaboum.Verdict",
-                                    kDoc, Runs::Threads);
+  const std::string text =
+      document("verify_robot", "original: object, result: object",
+               keywords_of(verify::robot_verdict_options()), "kaboum.Verdict", kDoc, Runs::Threads);
   module.def("verify_robot", &verify_robot, py::arg("original"), py::arg("result"), text.c_str());
 }
 

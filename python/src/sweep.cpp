@@ -188,8 +188,7 @@ Verdict verify_sweep(const py::object& robot, const py::object& path, const py::
   require_none(contradiction(options));
   robot::RobotFile placed = *robot_of(robot, "robot").file;
   if (!options.base_pose.empty())
-    placed.robot =
-        robot::placed(placed.robot, robot::parse_pose(options.base_pose, "base_pose"));
+    placed.robot = robot::placed(placed.robot, robot::parse_pose(options.base_pose, "base_pose"));
   Verdict out;
   const robot::Path waypoints = path_from(path, placed.robot, options.reading, out.notes);
   const auto set = swept_of(swept, options.shapes.choice.packages, out.notes);
@@ -262,8 +261,8 @@ void bind_sweep_verification(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::string text = document("verify_sweep", "robot: object, path: object, swept: object",
-                                    keywords_of(verify::motion_verdict_options()),
-                                    "kaboum.Verdict", kVerifyDoc, Runs::Threads);
+                                    keywords_of(verify::motion_verdict_options()), "kaboum.Verdict",
+                                    kVerifyDoc, Runs::Threads);
   module.def("verify_sweep", &verify_sweep, py::arg("robot"), py::arg("path"), py::arg("swept"),
              text.c_str());
 }

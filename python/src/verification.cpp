@@ -41,8 +41,7 @@ std::optional<verify::Subject> subject_of(const MeshValue& original, verify::Rel
 
 /// Of a mesh that was read from a file with exact faces, unless it is to enclose.
 std::optional<verify::ExactPoints> exact_points_of(const MeshValue& original,
-                                                   verify::Relation relation,
-                                                   std::size_t density) {
+                                                   verify::Relation relation, std::size_t density) {
   if (!original.format || density == 0 || relation == verify::Relation::Inner) return std::nullopt;
   const std::vector<char> bytes = io::read_file(original.source);
   if (io::sha256(bytes) != original.sha256)

@@ -212,7 +212,7 @@ TEST(Csg, ACornerInsideTheSolidCannotBeLeftOut) {
       mutant[i].core = *geom::convex_hull(points);
       EXPECT_FALSE(truly_covered(cube, mutant));
       const verify::Cover cover = verify::verify_cover(cube, test::set_of(mutant));
-      EXPECT_EQ(cover.convex.answer, Answer::Verified);
+      EXPECT_EQ(cover.convexity.convex.answer, Answer::Verified);
       EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified);
       EXPECT_EQ(cover.inclusion.solid.answer, Answer::Refuted);
     }

@@ -72,8 +72,8 @@ inline geom::ConvexSet set_of(const std::vector<geom::ConvexBody>& bodies) {
 
 inline verify::Answer cover_of(const geom::Mesh& mesh, const geom::ConvexSet& set) {
   const verify::Cover cover = verify::verify_cover(mesh, set);
-  for (const auto answer :
-       {cover.convex.answer, cover.inclusion.solid.answer, cover.inclusion.surface.answer})
+  for (const auto answer : {cover.convexity.convex.answer, cover.inclusion.solid.answer,
+                            cover.inclusion.surface.answer})
     if (answer != verify::Answer::Verified) return answer;
   return verify::Answer::Verified;
 }

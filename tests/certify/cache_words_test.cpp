@@ -137,7 +137,7 @@ TEST_F(CacheWords, OfDecisions) {
   for (int i = 0; i < 3; ++i) {
     const verify::Cover cover = verify::verify_cover(bar(), set);
     for (const verify::Claim* claim :
-         {&cover.convex, &cover.inclusion.solid, &cover.inclusion.surface})
+         {&cover.convexity.convex, &cover.inclusion.solid, &cover.inclusion.surface})
       add(*claim);
     if (i == 0) set.bodies.pop_back();
     if (i == 1) std::swap(set.bodies[0].core.triangles[0][0], set.bodies[0].core.triangles[0][1]);

@@ -116,7 +116,7 @@ TEST_F(InnerLinksTest, LieInTheShapesMirroredAndTurned) {
   // Powers of two are exact, so the bodies and their depth are the mesh's own.
   for (const geom::ConvexBody& body : link("plain").artefact().bodies)
     EXPECT_TRUE(lies_in(body, posed(1, 0))) << body.name;
-  const double own = made_.meshes.at(1).made.found.set.artefact().provenance.epsilon;
+  const double own = made_.meshes.at(1).made.found.set.artefact().provenance.epsilon.value();
   EXPECT_LE(link("plain").certificate().depth, 2 * own);
   // Not in the mirror image.
   geom::Mesh mirrored = posed(1, 0);

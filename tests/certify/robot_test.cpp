@@ -90,7 +90,7 @@ TEST_F(RobotTest, LinksAreHeldInTheirFrames) {
   EXPECT_TRUE(link.artefact().provenance.covers_solid);
   EXPECT_TRUE(link.artefact().provenance.covers_surface);
   EXPECT_EQ(link.artefact().provenance.frame, "fore arm");
-  EXPECT_GE(link.artefact().provenance.epsilon, link.certificate().distance);
+  EXPECT_GE(link.artefact().provenance.epsilon.value(), link.certificate().distance);
   const geom::ConvexSet back = io::parse_convex_set(link.bytes(), io::Format::Glb, "it");
   ASSERT_EQ(back.bodies.size(), link.artefact().bodies.size());
   for (const robot::Geometry& g : file.robot.links[1].collision) {

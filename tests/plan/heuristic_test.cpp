@@ -117,7 +117,7 @@ TEST(Estimates, SensingTellsNothingOfWhatIsKnown) {
     EXPECT_EQ(s.outcome, Outcome::Unsolvable);
     return s.statistics.initial_estimate;
   };
-  EXPECT_EQ(start("K(p)"), -1) << "a dead end, without a look at any state";
+  EXPECT_EQ(start("K(p)"), std::nullopt) << "a dead end, without a look at any state";
   EXPECT_EQ(start(""), 1) << "it may be sensed that p is false";
   // What the action itself makes unknown it may sense.
   const Model m = model_of(

@@ -38,7 +38,8 @@ Answer answer_for(const std::optional<bool>& truth) {
 void expect_cover(const Mesh& original, const ConvexSet& set, Answer expected,
                   const std::string& what) {
   const auto cover = verify::verify_cover(original, set);
-  EXPECT_EQ(cover.convex.answer, Answer::Verified) << what << ": " << cover.convex.reason;
+  EXPECT_EQ(cover.convexity.convex.answer, Answer::Verified)
+      << what << ": " << cover.convexity.convex.reason;
   EXPECT_EQ(cover.inclusion.solid.answer, expected) << what;
   const auto truth = arrangement_verdict(original, verify::sum_of(set));
   EXPECT_EQ(cover.inclusion.solid.answer, answer_for(truth.solid)) << what;
@@ -136,13 +137,13 @@ TEST(Cover, BodiesMustBeConvex) {
   const Mesh unit = block({0, 0, 0}, {1, 1, 1});
   const auto fault = [&](const Mesh& body) {
     const auto cover = verify::verify_cover(unit, set_of({unit, body}));
-    if (cover.convex.answer == Answer::Verified) return std::string("none");
-    EXPECT_EQ(cover.convex.answer, Answer::Refuted);
-    EXPECT_EQ(cover.not_convex.size(), 1U);
-    if (!cover.not_convex.empty()) {
-      EXPECT_EQ(cover.not_convex[0].first, 1U);
+    if (cover.convexity.convex.answer == Answer::Verified) return std::string("none");
+    EXPECT_EQ(cover.convexity.convex.answer, Answer::Refuted);
+    EXPECT_EQ(cover.convexity.not_convex.size(), 1U);
+    if (!cover.convexity.not_convex.empty()) {
+      EXPECT_EQ(cover.convexity.not_convex[0].first, 1U);
     }
-    return cover.convex.reason;
+    return cover.convexity.convex.reason;
   };
   EXPECT_EQ(fault(unit), "none");
   EXPECT_EQ(fault(icosphere(2)), "none");

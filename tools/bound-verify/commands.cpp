@@ -89,12 +89,14 @@ void add_mesh_command(CLI::App& app, VerifyOptions& o) {
       [&o] { return decide_meshes(o); });
   CLI::Option_group* relation = c->add_option_group("Relation", "One of");
   const auto add_relation = [&](const char* flag, verify::Relation value, const char* text) {
-    relation->add_flag_callback(flag, [&o, value] { o.mesh.relation = value; }, text);
+    relation->add_flag_callback(
+        flag, [&o, value] { o.mesh.relation = value; }, text);
   };
   add_relation("--outer", verify::Relation::Outer, "APPROXIMATION encloses ORIGINAL");
   add_relation("--inner", verify::Relation::Inner, "APPROXIMATION is enclosed by ORIGINAL");
   relation->require_option(1);
-  add_file(*c, "ORIGINAL", o.mesh.original, "The mesh that was approximated (- for standard input)");
+  add_file(*c, "ORIGINAL", o.mesh.original,
+           "The mesh that was approximated (- for standard input)");
   add_file(*c, "APPROXIMATION", o.mesh.approximation,
            "The result: a mesh (- for standard input); with --inner also a set of convex bodies");
   c->add_flag("--set", o.mesh.set,
@@ -114,7 +116,8 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
         o.mesh.relation = verify::Relation::Cover;
         return decide_meshes(o);
       });
-  add_file(*c, "ORIGINAL", o.mesh.original, "The mesh that is to be covered (- for standard input)");
+  add_file(*c, "ORIGINAL", o.mesh.original,
+           "The mesh that is to be covered (- for standard input)");
   add_file(*c, "SET", o.mesh.approximation, "The bodies: .glb, .obj, a folder of .stl");
   add_mesh_options(*c, o, verify::cover_verdict_options(), "SET");
 }

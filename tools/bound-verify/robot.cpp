@@ -135,14 +135,16 @@ class RobotVerifier {
                                  ? ", as far as open meshes define it"
                                  : "";
     say(name_of(verdict.answer) + open + ": " +
-        robot::links_judged(verdict.links.size(),
-                            o_.how.shapes.links.empty() ? original_.robot.links.size() : o_.how.shapes.links.size(),
-                            bare_) +
+        robot::links_judged(
+            verdict.links.size(),
+            o_.how.shapes.links.empty() ? original_.robot.links.size() : o_.how.shapes.links.size(),
+            bare_) +
         except_sheets(dropped_in(verdict)) +
         (verdict.answer == Answer::Verified && has_exact_faces(verdict)
-             ? o_.how.exact_points > 0 ? "; of the triangles, which stand for exact faces; no point of "
-                                     "these that was looked at sticks out"
-                                   : kOfTriangles
+             ? o_.how.exact_points > 0
+                   ? "; of the triangles, which stand for exact faces; no point of "
+                     "these that was looked at sticks out"
+                   : kOfTriangles
              : ""));
     return exit_code(verdict.answer);
   }
@@ -155,8 +157,7 @@ class RobotVerifier {
     const auto file_of = [this](const Geometry& mesh, bool of_result) -> const verify::MeshFile& {
       return meshes_.file_of(mesh, of_result ? result_ : original_);
     };
-    verify::RobotQuestion q =
-        verify::question_of(original_.robot, result_.robot, file_of, o_.how);
+    verify::RobotQuestion q = verify::question_of(original_.robot, result_.robot, file_of, o_.how);
     q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
     return q;
   }
@@ -175,7 +176,8 @@ class RobotVerifier {
     if (visual()) bare_.other.clear();  // their shapes for collisions are judged
     for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
       log(common_.quiet, "note: " + o_.original + ": " + note);
-    for (const std::string& note : robot::notes_on_flat_shapes(original_, visual(), o_.how.shapes.links))
+    for (const std::string& note :
+         robot::notes_on_flat_shapes(original_, visual(), o_.how.shapes.links))
       log(common_.quiet, "note: " + note);
   }
 

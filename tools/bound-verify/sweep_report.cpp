@@ -106,22 +106,21 @@ Json report_of(const SweepCase& run) {
   const VerifySweepOptions& o = run.asked;
   const verify::SweepClaims& claims = run.verdict.claims;
   const verify::MotionShapes& shapes = run.shapes;
-  Json json{
-      {"relation", "sweep"},
-      {"verdict", name_of(run.verdict.answer)},
-      {"deciding_claims", name_of(o.how.claims)},
-      {"robot", {{"file", o.robot}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
-      {"path", {{"file", o.path}, {"waypoints", run.path.size()}}},
-      {"swept",
-       {{"file", o.swept},
-        {"sha256", run.swept.sha256},
-        {"bodies", run.swept.set.bodies.size()},
-        {"margin", margin_json(run.swept.set)}}},
-      {"gap", run.verdict.gap},
-      {"claims",
-       {{"convex", to_json(claims.convex)},
-        {"surface", to_json(claims.surface)},
-        {"solid", to_json(claims.solid)}}}};
+  Json json{{"relation", "sweep"},
+            {"verdict", name_of(run.verdict.answer)},
+            {"deciding_claims", name_of(o.how.claims)},
+            {"robot", {{"file", o.robot}, {"sha256", run.robot.sha256}, {"meshes", shapes.files}}},
+            {"path", {{"file", o.path}, {"waypoints", run.path.size()}}},
+            {"swept",
+             {{"file", o.swept},
+              {"sha256", run.swept.sha256},
+              {"bodies", run.swept.set.bodies.size()},
+              {"margin", margin_json(run.swept.set)}}},
+            {"gap", run.verdict.gap},
+            {"claims",
+             {{"convex", to_json(claims.convex)},
+              {"surface", to_json(claims.surface)},
+              {"solid", to_json(claims.solid)}}}};
   if (claims.refuting) json["claims"]["surface"]["place"] = to_json(*claims.refuting, run);
   if (claims.undecided)
     json["claims"]["surface"]["first_undecided"] = to_json(*claims.undecided, run);

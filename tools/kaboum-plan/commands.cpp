@@ -35,7 +35,7 @@ Json statistics_json(const plan::Statistics& s) {
       {"dead_ends", s.dead_ends},
       {"subplans_reused", s.reused},
       {"depth", s.depth}};
-  if (s.initial_estimate >= 0) j["initial_estimate"] = s.initial_estimate;
+  if (s.initial_estimate) j["initial_estimate"] = *s.initial_estimate;
   return j;
 }
 

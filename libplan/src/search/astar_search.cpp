@@ -35,8 +35,8 @@ class AStarSearch {
     store_.insert(in_.start.data(), Knowledge::hash_of(in_.start.data(), words_), kNone, 0);
     const std::uint64_t start = estimate(in_.start.data());
     const bool dead = start == kDeadEnd;
-    if (in_.statistics.searches == 1)
-      in_.statistics.initial_estimate = dead ? -1 : static_cast<std::int64_t>(start);
+    if (in_.statistics.searches == 1 && !dead)
+      in_.statistics.initial_estimate = static_cast<std::int64_t>(start);
     if (dead) return finish(Outcome::Unsolvable);
     info_[0].h = start;
     open_.push({start, start, order_++, 0, 0});

@@ -217,8 +217,8 @@ class GreedySearch final : public Engine {
       work_ += e.work;
       const std::uint64_t left = e.dead_end ? kFar : e.value;
       if (i == 0 && state == 0) first_ = e.dead_end ? 0 : std::min<std::uint64_t>(left, kFar - 1);
-      if (i == 0 && state == 0 && in_.statistics.searches == 1)
-        in_.statistics.initial_estimate = e.dead_end ? -1 : static_cast<std::int64_t>(left);
+      if (i == 0 && state == 0 && in_.statistics.searches == 1 && !e.dead_end)
+        in_.statistics.initial_estimate = static_cast<std::int64_t>(left);
       if (e.dead_end && evaluators_[i]->is_safe()) return false;
       value(state, i) = static_cast<std::uint32_t>(std::min<std::uint64_t>(left, kFar - 1));
       // The first one says when to look ahead, too: it stays.

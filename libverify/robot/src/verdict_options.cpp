@@ -11,26 +11,34 @@ std::vector<Option<RobotVerdictOptions>> robot_table() {
   static constexpr std::array<std::pair<const char*, Solid>, 2> kSolids{
       {{"auto", Solid::Prepared}, {"wrap", Solid::Enclosed}}};
   std::vector<Option<R>> out{
-      choice<R>(claims_option(), [](auto& r) -> auto& { return r.claims; }, kClaims),
-      option<R>({.name = "epsilon",
-                 .text = "Also decide that no body is farther than this from the meshes it holds: a "
-                         "length in the robot's unit, or a percentage of each mesh's diagonal"},
-                [](auto& r) -> auto& { return r.epsilon; }),
-      choice<R>({.name = "prepare",
-                 .text = "Judge the solid of each mesh as decimation and decomposition prepare it "
-                         "(" + preparation_words() +
-                         "), which is what their claims are about, and every triangle of the file "
-                         "besides. Where preparing refuses a mesh: its triangles alone, with all "
-                         "that its closed parts wind round. wrap: that of all meshes, as results "
-                         "of wrapping promise",
-                 .implied = "auto"},
-                [](auto& r) -> auto& { return r.solid; }, kSolids),
-      option<R>(drop_sheets_option(), [](auto& r) -> auto& { return r.drop_sheets; }),
-      option<R>(exact_points_option(), [](auto& r) -> auto& { return r.exact_points; }),
-      option<R>(max_contacts_option(), [](auto& r) -> auto& { return r.max_contacts; }),
-      option<R>(max_work_option(), [](auto& r) -> auto& { return r.max_work; })};
-  for (auto& one :
-       options_of_part<R>(robot::shape_options(), [](auto& r) -> auto& { return r.shapes; }))
+      choice<R>(
+          claims_option(), [](auto& r) -> auto& { return r.claims; }, kClaims),
+      option<R>(
+          {.name = "epsilon",
+           .text = "Also decide that no body is farther than this from the meshes it holds: a "
+                   "length in the robot's unit, or a percentage of each mesh's diagonal"},
+          [](auto& r) -> auto& { return r.epsilon; }),
+      choice<R>(
+          {.name = "prepare",
+           .text = "Judge the solid of each mesh as decimation and decomposition prepare it "
+                   "(" +
+                   preparation_words() +
+                   "), which is what their claims are about, and every triangle of the file "
+                   "besides. Where preparing refuses a mesh: its triangles alone, with all "
+                   "that its closed parts wind round. wrap: that of all meshes, as results "
+                   "of wrapping promise",
+           .implied = "auto"},
+          [](auto& r) -> auto& { return r.solid; }, kSolids),
+      option<R>(
+          drop_sheets_option(), [](auto& r) -> auto& { return r.drop_sheets; }),
+      option<R>(
+          exact_points_option(), [](auto& r) -> auto& { return r.exact_points; }),
+      option<R>(
+          max_contacts_option(), [](auto& r) -> auto& { return r.max_contacts; }),
+      option<R>(
+          max_work_option(), [](auto& r) -> auto& { return r.max_work; })};
+  for (auto& one : options_of_part<R>(
+           robot::shape_options(), [](auto& r) -> auto& { return r.shapes; }))
     out.push_back(std::move(one));
   return out;
 }
@@ -40,31 +48,39 @@ std::vector<Option<MotionVerdictOptions>> motion_table() {
   static constexpr std::array<std::pair<const char*, Claims>, 2> kOfMotions{
       {{"all", Claims::All}, {"surface", Claims::Surface}}};
   std::vector<Option<R>> out{
-      choice<R>(claims_option(), [](auto& r) -> auto& { return r.claims; }, kOfMotions),
-      option<R>({.name = "prepare",
-                 .text = "Judge the links' meshes as decomposition prepares them (" +
-                         preparation_words() + "); one that preparing refuses, as it is"},
-                [](auto& r) -> auto& { return r.shapes.prepare; }),
-      option<R>(drop_sheets_option(), [](auto& r) -> auto& { return r.shapes.drop_sheets; }),
-      option<R>(exact_points_option(), [](auto& r) -> auto& { return r.shapes.exact_points; }),
-      option<R>({.name = "gap",
-                 .text = "Parts that move and measure less are not divided further; where they are "
-                         "not known to be inside, the answer is undecided",
-                 .absolute = true,
-                 .otherwise = "margin / 10^6"},
-                [](auto& r) -> auto& { return r.gap; }),
-      option<R>({.name = "max-cells",
-                 .text = "Give up, undecided, beyond this many parts of a triangle per segment of "
-                         "the path",
-                 .low = 1,
-                 .high = 1'000'000'000},
-                [](auto& r) -> auto& { return r.max_cells; }),
-      option<R>(robot::base_pose_option(), [](auto& r) -> auto& { return r.base_pose; })};
-  for (auto& one : options_of_part<R>(options_named(robot::path_options(), {"joint", "degrees"}),
-                                      [](auto& r) -> auto& { return r.reading; }))
+      choice<R>(
+          claims_option(), [](auto& r) -> auto& { return r.claims; }, kOfMotions),
+      option<R>(
+          {.name = "prepare",
+           .text = "Judge the links' meshes as decomposition prepares them (" +
+                   preparation_words() + "); one that preparing refuses, as it is"},
+          [](auto& r) -> auto& { return r.shapes.prepare; }),
+      option<R>(
+          drop_sheets_option(), [](auto& r) -> auto& { return r.shapes.drop_sheets; }),
+      option<R>(
+          exact_points_option(), [](auto& r) -> auto& { return r.shapes.exact_points; }),
+      option<R>(
+          {.name = "gap",
+           .text = "Parts that move and measure less are not divided further; where they are "
+                   "not known to be inside, the answer is undecided",
+           .absolute = true,
+           .otherwise = "margin / 10^6"},
+          [](auto& r) -> auto& { return r.gap; }),
+      option<R>(
+          {.name = "max-cells",
+           .text = "Give up, undecided, beyond this many parts of a triangle per segment of "
+                   "the path",
+           .low = 1,
+           .high = 1'000'000'000},
+          [](auto& r) -> auto& { return r.max_cells; }),
+      option<R>(
+          robot::base_pose_option(), [](auto& r) -> auto& { return r.base_pose; })};
+  for (auto& one : options_of_part<R>(
+           options_named(robot::path_options(), {"joint", "degrees"}),
+           [](auto& r) -> auto& { return r.reading; }))
     out.push_back(std::move(one));
-  for (auto& one : options_of_part<R>(robot::shape_options(),
-                                      [](auto& r) -> auto& { return r.shapes.choice; }))
+  for (auto& one : options_of_part<R>(
+           robot::shape_options(), [](auto& r) -> auto& { return r.shapes.choice; }))
     out.push_back(std::move(one));
   return out;
 }

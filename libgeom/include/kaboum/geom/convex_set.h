@@ -26,9 +26,9 @@ struct Provenance {
   std::string parameters;     ///< the options used
   std::string unit = "m";
   std::string frame;
-  std::string direction;        ///< "outer", "inner", or empty: not stated
-  double epsilon = -1;          ///< certified bound of the distance to the solid; negative: none
-  bool covers_solid = false;    ///< outer: verified that the set contains the input's solid
+  std::string direction;               ///< "outer", "inner", or empty: not stated
+  std::optional<double> epsilon = {};  ///< certified bound of the distance to the solid, if any
+  bool covers_solid = false;           ///< outer: verified that the set contains the input's solid
   bool covers_surface = false;  ///< outer: verified that the set contains every input triangle
 
   bool operator==(const Provenance&) const = default;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace kaboum::plan {
@@ -20,19 +21,20 @@ enum class Algorithm {
 
 /// Counters in the spirit of Table 6.4.
 struct Statistics {
-  std::uint64_t expanded = 0;          ///< states whose steps were generated
-  std::uint64_t generated = 0;         ///< successor states made
-  std::uint64_t states = 0;            ///< distinct states kept, of the largest single search
-  std::uint64_t state_bytes = 0;       ///< their storage: contents, links and index
-  std::uint64_t ground_actions = 0;    ///< instances that came into being
-  std::uint64_t external_calls = 0;    ///< calls of external functions, cached ones not counted
-  std::uint64_t external_bytes = 0;    ///< of handles, and of what was called where
-  double external_seconds = 0;         ///< spent in them: the thesis's time of geometric search
-  std::uint64_t searches = 0;          ///< searches for one unbranched part
-  std::uint64_t dead_ends = 0;         ///< states proved to have no plan
-  std::uint64_t reused = 0;            ///< sub-plans found again by their regressed condition
-  std::uint64_t depth = 0;             ///< deepest layer or path so far
-  std::int64_t initial_estimate = -1;  ///< heuristic value of the initial state; -1: none used
+  std::uint64_t expanded = 0;        ///< states whose steps were generated
+  std::uint64_t generated = 0;       ///< successor states made
+  std::uint64_t states = 0;          ///< distinct states kept, of the largest single search
+  std::uint64_t state_bytes = 0;     ///< their storage: contents, links and index
+  std::uint64_t ground_actions = 0;  ///< instances that came into being
+  std::uint64_t external_calls = 0;  ///< calls of external functions, cached ones not counted
+  std::uint64_t external_bytes = 0;  ///< of handles, and of what was called where
+  double external_seconds = 0;       ///< spent in them: the thesis's time of geometric search
+  std::uint64_t searches = 0;        ///< searches for one unbranched part
+  std::uint64_t dead_ends = 0;       ///< states proved to have no plan
+  std::uint64_t reused = 0;          ///< sub-plans found again by their regressed condition
+  std::uint64_t depth = 0;           ///< deepest layer or path so far
+  /// Heuristic value of the initial state, where one was used and it is no dead end.
+  std::optional<std::int64_t> initial_estimate = {};
 };
 
 struct SolveOptions {

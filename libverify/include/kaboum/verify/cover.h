@@ -20,7 +20,8 @@ struct Convexity {
 Convexity verify_convexity(const geom::ConvexSet& set);
 
 /// Result of verify_cover.
-struct Cover : Convexity {
+struct Cover {
+  Convexity convexity;
   /// The claims about the original and the union; triangles of the outer mesh are counted through
   /// the bodies one after the other.
   Inclusion inclusion;

@@ -12,10 +12,10 @@ namespace kaboum::verify {
 
 /// How a mesh is judged against what was made of it.
 struct MeshVerdictOptions {
-  Claims claims = Claims::All;     ///< those that decide
-  std::optional<Length> epsilon;   ///< bound of the distances, if one is to be decided
-  bool prepare = false;            ///< the original as geom::prepare makes it, holes filled
-  bool drop_sheets = false;        ///< with `prepare`
+  Claims claims = Claims::All;    ///< those that decide
+  std::optional<Length> epsilon;  ///< bound of the distances, if one is to be decided
+  bool prepare = false;           ///< the original as geom::prepare makes it, holes filled
+  bool drop_sheets = false;       ///< with `prepare`
   std::size_t max_contacts = InclusionOptions{}.max_contacts;
   std::optional<double> max_work;            ///< InclusionOptions::max_work [s]
   std::size_t exact_points = kPointDensity;  ///< of CAD files; 0: triangles alone

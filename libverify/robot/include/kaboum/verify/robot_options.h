@@ -26,8 +26,8 @@ struct MotionVerdictOptions {
   Claims claims = Claims::All;  ///< All or Surface
   MotionShapeOptions shapes = {};
   robot::PathOptions reading = {.check_limits = false};  ///< limits are no matter of the bodies
-  std::string base_pose;                                 ///< as robot::parse_pose; empty: the origin
-  std::optional<double> gap = {};                        ///< MotionQuestion::gap [length]
+  std::string base_pose;           ///< as robot::parse_pose; empty: the origin
+  std::optional<double> gap = {};  ///< MotionQuestion::gap [length]
   std::size_t max_cells = SweepOptions{}.max_cells;
 };
 
