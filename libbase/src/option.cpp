@@ -82,21 +82,32 @@ std::string limits_flaw(const OptionDescription& option, const std::string& valu
          (whole ? "" : ", without a unit") + ", not " + value;
 }
 
-/// "finger=0.04"; nullopt: it is something else.
+bool is_within(const OptionDescription& option, double number) {
+  return option.between ? number > option.low && number < option.high
+                        : number >= option.low && number <= option.high;
+}
+
+/// "finger=0.04", or "0.04", whose name is empty; nullopt: it is something else.
 std::optional<std::pair<std::string, double>> parsed_setting(const std::string& text) {
   const std::size_t sign = text.rfind('=');
-  if (sign == std::string::npos || sign == 0) return std::nullopt;
-  const auto value = parsed<double>(std::string_view(text).substr(sign + 1));
+  if (sign == 0) return std::nullopt;
+  const std::size_t digits = sign == std::string::npos ? 0 : sign + 1;
+  const auto value = parsed<double>(std::string_view(text).substr(digits));
   if (!value || !std::isfinite(*value)) return std::nullopt;
-  return std::pair(text.substr(0, sign), *value);
+  return std::pair(text.substr(0, digits == 0 ? 0 : sign), *value);
 }
 
 std::string settings_flaw(const OptionDescription& option, const std::string& value) {
   std::map<std::string, double> known;
   for (const std::string& text : option_text::parts(value, option)) {
     const auto setting = parsed_setting(text);
-    if (!setting) return "must be NAME=NUMBER, as in finger=0.04, not " + text;
-    if (!known.insert(*setting).second) return "gives '" + setting->first + "' twice";
+    if (!setting || (setting->first.empty() && !option.for_all))
+      return std::string("must be ") + (option.for_all ? "NUMBER or " : "") +
+             "NAME=NUMBER, as in finger=0.04, not " + text;
+    if (!is_within(option, setting->second)) return limits_flaw(option, text, false);
+    if (!known.insert(*setting).second)
+      return setting->first.empty() ? "gives a number for all twice"
+                                    : "gives '" + setting->first + "' twice";
   }
   return known.empty() ? "must be NAME=NUMBER, as in finger=0.04" : "";
 }
@@ -136,7 +147,7 @@ std::string value_words(const OptionDescription& option) {
     case Kind::Names:
       return "A,B";
     case Kind::Settings:
-      return "NAME=X";
+      return option.for_all ? "X|NAME=X" : "NAME=X";
     case Kind::Text:
       break;
   }
@@ -218,9 +229,7 @@ std::string flaw_of(const OptionDescription& option, const std::string& value) {
       return counts_flaw(option, value);
     case Kind::Number: {
       const auto number = parsed<double>(value);
-      const bool sound = number && std::isfinite(*number) &&
-                         (option.between ? *number > option.low && *number < option.high
-                                         : *number >= option.low && *number <= option.high);
+      const bool sound = number && std::isfinite(*number) && is_within(option, *number);
       return sound ? "" : limits_flaw(option, value, false);
     }
     case Kind::Memory:

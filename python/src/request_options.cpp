@@ -43,7 +43,7 @@ const char* type_words(const OptionDescription& option) {
     case Kind::Names:
       return "str or sequence of str";
     case Kind::Settings:
-      return "dict";
+      return option.for_all ? "float or dict" : "dict";
     case Kind::Choice:
       if (!option.implied.empty()) return "bool or str";
       break;
@@ -92,7 +92,10 @@ std::string text_of_texts(const OptionDescription& option, const py::object& val
 }
 
 std::string text_of_settings(const OptionDescription& option, const py::object& value) {
-  const char* what = "a dict of names and numbers";
+  const char* what =
+      option.for_all ? "a number, or a dict of names and numbers" : "a dict of names and numbers";
+  if (const auto one = option.for_all ? number_of(value) : std::nullopt)
+    return option_text::of(*one) + '\n';
   if (!py::isinstance<py::dict>(value)) refuse(option, what, value);
   std::string out;
   for (const auto& [name, number] : value.cast<py::dict>()) {

@@ -1,6 +1,7 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
 #include <kaboum/motion/path_options.h>
+#include <kaboum/motion/sampled_path.h>
 #include <kaboum/world/check_options.h>
 #include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
@@ -41,7 +42,13 @@ struct MotionValue {
 
 struct PathValue {
   WorldValue in;
+  std::size_t robot = 0;
+  double resolution = 0;  ///< that it was found with
   motion::PathAnswer answer;
+};
+
+struct TrajectoryValue {
+  motion::SampledPath made;
 };
 
 std::size_t robot_index(const world::World& world, const std::optional<std::string>& name) {
@@ -218,8 +225,24 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   Watch watch(running.progress);
   options.check.progress = watch.hook();
   return run(0, [&] {
-    return PathValue{in, motion::find_path(*in.checker, initial_state(in.world()), index,
-                                           from.front(), to, options)};
+    return PathValue{in, index, options.check.resolution,
+                     motion::find_path(*in.checker, initial_state(in.world()), index, from.front(),
+                                       to, options)};
+  });
+}
+
+TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
+  motion::TrajectoryOptions options;
+  const RunKeywords running =
+      take_keywords("trajectory", motion::trajectory_options(), given, options, Runs::Alone);
+  if (path.answer.outcome != motion::PathAnswer::Outcome::Found)
+    throw Error(ErrorCode::InvalidArgument, "there is no path that could be carried out");
+  Watch watch(running.progress);
+  return run(0, [&] {
+    const world::WorldState state = initial_state(path.in.world());
+    return TrajectoryValue{motion::sample_path({*path.in.checker, state, path.robot},
+                                               path.answer.path, options, path.resolution,
+                                               motion::AngleUnit::Radians, watch.hook())};
   });
 }
 
@@ -445,7 +468,79 @@ void bind_answers(py::module_& module) {
       });
 }
 
+/// What of an instant, a row for each sample.
+py::array instants(const TrajectoryValue& t, std::vector<double> motion::Instant::*what) {
+  const motion::Trajectory& trajectory = t.made.trajectory;
+  robot::Path rows;
+  rows.reserve(trajectory.samples());
+  for (std::size_t k = 0; k < trajectory.samples(); ++k)
+    rows.push_back(
+        trajectory.at(std::min(static_cast<double>(k) / trajectory.rate(), trajectory.duration())).*
+        what);
+  return rows_array(rows);
+}
+
+void bind_trajectory(py::module_& module) {
+  py::class_<TrajectoryValue>(module, "Trajectory",
+                              "A path in time, from rest to rest along each of its segments. Its "
+                              "samples were decided free, with straight lines between them.")
+      .def("__len__", [](const TrajectoryValue& t) { return t.made.trajectory.samples(); })
+      .def_property_readonly(
+          "duration", [](const TrajectoryValue& t) { return t.made.trajectory.duration(); }, "[s]")
+      .def_property_readonly(
+          "rate", [](const TrajectoryValue& t) { return t.made.trajectory.rate(); },
+          "Samples per second: sample k is at k / rate.")
+      .def_property_readonly(
+          "positions",
+          [](const TrajectoryValue& t) {
+            robot::Path rows;
+            for (std::size_t k = 0; k < t.made.trajectory.samples(); ++k)
+              rows.push_back(t.made.trajectory.sample(k));
+            return rows_array(rows);
+          },
+          "n x k float64: a row for each sample. [rad or length]")
+      .def_property_readonly(
+          "velocities",
+          [](const TrajectoryValue& t) { return instants(t, &motion::Instant::velocity); },
+          "n x k float64, as `positions`, by time.")
+      .def_property_readonly(
+          "accelerations",
+          [](const TrajectoryValue& t) { return instants(t, &motion::Instant::acceleration); },
+          "n x k float64, as `velocities`, by time.")
+      .def(
+          "write",
+          [](const TrajectoryValue& t, const py::object& file) {
+            const auto path = path_of(file);
+            if (!path) throw Error(ErrorCode::InvalidArgument, "file must be the name of a file");
+            io::write_file(*path, t.made.csv);
+          },
+          py::arg("file"), "Writes the samples as CSV: the bytes of `kaboum-move --trajectory`.")
+      .def("__repr__", [](const TrajectoryValue& t) {
+        return "<kaboum.Trajectory of " + std::to_string(t.made.trajectory.samples()) + " samples>";
+      });
+}
+
+constexpr const char* kTrajectoryDoc =
+    R"(The path in time, from rest to rest along each segment, as `kaboum-move --trajectory`.
+
+Parameters
+----------
+{keywords}
+
+Raises
+------
+Error
+    'invalid_argument' where there is no path, for names of no joint and velocities above the robot
+    file's; 'limit_reached' for more than 5,000,000 samples, and where these pass too near to be
+    certified.)";
+
 void bind_path(py::module_& module) {
+  bind_trajectory(module);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string trajectory_text =
+      document("trajectory", "self: kaboum.Path", keywords_of(motion::trajectory_options()),
+               "kaboum.Trajectory", kTrajectoryDoc, Runs::Alone);
   py::class_<PathValue>(module, "Path",
                         "A path that is free at every instant, or why there is none; true where "
                         "one was found.")
@@ -485,6 +580,7 @@ void bind_path(py::module_& module) {
             return out;
           },
           "What stood in the way most often: tuples of two names and a count.")
+      .def("trajectory", &trajectory_of, trajectory_text.c_str())
       .def("__len__", [](const PathValue& p) { return p.answer.path.size(); })
       .def("__repr__", [](const PathValue& p) {
         return "<kaboum.Path: " + std::string(motion::name_of(p.answer.outcome)) + ">";

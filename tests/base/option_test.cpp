@@ -180,5 +180,28 @@ TEST(Remedy, IsSpelledByTheFrontEnd) {
   }
 }
 
+struct Limits {
+  std::map<std::string, double> speeds;
+};
+
+/// A number without a name is of all, where an option says so; limits are of each number.
+TEST(Options, SettingsMayBeOfAll) {
+  const auto speeds = option<Limits>(
+      {.name = "speed", .text = "Most", .low = 0, .between = true, .for_all = true},
+      [](auto& r) -> auto& { return r.speeds; });
+  EXPECT_EQ(value_words(speeds), "X|NAME=X");
+  Limits limits;
+  ASSERT_EQ(flaw_of(speeds, "2\nelbow=0.5"), "");
+  speeds.assign(limits, "2\nelbow=0.5");
+  EXPECT_EQ(limits.speeds, (std::map<std::string, double>{{"", 2}, {"elbow", 0.5}}));
+  EXPECT_EQ(speeds.value(limits), "2\nelbow=0.5\n");
+  for (const char* wrong : {"0", "elbow=0", "-1", "1\n2", "elbow=1\nelbow=2", "=1", "x", "elbow="})
+    EXPECT_NE(flaw_of(speeds, wrong), "") << wrong;
+  const auto joints = option<Limits>(
+      {.name = "joint", .text = "Value"}, [](auto& r) -> auto& { return r.speeds; });
+  EXPECT_NE(flaw_of(joints, "2"), "");
+  EXPECT_EQ(flaw_of(joints, "elbow=-2"), "");
+}
+
 }  // namespace
 }  // namespace kaboum

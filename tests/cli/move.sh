@@ -92,7 +92,7 @@ expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory slow.csv 
 # What the URDF states is never exceeded.
 sed 's/velocity="2"/velocity="0.1"/' arm.urdf >slow.urdf
 expect 0 '' "$BIN/kaboum-scene" make slow.json --robot arm=slow.urdf
-for option in '' '--max-velocity 3' '--max-velocity j1=0.05 --max-velocity 3'; do
+for option in '' '--max-velocity 3' '--max-velocity j1=0.05 --max-velocity 3' '--max-velocity 3 --max-velocity j1=0.05'; do
   # shellcheck disable=SC2086
   expect 0 '' "$M" slow.json --from=0.5,0 --to 1,0 -o p.csv --trajectory slow.csv --rate 100 $option
   [ "$(wc -l <slow.csv)" -gt 900 ] || fail "faster than the URDF allows: $(wc -l <slow.csv)"

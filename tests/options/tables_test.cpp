@@ -8,6 +8,7 @@
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/path_options.h>
+#include <kaboum/motion/trajectory_options.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/robot/shape_options.h>
@@ -102,6 +103,7 @@ TEST(OptionTables, AreSound) {
   check("verdicts on motions", verify::motion_verdict_options());
   check("inverse kinematics", kinematics::inverse_options());
   check("paths", motion::path_options());
+  check("trajectories", motion::trajectory_options());
   check("files of paths", robot::path_options());
   check("shapes of robots", robot::shape_options());
   check("states", world::state_options());

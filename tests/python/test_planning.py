@@ -232,6 +232,38 @@ def test_paths_are_free_at_every_instant(cell):
     assert not motion and motion.outcome == "contact" and motion.contact["pair"] and motion.free_until[0] == 0
     refused = world.find_path(home, bad)
     assert not refused and refused.goal is None and len(refused) == 0
+    with pytest.raises(kaboum.Error, match="no path"):
+        refused.trajectory()
+
+
+def test_trajectories_are_those_of_the_program(cell, tmp_path):
+    world = kaboum.World(cell)
+    home = world.home()
+    rng = np.random.default_rng(3)
+    goals = [q for q in home + rng.uniform(-1, 1, (60, len(home))) if world.check(q)]
+    found = next(p for p in (world.find_path(home, q) for q in goals) if p)
+    stages = []
+    made = found.trajectory(rate=50, max_velocity=0.5, max_acceleration={"": 2.0}, progress=stages.append)
+    assert stages and len(made) == len(made.positions) and made.rate == 50
+    assert np.isclose(made.duration, (len(made) - 1) / 50)
+    assert np.array_equal(made.positions[0], home) and np.array_equal(made.positions[-1], found.waypoints[-1])
+    assert (np.abs(made.velocities) <= 0.5 + 1e-9).all() and (np.abs(made.accelerations) <= 2 + 1e-9).all()
+    assert (made.velocities[[0, -1]] == 0).all()
+    steps = np.abs(np.diff(made.positions, axis=0))
+    assert steps.max() <= 0.5 / 50 + 1e-9
+    made.write(tmp_path / "python.csv")
+    code, text = run("kaboum-move", cell, "--from=" + spelled(home), "--to=" + spelled(found.waypoints[-1]), "-o",
+                     tmp_path / "path.csv", "--trajectory", tmp_path / "program.csv", "--rate", "50", "--max-velocity", "0.5",
+                     "--max-acceleration", "2")
+    assert code == 0, text
+    assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    faster = found.trajectory(rate=50, max_velocity=0.5, max_acceleration=2.0, time_optimal=True)
+    assert faster.duration < made.duration
+    for wrong, says in (({"max_velocity": 0}, "above 0"), ({"max_velocity": {"nobody": 1}}, "no joint 'nobody'"),
+                        ({"rate": 0}, "rate must be")):
+        with pytest.raises(kaboum.Error, match=says) as error:
+            found.trajectory(**wrong)
+        assert error.value.code == "invalid_argument"
 
 
 def test_wrong_configurations_are_refused(cell):

@@ -88,6 +88,7 @@ FRONT_ENDS = {
     "World.check_motion": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.find_path": (["find_path"], {"robot", "progress"}, "kaboum-move"),
+    "Path.trajectory": (["trajectory"], {"progress"}, "kaboum-move"),
     "make_scene": (["make_scene"], {"robots", "objects", "regions", "at", "scale", "no_cache"} | RUNS, "kaboum-scene make"),
     "World.link_pairs": (["link_pairs"], {"robot", "progress"}, "kaboum-scene pairs"),
     "inverse_kinematics": (["inverse_kinematics"], {"tip", "base", "pose_of", "reference", "progress"}, "kaboum-ik"),

@@ -31,7 +31,7 @@ struct OptionDescription {
     Text,
     Files,     ///< files or folders, each stated by itself
     Names,     ///< different names with commas between them: "arm,hand"
-    Settings,  ///< numbers by name, each stated by itself: "finger=0.04"
+    Settings,  ///< numbers by name, each stated by itself: "finger=0.04"; limits are of each
   };
 
   std::string name;  ///< words in small letters, joined by hyphens: "max-bodies"
@@ -43,6 +43,7 @@ struct OptionDescription {
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
   bool between = false;   ///< a number lies between the limits and is none of them
   bool absolute = false;  ///< a length is no percentage; a number is such a length
+  bool for_all = false;   ///< of settings: a number without a name is of all, with an empty name
   /// Name of a list where all its parts are stated at once: "plugins"; empty: `name`.
   std::string plural = {};
   /// Default in words; empty: that of the request, if it has one.
@@ -88,7 +89,7 @@ std::string flaw_of(const OptionDescription& option, const std::string& value);
 /// True if a value is a list whose parts are stated each by itself. Its text has a line for each.
 bool is_repeated(const OptionDescription& option);
 
-/// Numbers by name, of texts such as "finger=0.04".
+/// Numbers by name, of texts such as "finger=0.04"; the name of a number alone is empty.
 /// @pre flaw_of finds nothing.
 std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings);
 
@@ -215,7 +216,7 @@ Option<Request> settings(OptionDescription description, Member member) {
             if (member(request).empty()) return std::nullopt;
             std::vector<std::string> lines;
             for (const auto& [name, value] : member(request))
-              lines.push_back(name + '=' + option_text::of(value));
+              lines.push_back((name.empty() ? name : name + '=') + option_text::of(value));
             return option_text::of(lines, description);
           },
           [member, description](Request& request, const std::string& text) {
