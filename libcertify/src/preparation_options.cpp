@@ -7,6 +7,23 @@ namespace {
 
 using Mode = PreparationOptions::Mode;
 
+OptionDescription offset_option() {
+  return {.name = "offset",
+          .text =
+              "How far a wrap may be from the triangles where it can get near them; a length or "
+              "a percentage of the diagonal",
+          .otherwise = "a quarter of epsilon, or 0.1%"};
+}
+
+OptionDescription seal_option() {
+  return {.name = "seal",
+          .text =
+              "Hollows behind gaps narrower than this are filled by a wrap (those up to 2.5 "
+              "times as wide may be); also the scale of the search, whose time and memory grow "
+              "with its inverse",
+          .otherwise = "what epsilon allows, or 1%"};
+}
+
 std::vector<Option<PreparationOptions>> table(PreparedFor use) {
   using R = PreparationOptions;
   const bool may_stay_open = use != PreparedFor::Bodies, wraps = use != PreparedFor::Preparing;
@@ -56,18 +73,9 @@ std::vector<Option<PreparationOptions>> table(PreparedFor use) {
                                                     {"wrap", Mode::Wrap},
                                                     {"off", Mode::Off}}),
       option<R>(
-          {.name = "offset",
-           .text = "With {prepare} wrap: how far the wrap may be from the triangles where it "
-                   "can get near them; a length or a percentage of the diagonal",
-           .otherwise = "a quarter of epsilon, or 0.1%"},
-          [](auto& r) -> auto& { return r.offset; }),
+          offset_option(), [](auto& r) -> auto& { return r.offset; }),
       option<R>(
-          {.name = "seal",
-           .text = "With {prepare} wrap: hollows behind gaps narrower than this are filled "
-                   "(those up to 2.5 times as wide may be); also the scale of the search, "
-                   "whose time and memory grow with its inverse",
-           .otherwise = "what epsilon allows, or 1%"},
-          [](auto& r) -> auto& { return r.seal; })};
+          seal_option(), [](auto& r) -> auto& { return r.seal; })};
 }
 
 }  // namespace
@@ -86,6 +94,21 @@ const std::vector<Option<PreparationOptions>>& preparation_options(PreparedFor u
                                                        bounding = table(PreparedFor::Bounding),
                                                        preparing = table(PreparedFor::Preparing);
   return use == PreparedFor::Bodies ? bodies : use == PreparedFor::Bounding ? bounding : preparing;
+}
+
+const std::vector<Option<WrapOptions>>& wrap_options() {
+  using R = WrapOptions;
+  static const std::vector<Option<R>> options{
+      option<R>(
+          offset_option(), [](auto& r) -> auto& { return r.offset; }),
+      option<R>(
+          seal_option(), [](auto& r) -> auto& { return r.seal; }),
+      option<R>(
+          {.name = "epsilon",
+           .text = "No point of a wrap is farther from the triangles than this, or it is "
+                   "refused; a length or a percentage of the diagonal"},
+          [](auto& r) -> auto& { return r.epsilon; })};
+  return options;
 }
 
 std::string contradiction(const PreparationOptions& options, const std::set<std::string>& stated) {

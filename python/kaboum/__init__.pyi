@@ -536,9 +536,8 @@ def read_robot(path: _Path) -> Robot: ...
 def prepare(
     mesh: _Mesh,
     *,
-    drop_sheets: bool = False,
-    holes: Literal["fill", "keep", "refuse"] = "fill",
-    keep_orientation: bool = False,
+    # options of prepare
+    # end of options
 ) -> Prepared: ...
 @overload
 def decimate(
@@ -799,10 +798,9 @@ def inverse_kinematics(
 def wrap(
     mesh: _Mesh,
     *,
-    offset: _Length | None = None,
-    seal: _Length | None = None,
-    epsilon: _Length | None = None,
     precision: Literal["float", "double"] = "float",
+    # options of wrap
+    # end of options
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Wrap: ...

@@ -115,13 +115,6 @@ void refuse_name(const char* argument, const std::string& name,
               text + ", not '" + name + "'" + did_you_mean(name, known));
 }
 
-geom::Holes holes_of(const std::string& name, bool may_keep) {
-  static constexpr std::array<std::pair<const char*, geom::Holes>, 3> kHoles{
-      {{"fill", geom::Holes::Fill}, {"refuse", geom::Holes::Refuse}, {"keep", geom::Holes::Keep}}};
-  if (!may_keep && name == "keep") refuse_name("holes", name, {"fill", "refuse"});
-  return value_of(kHoles, name, "holes");
-}
-
 std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument) {
   if (!name) return std::nullopt;
   if (const auto format = io::format_from_name(*name)) return format;

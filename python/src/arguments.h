@@ -43,9 +43,6 @@ Value value_of(const std::array<std::pair<const char*, Value>, N>& names, const 
   refuse_name(argument, name, known);
 }
 
-/// 'fill', 'keep' or 'refuse'.
-geom::Holes holes_of(const std::string& name, bool may_keep);
-
 /// Of a name ('stl', 'ply-ascii'), or else of a file name's extension; None and no extension:
 /// nullopt.
 std::optional<io::Format> format_of(const std::optional<std::string>& name, const char* argument);

@@ -14,6 +14,7 @@
 #include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
 
+#include "preparation.h"
 #include "request_options.h"
 #include "robot.h"
 
@@ -24,6 +25,8 @@ void bind_option_tables(py::module_& module) {
       "_option_tables",
       [] {
         py::dict out;
+        out["prepare"] = table_of(keywords_of(repair_options()));
+        out["wrap"] = table_of(keywords_of(certify::wrap_options()));
         out["decimate"] = table_of(keywords_of(certify::mesh_options()));
         out["decompose"] = table_of(keywords_of(certify::set_options()));
         out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));

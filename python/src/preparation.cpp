@@ -4,17 +4,20 @@
 
 #include "arguments.h"
 #include "mesh.h"
+#include "preparation.h"
+#include "request_options.h"
 #include "running.h"
 
 namespace kaboum::python {
 namespace {
 
-PreparedValue prepare(const py::object& mesh, bool drop_sheets, const std::string& holes,
-                      bool keep_orientation) {
+using certify::PreparationOptions;
+
+PreparedValue prepare(const py::object& mesh, const py::kwargs& given) {
+  PreparationOptions asked;
+  take_keywords("prepare", repair_options(), given, asked, Runs::Briefly);
   const MeshValue value = mesh_of(mesh, "mesh");
-  const geom::PrepareOptions options{.drop_sheets = drop_sheets,
-                                     .holes = holes_of(holes, true),
-                                     .keep_orientation = keep_orientation};
+  const geom::PrepareOptions options = asked.preparing();
   return run(0, [&] {
     auto prepared = std::make_shared<geom::Prepared>(certify::prepare_mesh(*value.mesh, options));
     if (value.deviation > 0)
@@ -29,7 +32,28 @@ auto number(Member geom::PreparationReport::*member) {
   return [member](const PreparedValue& p) { return p.prepared->report.*member; };
 }
 
+constexpr const char* kDoc =
+    R"(Gives a mesh a solid, as all tools do first (docs/algorithms/preparation.md).
+
+Equal vertices are merged, inconsistent triangles turned to agree, walls and copies dropped, holes
+filled, and shells that are inside out turned.
+
+Parameters
+----------
+mesh : mesh
+{keywords}
+
+Raises
+------
+Error
+    'invalid_input' when no solid can be given.)";
+
 }  // namespace
+
+std::vector<Option<PreparationOptions>> repair_options() {
+  return options_named(certify::preparation_options(certify::PreparedFor::Preparing),
+                       {"drop-sheets", "holes", "keep-orientation"});
+}
 
 void bind_preparation(py::module_& module) {
   py::class_<PreparedValue>(module, "Prepared",
@@ -72,27 +96,11 @@ expected; `decimate` does not prepare it again.)")
       .def_property_readonly(
           "notes", [](const PreparedValue& p) { return spelled(p.prepared->report.notes); },
           "What was changed, one sentence each.");
-  module.def("prepare", &prepare, py::arg("mesh"), py::kw_only(), py::arg("drop_sheets") = false,
-             py::arg("holes") = "fill", py::arg("keep_orientation") = false,
-             R"(Gives a mesh a solid, as all tools do first (docs/algorithms/preparation.md).
-
-Equal vertices are merged, inconsistent triangles turned to agree, walls and copies dropped, holes
-filled, and shells that are inside out turned.
-
-Parameters
-----------
-mesh : mesh
-drop_sheets : bool
-    Drop back-to-back faces without volume; they are then not enclosed.
-holes : str
-    'fill', 'keep' (the mesh stays open and encloses nothing) or 'refuse'.
-keep_orientation : bool
-    Never turn a triangle.
-
-Raises
-------
-Error
-    'invalid_input' when no solid can be given.)");
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document("prepare", "mesh: object", keywords_of(repair_options()),
+                                    "kaboum.Prepared", kDoc, Runs::Briefly);
+  module.def("prepare", &prepare, py::arg("mesh"), text.c_str());
 }
 
 }  // namespace kaboum::python

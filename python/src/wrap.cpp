@@ -1,10 +1,12 @@
 // Wraps: kaboum.wrap, as mesh-prepare --prepare wrap.
 
+#include <kaboum/certify/preparation_options.h>
 #include <kaboum/certify/wrap.h>
 
 #include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
+#include "request_options.h"
 #include "running.h"
 
 namespace kaboum::python {
@@ -18,23 +20,24 @@ struct WrapValue {
   [[nodiscard]] std::shared_ptr<const geom::Mesh> mesh() const { return {made, &made->artefact()}; }
 };
 
-WrapValue wrap(const py::object& mesh, const py::object& offset, const py::object& seal,
-               const py::object& epsilon, const std::string& precision, int threads,
-               const py::object& progress) {
+WrapValue wrap(const py::object& mesh, const std::string& precision, const py::kwargs& given) {
+  certify::WrapOptions asked;
+  const RunKeywords running =
+      take_keywords("wrap", certify::wrap_options(), given, asked, Runs::Threads);
   const MeshValue value = mesh_of(mesh, "mesh");
   if (precision != "float" && precision != "double")
     refuse_name("precision", precision, {"float", "double"});
   certify::WrapRequest request;
-  request.offset = length_of(offset, "offset");
-  request.seal = length_of(seal, "seal");
-  if (const auto farthest = length_of(epsilon, "epsilon"))
-    request.farthest = farthest->of(geom::bounding_box(*value.mesh).diagonal());
+  request.offset = asked.offset;
+  request.seal = asked.seal;
+  if (asked.epsilon)
+    request.farthest = asked.epsilon->of(geom::bounding_box(*value.mesh).diagonal());
   request.clearance = value.deviation;
   request.quads = value.bent_quads;
   request.float32 = precision == "float";
-  Watch watch(progress);
+  Watch watch(running.progress);
   request.progress = watch.hook();
-  return run(threads, [&] {
+  return run(running.threads, [&] {
     return WrapValue{
         std::make_shared<certify::CertifiedWrap>(certify::certify_wrap(*value.mesh, request)),
         value.notes};
@@ -50,18 +53,9 @@ Decided exactly by what shares nothing with the search, as `mesh-prepare --prepa
 Parameters
 ----------
 mesh : mesh
-offset : float or str, optional
-    How far the wrap may be from the input where it can get near it. By default a quarter of
-    `epsilon`, else '0.1%'.
-seal : float or str, optional
-    Hollows behind gaps narrower than this are filled. By default found, so that `epsilon` is kept;
-    else '1%'.
-epsilon : float or str, optional
-    No point of the wrap is farther from the triangles, or it is refused.
 precision : str
     Of the wrap's numbers: 'float' or 'double'.
-threads, progress
-    As for `decompose`.
+{keywords}
 
 Raises
 ------
@@ -102,10 +96,13 @@ void bind_wraps(py::module_& module) {
         return "<kaboum.Wrap of " + std::to_string(w.made->artefact().vertices.size()) +
                " vertices, " + std::to_string(w.made->artefact().triangles.size()) + " faces>";
       });
-  module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(), py::arg("offset") = py::none(),
-             py::arg("seal") = py::none(), py::arg("epsilon") = py::none(),
-             py::arg("precision") = "float", py::arg("threads") = 0,
-             py::arg("progress") = py::none(), kDoc);
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  std::string text = document("wrap", "mesh: object", keywords_of(certify::wrap_options()),
+                              "kaboum.Wrap", kDoc, Runs::Threads);
+  text.replace(text.find("*,"), 2, "*, precision: str = 'float',");
+  module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(), py::arg("precision") = "float",
+             text.c_str());
 }
 
 }  // namespace kaboum::python

@@ -93,6 +93,8 @@ void check(const char* name, const std::vector<Option<Request>>& table) {
 
 TEST(OptionTables, AreSound) {
   check("meshes", certify::mesh_options());
+  check("preparations", certify::preparation_options(certify::PreparedFor::Preparing));
+  check("wraps", certify::wrap_options());
   check("sets", certify::set_options());
   check("robots' sets", certify::robot_set_options());
   check("swept sets", certify::swept_set_options());

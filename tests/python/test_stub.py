@@ -73,6 +73,8 @@ def test_class(name):
 # By function of Python: its tables, its keywords that are no options, and the program that has the tables' options, too.
 RUNS = {"threads", "progress"}
 FRONT_ENDS = {
+    "prepare": (["prepare"], set(), "mesh-prepare"),
+    "wrap": (["wrap"], {"precision"} | RUNS, "mesh-prepare"),
     "decimate": (["decimate"], {"output_format"} | RUNS, "bmesh-decimate"),
     "decompose": (["decompose"], {"no_cache"} | RUNS, "bcd-decompose"),
     "certify_robot": (["shapes", "certify_robot"], {"epsilons", "robot_bodies", "robot_vertices", "partial", "no_cache"} | RUNS,

@@ -20,10 +20,11 @@ namespace kaboum::tools {
 namespace {
 
 struct PrepareToolOptions {
-  std::string input, output, input_format, output_format, epsilon, depfile;
+  std::string input, output, input_format, output_format, depfile;
   bool verify = false;
   certify::PreparationOptions preparation;
-  std::set<std::string> stated;  ///< names of the options of preparation that were stated
+  certify::WrapOptions wrap;     ///< its epsilon; offset and seal are those of preparation
+  std::set<std::string> stated;  ///< names of the library's options that were stated
   UnitOption unit;
   CommonOptions common;
 
@@ -98,12 +99,11 @@ void wrap(PrepareCase& run, bool doubles) {
   certify::WrapRequest request;
   request.offset = o.preparation.offset;
   request.seal = o.preparation.seal;
-  if (!o.epsilon.empty()) {
+  if (o.wrap.epsilon) {
     const double diagonal = geom::bounding_box(run.input.mesh).diagonal();
-    const Length epsilon = parse_length(o.epsilon).value();
-    if (const std::string text = certify::warning_of(epsilon, diagonal); !text.empty())
+    if (const std::string text = certify::warning_of(*o.wrap.epsilon, diagonal); !text.empty())
       note(run, text);
-    request.farthest = epsilon.of(diagonal);
+    request.farthest = o.wrap.epsilon->of(diagonal);
   }
   request.clearance = run.input.deviation;
   request.quads = run.input.bent_quads;
@@ -184,13 +184,7 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
       ->type_name("FILE");
   add_request_options(app, certify::preparation_options(certify::PreparedFor::Preparing),
                       o.preparation, o.stated);
-  app.add_option("--epsilon", o.epsilon,
-                 "With --prepare wrap: no point of the wrap is farther from the triangles than "
-                 "this, or it is refused; a length or a percentage of the diagonal")
-      ->check([](const std::string& s) {
-        return parse_length(s) ? std::string() : "must be a positive number, or a percentage";
-      })
-      ->type_name("LENGTH|P%");
+  add_request_options(app, options_named(certify::wrap_options(), {"epsilon"}), o.wrap, o.stated);
   app.add_flag("--verify", o.verify,
                "Decide exactly whether every triangle of the file lies in the solid (a wrap's "
                "always do, decided in any case)");

@@ -33,6 +33,15 @@ struct PreparationOptions {
   [[nodiscard]] bool holds_exact_faces() const { return mode == Mode::Auto || mode == Mode::Wrap; }
 };
 
+/// Options of a wrap by itself.
+struct WrapOptions {
+  std::optional<Length> offset, seal;  ///< as WrapRequest
+  std::optional<Length> epsilon;       ///< WrapRequest::farthest
+};
+
+/// The options of a wrap: offset, seal, epsilon.
+const std::vector<Option<WrapOptions>>& wrap_options();
+
 /// Purpose of a preparation.
 enum class PreparedFor {
   Bodies,     ///< a set of convex bodies: open meshes are refused
