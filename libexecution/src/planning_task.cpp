@@ -40,7 +40,8 @@ struct PlanningTask::Data {
 
   /// One entry for scene, domain and problem: all that answers depend on beside the questions.
   void open_cache() {
-    std::string all = scene->sha256 + '\n' + texts.domain.text + '\n' + KABOUM_VERSION + '\n';
+    std::string all = scene->sha256 + '\n' + texts.domain.text + '\n' + KABOUM_VERSION + '\n' +
+                      record_of(world::margin_options(), files.margin) + '\n';
     if (texts.problem) all += texts.problem->text;
     key = io::sha256({all.data(), all.size()});
     std::string flaw;
@@ -66,6 +67,7 @@ PlanningTask::PlanningTask(const TaskFiles& files) : data_(std::make_unique<Data
   plan::ExternalBindings bindings;
   if (!files.scene.empty()) {
     d.scene = world::read_scene(files.scene);
+    d.scene->world.margins = world::margins_of(d.scene->world, files.margin);
     manipulation::ExternalOptions options;
     options.counters = d.counters;
     bindings = manipulation::bind_externals(d.scene->world, options);

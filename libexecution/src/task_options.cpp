@@ -64,7 +64,9 @@ const std::vector<Option<TaskFiles>>& task_options() {
           {.name = "plugin",
            .text = "A shared library with external functions; there may be several",
            .plural = "plugins"},
-          [](auto& r) -> auto& { return r.plugins; })};
+          [](auto& r) -> auto& { return r.plugins; }),
+      options_of_part<R>(
+          world::margin_options(), [](auto& r) -> auto& { return r.margin; })[0]};
   return options;
 }
 

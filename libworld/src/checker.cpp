@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/world/checker.h>
+#include <kaboum/world/margins.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
@@ -84,11 +85,12 @@ bool visit_rows(const std::vector<PairRow>& rows, const Skip& skip, const Look& 
 }  // namespace
 
 Contact contact_of(const World& world, const Item& a, const Item& b, const PosedSet& at_a,
-                   const PosedSet& at_b, const collide::BodyPair& bodies) {
+                   const PosedSet& at_b, const collide::BodyPair& bodies, double margin) {
   Contact out{{a, b}, bodies};
+  out.margin = margin;
   const BoundingSet &outer_a = at_a.set(), &outer_b = at_b.set();
-  out.epsilon =
-      (outer_a.epsilon() + outer_b.epsilon() + at_a.error() + at_b.error()) * (1 + 0x1p-50);
+  out.epsilon = (outer_a.epsilon() + outer_b.epsilon() + at_a.error() + at_b.error() + margin) *
+                (1 + 0x1p-50);
   const collide::Gap gap = gap_between(at_a.body(bodies.a), at_b.body(bodies.b));
   out.place = 0.5 * (gap.on_a + gap.on_b);
   const auto inner = [&](const Item& item, const PosedSet& at) -> std::optional<PosedSet> {
@@ -101,7 +103,10 @@ Contact contact_of(const World& world, const Item& a, const Item& b, const Posed
   return out;
 }
 
-Checker::Checker(const World& world, Observer* observer) : world_(&world), observer_(observer) {
+Checker::Checker(const World& world, Observer* observer)
+    : world_(&world),
+      observer_(observer),
+      largest_margin_(world.margins.largest() * (1 + 0x1p-50)) {
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     const RobotModel& robot = world.robots[r];
     const std::size_t n = robot.kinematics.variables.size();
@@ -142,7 +147,10 @@ Checker::Checker(const World& world, Observer* observer) : world_(&world), obser
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const bool proved = items_[i].robot != Item::kObject && proofs_hold[items_[i].robot] != 0;
     for (std::size_t j = i + 1; j < items_.size(); ++j) {
-      const Exempt exempt = is_exempt(world, items_[i], items_[j], proved);
+      // What was proved is that they never meet, not that they are any distance apart.
+      const auto margin = world.margins.between.find({items_[i], items_[j]});
+      const bool kept_apart = margin != world.margins.between.end() && margin->second > 0;
+      const Exempt exempt = is_exempt(world, items_[i], items_[j], proved && !kept_apart);
       if (exempt == Exempt::WithinLimits) add(rows_within_limits_, i, j, items_.size());
       if (exempt != Exempt::Nowhere) continue;
       add(items_[i].robot == Item::kObject ? object_rows_ : robot_rows_, i, j, items_.size());
@@ -207,8 +215,11 @@ void Checker::visit_meeting(const WorldState& state, Scratch& scratch, const Opt
   const auto look = [&](std::size_t i) { return s.balls.look_from(i); };
   visit(state, options, look, [&](std::size_t i, std::size_t j) {
     if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return false;
-    const auto bodies = find_collision(s.set(i), s.set(j), 0, &s.memory[i * items_.size() + j]);
-    return bodies && found(i, j, *bodies);
+    const double margin =
+        largest_margin_ > 0 ? margin_between(*world_, state, items_[i], items_[j]) : 0;
+    const auto bodies =
+        find_collision(s.set(i), s.set(j), margin, &s.memory[i * items_.size() + j]);
+    return bodies && found(i, j, *bodies, margin);
   });
 }
 
@@ -217,8 +228,9 @@ void Checker::visit_contacts(const WorldState& state, Scratch& scratch, const Op
                              const Found& found) const {
   Scratch::Impl& s = *scratch.impl_;
   visit_meeting(
-      state, scratch, options, [&](std::size_t i, std::size_t j, const collide::BodyPair& bodies) {
-        return found(contact_of(*world_, items_[i], items_[j], s.set(i), s.set(j), bodies));
+      state, scratch, options,
+      [&](std::size_t i, std::size_t j, const collide::BodyPair& bodies, double margin) {
+        return found(contact_of(*world_, items_[i], items_[j], s.set(i), s.set(j), bodies, margin));
       });
 }
 

@@ -88,6 +88,7 @@ void Checker::start(Scratch::Impl& s) const {
   s.poses.resize(n);
   s.errors.assign(n, 0);
   s.balls = detail::Balls(n);
+  s.half_margin = 0.5 * largest_margin_;
   for (const collide::PosedSet& set : s.sets) {
     const collide::BoundingSet::Ball& ball = set.set().ball();
     s.hulls.push_back({ball.center, ball.radius * (1 + 1e-8) + 1e-12 * ball.center.lpNorm<1>()});

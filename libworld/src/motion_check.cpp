@@ -108,7 +108,7 @@ class Motion {
     if (answer_.contact && answer_.meets && !meets) return;
     const MovingPairs::Pair& pair = moving_.pairs()[k];
     answer_.contact = contact_of(world_, moving_.mover(pair), moving_.other(pair), moving_.first(k),
-                                 moving_.second(k), bodies);
+                                 moving_.second(k), bodies, pair.margin);
     answer_.meets = meets;
     answer_.contact_segment = segment_;
     answer_.contact_share = at;

@@ -3,6 +3,7 @@
 #include "moving_pairs.h"
 
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/margins.h>
 
 #include <algorithm>
 
@@ -26,6 +27,7 @@ MovingPairs::MovingPairs(const Checker& checker, const WorldState& state, std::s
     if (first && second ? things != nullptr : !is_looked_at(first ? b : a)) continue;
     Pair pair;
     pair.mover = mover_of(first ? a : b, state);
+    pair.margin = margin_between(world_, state, a, b);
     if (first && second) {
       pair.other = mover_of(b, state);
     } else {

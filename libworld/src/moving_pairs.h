@@ -16,7 +16,8 @@ class MovingPairs {
     std::size_t mover = 0;             ///< number of a Mover
     std::optional<std::size_t> other;  ///< another one, else something that rests
     std::size_t rest = 0;
-    double speed = 0;  ///< bound of how fast they approach each other in a segment [length]
+    double speed = 0;   ///< bound of how fast they approach each other in a segment [length]
+    double margin = 0;  ///< that they are to be kept from each other [length]
   };
 
   /// @param scratch  that is used; may be null.
@@ -34,9 +35,11 @@ class MovingPairs {
   void prepare(std::size_t segment);
   /// Puts what moves, of some pairs, where it is at a share of the segment.
   void place(double at, const std::vector<std::size_t>& pairs);
-  /// Whether the outer sets of a pair come within `slack` of each other there.
+  /// Whether the outer sets of a pair come within its margin and `slack` of each other there.
   [[nodiscard]] std::optional<collide::BodyPair> ask(std::size_t pair, double slack) {
-    return find_collision(first(pair), second(pair), slack, &memory_[pair]);
+    const double margin = pairs_[pair].margin;
+    const double within = margin > 0 ? (margin + slack) * (1 + 0x1p-50) : slack;
+    return find_collision(first(pair), second(pair), within, &memory_[pair]);
   }
   [[nodiscard]] const collide::PosedSet& first(std::size_t pair) const {
     return places_[pairs_[pair].mover];

@@ -35,7 +35,8 @@ struct Scratch::Impl {
     double reach;
   };
   std::vector<Hull> hulls;              ///< of all items
-  detail::Balls balls;                  ///< of all items, in the world
+  detail::Balls balls;                  ///< of all items, in the world, with half_margin more
+  double half_margin = 0;               ///< half of the largest margin of a pair [length]
   std::vector<collide::Memory> memory;  ///< of pairs of items, row by row; from their first use on
   std::vector<std::vector<Transform>> links;  ///< of all robots, to their roots
 
@@ -55,7 +56,7 @@ struct Scratch::Impl {
     const Transform& pose = poses[i];
     const auto& [center, reach] = hulls[i];
     // Rounding of the centre is less than 2^-48 of the lengths.
-    balls.put(i, pose * center, reach + error + 1e-12 * pose.translation.lpNorm<1>());
+    balls.put(i, pose * center, reach + error + half_margin + 1e-12 * pose.translation.lpNorm<1>());
   }
 
   /// @throws Error{InvalidArgument} as PosedSet::place
@@ -67,7 +68,8 @@ struct Scratch::Impl {
     return sets[i];
   }
 
-  /// Whether the ball of item j is apart from the box of item i in the frame of i.
+  /// Whether the ball of item j is apart from the box of item i in the frame of i, by more than
+  /// half_margin.
   [[nodiscard]] bool is_beside_box(std::size_t i, std::size_t j) const {
     // Within the radius of the place y of the ball: |p − L⁻¹y| ≤ (1 + D) radius for points p of the
     // box, and |Lᵀy − L⁻¹y| ≤ 2 D |y|.
@@ -75,7 +77,8 @@ struct Scratch::Impl {
     const Vec3 p = poses[i].linear.transpose() * between;
     const geom::Box3& box = sets[i].set().box();
     const Vec3 beside = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
-    const double reach = (balls.radius(j) + errors[i]) * (1 + 1e-8) + 1e-8 * between.lpNorm<1>();
+    const double reach =
+        (balls.radius(j) + errors[i] + half_margin) * (1 + 1e-8) + 1e-8 * between.lpNorm<1>();
     return beside.squaredNorm() > reach * reach;
   }
 };

@@ -431,7 +431,13 @@ class Scene:
     def write(self, path: _Path, *, force: bool = False) -> dict[str, list[str]]: ...
 
 class World:
-    def __init__(self, scene: Scene | _Path) -> None: ...
+    def __init__(
+        self,
+        scene: Scene | _Path,
+        *,
+        # options of margins
+        # end of options
+    ) -> None: ...
     @property
     def unit(self) -> str: ...
     @property

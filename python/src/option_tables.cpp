@@ -13,6 +13,7 @@
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/margins.h>
 
 #include "preparation.h"
 #include "request_options.h"
@@ -38,6 +39,7 @@ void bind_option_tables(py::module_& module) {
         out["verify_cover"] = table_of(keywords_of(verify::cover_verdict_options()));
         out["verify_robot"] = table_of(keywords_of(verify::robot_verdict_options()));
         out["verify_sweep"] = table_of(keywords_of(verify::motion_verdict_options()));
+        out["margins"] = table_of(keywords_of(world::margin_options()));
         out["check"] = table_of(keywords_of(world::state_options()));
         out["check_motion"] = table_of(keywords_of(world::motion_options()));
         out["find_path"] = table_of(keywords_of(motion::path_options()));

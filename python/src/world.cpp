@@ -3,6 +3,7 @@
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/sampled_path.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/margins.h>
 #include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
 #include <pybind11/numpy.h>
@@ -95,6 +96,7 @@ py::dict dict_of(const world::World& world, const world::Contact& contact) {
   out["pair"] = py::make_tuple(world.name_of(contact.items[0]), world.name_of(contact.items[1]));
   out["certain"] = contact.certain;
   out["epsilon"] = contact.epsilon;
+  out["margin"] = contact.margin;
   out["place"] = array_of(contact.place);
   out["depth"] = contact.depth
                      ? py::object(py::make_tuple(contact.depth->lower, contact.depth->upper))
@@ -108,7 +110,9 @@ world::WorldState state_at(const WorldValue& in, std::size_t robot, const std::v
   return state;
 }
 
-WorldValue read_world(const py::object& scene) {
+WorldValue read_world(const py::object& scene, const py::kwargs& given) {
+  world::MarginRequest margin;
+  take_keywords("World", world::margin_options(), given, margin, Runs::Briefly);
   std::optional<world::SceneFile> made = scene_file_of(scene);
   const auto file = path_of(scene);
   if (!made && !file)
@@ -116,8 +120,10 @@ WorldValue read_world(const py::object& scene) {
                 "scene must be a kaboum.Scene, a str or an os.PathLike");
   return run(0, [&] {
     WorldValue out;
-    out.scene = std::make_shared<const world::SceneFile>(made ? std::move(*made)
-                                                              : world::read_scene(*file));
+    auto read =
+        std::make_shared<world::SceneFile>(made ? std::move(*made) : world::read_scene(*file));
+    read->world.margins = world::margins_of(read->world, margin);
+    out.scene = std::move(read);
     out.checker = std::make_shared<const world::Checker>(out.scene->world);
     return out;
   });
@@ -716,13 +722,31 @@ void bind_questions(WorldClass& world) {
   bind_questions_with_options(world);
 }
 
+constexpr const char* kWorldDoc =
+    R"(Of a Scene, or of its file (docs/scene.md).
+
+Parameters
+----------
+scene : Scene or path
+{keywords})";
+
+void bind_init(WorldClass& world) {
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text =
+      document("__init__", "self: kaboum.World, scene: object",
+               keywords_of(world::margin_options()), "None", kWorldDoc, Runs::Briefly);
+  world.def(py::init(&read_world), py::arg("scene"), text.c_str());
+}
+
 void bind_world(py::module_& module) {
   WorldClass world(
       module, "World",
       R"(Robots and objects of a scene by their bounding sets, as kaboum-check and kaboum-move read it.
 
 It never changes. Angles are in radians, lengths in the scene's unit.)");
-  world.def(py::init(&read_world), py::arg("scene"), "Of a Scene, or of its file (docs/scene.md).")
+  bind_init(world);
+  world
       .def_property_readonly(
           "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
       .def_property_readonly(

@@ -15,6 +15,7 @@
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/margins.h>
 
 #include <cmath>
 #include <set>
@@ -109,6 +110,7 @@ TEST(OptionTables, AreSound) {
   check("files of paths", robot::path_options());
   check("shapes of robots", robot::shape_options());
   check("states", world::state_options());
+  check("margins", world::margin_options());
   check("motions", world::motion_options());
   check("pairs of links", world::pair_options());
   check("scenes", scene::scene_options());

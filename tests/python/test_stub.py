@@ -86,6 +86,7 @@ FRONT_ENDS = {
     "verify_cover": (["verify_cover"], RUNS, "bound-verify cover"),
     "verify_robot": (["verify_robot"], RUNS, "bound-verify robot"),
     "verify_sweep": (["verify_sweep"], RUNS, "bound-verify sweep"),
+    "World.__init__": (["margins"], set(), "kaboum-check"),
     "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.check_motion": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),

@@ -22,6 +22,9 @@ std::string describe(const world::World& world, const world::Contact& contact) {
   out << world.name_of(contact.items[0]) << " and " << world.name_of(contact.items[1]);
   if (contact.certain)
     out << " collide";
+  else if (contact.margin > 0)
+    out << " are within the margin of " << contact.margin << ": no farther apart than "
+        << contact.epsilon;
   else
     out << " are within epsilon: no farther apart than " << contact.epsilon;
   if (contact.depth) {
@@ -44,6 +47,7 @@ Json to_json(const world::World& world, const world::Contact& contact) {
               {"pair", {world.name_of(contact.items[0]), world.name_of(contact.items[1])}},
               {"bodies", {contact.bodies.a, contact.bodies.b}},
               {"epsilon", contact.epsilon},
+              {"margin", contact.margin},
               {"place", to_json(contact.place)}};
   if (contact.depth)
     out["depth"] = {{"lower", contact.depth->lower},

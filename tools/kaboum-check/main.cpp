@@ -154,7 +154,8 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
 int check(const tools::CheckOptions& o) {
   if (!o.path.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
-  const tools::SceneFile scene = tools::read_scene(o.scene);
+  tools::SceneFile scene = tools::read_scene(o.scene);
+  scene.world.margins = world::margins_of(scene.world, o.margin);
   std::vector<std::string> inputs = scene.inputs;
   inputs.insert(inputs.end(), {o.path, o.configurations});
   tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}}, inputs);

@@ -4,6 +4,7 @@
 
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/margins.h>
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +29,7 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->excludes(one);
   add_request_options(app, robot::path_options(), o.reading, o.stated);
   add_request_options(app, world::state_options(), o.state, o.stated);
+  add_request_options(app, world::margin_options(), o.margin, o.stated);
   app.add_flag("--distance", o.distance, "Say how far apart the nearest pair is (not with --path)");
   app.add_option(
          "--inside", o.inside,

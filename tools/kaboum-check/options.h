@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/robot/path_file.h>
+#include <kaboum/world/margins.h>
 #include <kaboum/world/motion_check.h>
 
 #include <set>
@@ -22,7 +23,8 @@ struct CheckOptions {
   robot::PathOptions reading;
   world::Checker::Options state;
   world::MotionOptions motion;
-  std::set<std::string> stated;  ///< names of the options of these three that were stated
+  world::MarginRequest margin;
+  std::set<std::string> stated;  ///< names of the options of these that were stated
   bool distance = false;
   CommonOptions common;
 };

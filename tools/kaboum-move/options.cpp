@@ -3,6 +3,7 @@
 #include "options.h"
 
 #include <kaboum/motion/path_options.h>
+#include <kaboum/world/margins.h>
 
 #include <CLI/CLI.hpp>
 
@@ -45,6 +46,7 @@ void describe(CLI::App& app, MoveOptions& o) {
   app.add_flag("--degrees", o.degrees,
                "Angles are in degrees, those read and those in -o and --trajectory [radians]");
   add_request_options(app, motion::path_options(), o.search, o.stated);
+  add_request_options(app, world::margin_options(), o.margin, o.stated);
   describe_execution(app, o);
   add_common_options(app, o.common);
   app.footer(

@@ -2,6 +2,7 @@
 
 #include <kaboum/motion/find_path.h>
 #include <kaboum/motion/trajectory_options.h>
+#include <kaboum/world/margins.h>
 
 #include <set>
 
@@ -19,6 +20,7 @@ struct MoveOptions {
   std::vector<std::string> to;
   motion::PathOptions search;
   motion::TrajectoryOptions execution;
+  world::MarginRequest margin;
   std::set<std::string> stated;  ///< names of the libraries' options that were stated
   bool degrees = false;
   CommonOptions common;

@@ -60,6 +60,7 @@ Json blockers_json(const world::World& world, const PathAnswer& answer) {
 MoveRequest read_request(const MoveOptions& o) {
   MoveRequest r;
   r.scene = read_scene(o.scene);
+  r.scene.world.margins = world::margins_of(r.scene.world, o.margin);
   r.notes = r.scene.notes;
   r.robot = robot_named(r.scene.world, o.robot);
   const robot::Robot& robot = r.kinematics();

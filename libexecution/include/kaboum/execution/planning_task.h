@@ -4,6 +4,7 @@
 #include <kaboum/manipulation/externals.h>
 #include <kaboum/plan/failed_calls.h>
 #include <kaboum/plan/replan.h>
+#include <kaboum/world/margins.h>
 #include <kaboum/world/scene.h>
 
 #include <memory>
@@ -20,6 +21,7 @@ struct TaskFiles {
   std::optional<plan::Language> language = {}, problem_language = {};
   std::vector<std::string> plugins = {}, processes = {};  ///< with functions of a user's own
   double most_seconds = 10;                               ///< for an answer of these. > 0 [s]
+  world::MarginRequest margin = {};                       ///< that is kept in the scene
   bool answers_kept = false;  ///< answers of the scene's functions are taken from the cache
 };
 

@@ -22,14 +22,16 @@ struct PairRow {
 };
 }  // namespace detail
 
-/// Two things whose bounding sets meet.
+/// Two things whose bounding sets meet, or are not farther apart than their margin.
 struct Contact {
   std::array<Item, 2> items;
   collide::BodyPair bodies;  ///< of their outer sets
   /// True if the solids certainly collide: inner sets meet, or the outer ones are exact (ε = 0, no
   /// margin) and do. Else they are at most `epsilon` apart.
   bool certain = false;
-  double epsilon = 0;         ///< sum of both ε, errors of places included [length]
+  /// Sum of both ε, errors of places and the margin included. [length]
+  double epsilon = 0;
+  double margin = 0;          ///< that the two are to be kept from each other [length]
   Vec3 place = Vec3::Zero();  ///< a point of it, rounded, in the world [length]
   /// How deep the sets are in each other, where Checker::measure_depth was asked. `upper` bounds
   /// the depth of the solids, too.
@@ -171,7 +173,7 @@ class Checker {
   void visit(const WorldState& state, const Options& options, const Look& look,
              const Pair& pair) const;
 
-  /// Calls found(i, j, bodies) for the pairs in contact until it is true.
+  /// Calls found(i, j, bodies, margin) for the pairs in contact until it is true.
   template <typename Found>
   void visit_meeting(const WorldState& state, Scratch& scratch, const Options& options,
                      const Found& found) const;
@@ -195,10 +197,12 @@ class Checker {
   std::vector<std::vector<double>> low_, high_;
   std::vector<std::shared_ptr<const detail::LinkPoses>> kinematics_;  ///< of the robots
   std::vector<double> defects_;  ///< of their links' matrices, see defect_of
+  double largest_margin_ = 0;    ///< of all pairs, rounded up [length]
 };
 
 /// Meaning of a contact, and its place.
+/// @param margin  that the two are to be kept from each other
 Contact contact_of(const World& world, const Item& a, const Item& b, const collide::PosedSet& at_a,
-                   const collide::PosedSet& at_b, const collide::BodyPair& bodies);
+                   const collide::PosedSet& at_b, const collide::BodyPair& bodies, double margin);
 
 }  // namespace kaboum::world

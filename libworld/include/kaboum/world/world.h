@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -123,6 +124,15 @@ struct Item {
   }
 };
 
+/// Distances that things are to be kept from each other (margin_between). [length]
+struct Margins {
+  double all = 0;                                      ///< of any two things
+  std::map<Item, double> of = {};                      ///< of a thing from all others
+  std::map<std::array<Item, 2>, double> between = {};  ///< of a pair, the lesser item first
+
+  [[nodiscard]] double largest() const;
+};
+
 /// The part of the world that stays the same during planning.
 struct World {
   std::string unit = "m";
@@ -131,6 +141,7 @@ struct World {
   std::vector<Region> regions;
   std::vector<std::array<Item, 2>> allowed;            ///< contacts that are none
   std::vector<std::optional<Attachment>> attachments;  ///< at first; one for every object
+  Margins margins = {};
 
   /// "ROBOT/LINK" or "OBJECT".
   [[nodiscard]] std::string name_of(const Item& item) const;
