@@ -54,6 +54,14 @@ expect 2 'not 3' "$BIN/kaboum-check" near.json --configuration 0,0,0
 expect 2 'joint needs --path, --configuration' "$BIN/kaboum-check" near.json --joint j2=1.5
 expect 2 'degrees needs' "$BIN/kaboum-check" near.json --degrees
 expect 2 'resolution needs --path' "$BIN/kaboum-check" near.json --configuration 0,0 --resolution 0.1
+# Margins: the tip is 14 from the box.
+shows 0 '^free$' "$BIN/kaboum-check" free.json --margin 13.9
+shows 1 'arm/tip and box are within the margin of 14.1: no farther apart than 14' "$BIN/kaboum-check" free.json --margin 14.1
+shows 1 'arm/tip and box' "$BIN/kaboum-check" free.json --margin box=15 --report margin.json
+grep -q '"margin": 15' margin.json || fail "no margin in the report"
+shows 0 '^free$' "$BIN/kaboum-check" free.json --margin 15 --margin arm,box=13
+expect 2 "no object, robot or link 'arm/tpi'; did you mean 'arm/tip'" "$BIN/kaboum-check" free.json --margin arm/tpi=1
+expect 2 'at least 0' "$BIN/kaboum-check" free.json --margin=-1
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 0.001

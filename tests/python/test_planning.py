@@ -236,6 +236,21 @@ def test_paths_are_free_at_every_instant(cell):
         refused.trajectory()
 
 
+def test_margins_keep_things_apart(cell):
+    world = kaboum.World(cell)
+    home = world.home()
+    between = world.nearest(home)["lower"]
+    near = [kaboum.World(cell, margin=m) for m in (0.0, 100.0, {"": 100.0})]
+    assert [bool(w.check(home)) for w in near] == [True, False, False]
+    pair = near[1].check(home).pairs[0]
+    assert pair["margin"] == 100 and pair["epsilon"] >= 100 and not pair["certain"] and between > 0
+    (robot,), thing = world.robots, world.objects[0]
+    assert not kaboum.World(cell, margin={f"{robot},{thing}": 100.0}).check(home)
+    assert kaboum.World(cell, margin={"": 100.0} | {f"{robot},{o}": 0.0 for o in world.objects}).check(home)
+    with pytest.raises(kaboum.Error, match="no object, robot or link 'nobody'"):
+        kaboum.World(cell, margin={"nobody": 1.0})
+
+
 def test_trajectories_are_those_of_the_program(cell, tmp_path):
     world = kaboum.World(cell)
     home = world.home()
