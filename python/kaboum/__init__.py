@@ -65,6 +65,7 @@ from ._kaboum import (
     verify_sweep,
     wrap,
     write,
+    write_plan_page,
 )
 
 __all__ = [
@@ -121,4 +122,5 @@ __all__ = [
     "verify_sweep",
     "wrap",
     "write",
+    "write_plan_page",
 ]

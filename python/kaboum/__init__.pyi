@@ -466,7 +466,12 @@ class World:
         progress: _Progress | None = None,
     ) -> Path: ...
     def nearest(
-        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        resting: bool = False,
+        progress: _Progress | None = None,
     ) -> dict[str, Any] | None: ...
     def is_inside(
         self,
@@ -950,7 +955,28 @@ def draw_plan(
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
     # end of options
+    progress: _Progress | None = None,
 ) -> str: ...
+def write_plan_page(
+    file: _Path,
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    *,
+    scene: _Path,
+    tree: bool = False,
+    # options of plan_page
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
+    progress: _Progress | None = None,
+) -> list[str]: ...
 def convert_domain(
     domain: _Path,
     problem: _Path | None = None,
@@ -958,4 +984,5 @@ def convert_domain(
     to: _Language,
     input_format: _Language | None = None,
     problem_format: _Language | None = None,
+    progress: _Progress | None = None,
 ) -> str: ...

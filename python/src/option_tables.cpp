@@ -36,6 +36,7 @@ void bind_option_tables(py::module_& module) {
         out["inverse_kinematics"] = table_of(keywords_of(kinematics::inverse_options()));
         out["solve"] = table_of(keywords_of(plan::solve_options()));
         out["task"] = table_of(keywords_of(execution::task_options()));
+        out["plan_page"] = table_of(keywords_of(execution::page_options()));
         out["run_plan"] = table_of(keywords_of(execution::run_options()));
         out["make_scene"] = table_of(keywords_of(scene::scene_options()));
         return out;

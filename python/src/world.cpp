@@ -279,15 +279,19 @@ InclusionValue stays_inside(const WorldValue& in, const std::string& what,
 }
 
 py::object nearest(const WorldValue& in, const py::object& q,
-                   const std::optional<std::string>& robot, bool resting) {
+                   const std::optional<std::string>& robot, bool resting,
+                   const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
   if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
+  Watch watch(progress);
+  const world::Checker::Options options{.resting = resting,
+                                        .progress = [&] { watch("distances of pairs"); }};
   const auto found = run(0, [&] {
     world::Scratch scratch;
-    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, {resting});
+    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, options);
   });
   if (!found) return py::none();
   py::dict out;
@@ -611,7 +615,7 @@ void bind_questions(WorldClass& world) {
            py::arg("progress") = py::none(),
            "Of n x k values, n bools: whether each configuration is free, for certain.")
       .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false,
+           py::arg("resting") = false, py::arg("progress") = py::none(),
            "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
            "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),

@@ -89,7 +89,8 @@ FRONT_ENDS = {
     "inverse_kinematics": (["inverse_kinematics"], {"tip", "base", "pose_of", "reference", "progress"}, "kaboum-ik"),
     "solve": (["solve", "task"], {"scene", "assume", "no_cache"} | RUNS, "kaboum-plan solve"),
     "check_plan": (["task"], {"scene"} | RUNS, "kaboum-plan check"),
-    "draw_plan": (["task"], {"scene", "format", "tree"}, "kaboum-plan show"),
+    "draw_plan": (["task"], {"scene", "format", "tree", "progress"}, "kaboum-plan show"),
+    "write_plan_page": (["plan_page", "task"], {"scene", "tree", "progress"}, "kaboum-plan show"),
     "run_plan": (["run_plan", "task"], {"scene", "outcomes", "trajectories"} | RUNS, "kaboum-plan run"),
 }
 
