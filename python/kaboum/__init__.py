@@ -44,6 +44,7 @@ from ._kaboum import (
     decimate,
     decimate_robot,
     decompose,
+    draw,
     draw_plan,
     hausdorff,
     inverse_kinematics,
@@ -65,6 +66,7 @@ from ._kaboum import (
     verify_sweep,
     wrap,
     write,
+    write_heatmap,
     write_plan_page,
 )
 
@@ -101,6 +103,7 @@ __all__ = [
     "decimate",
     "decimate_robot",
     "decompose",
+    "draw",
     "draw_plan",
     "hausdorff",
     "inverse_kinematics",
@@ -122,5 +125,6 @@ __all__ = [
     "verify_sweep",
     "wrap",
     "write",
+    "write_heatmap",
     "write_plan_page",
 ]

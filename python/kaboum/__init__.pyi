@@ -107,6 +107,7 @@ class BoundingMesh:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path) -> None: ...
 
 class ConvexSet:
     def __init__(self, bodies: list[Any], *, radii: ArrayLike = 0.0) -> None: ...
@@ -141,6 +142,7 @@ class CertifiedSet:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path, *, explode: float = 0.5) -> None: ...
     def __len__(self) -> int: ...
 
 class SweptSet:
@@ -163,6 +165,7 @@ class SweptSet:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path) -> None: ...
     def __len__(self) -> int: ...
 
 class Distances:
@@ -224,6 +227,8 @@ class CertifiedRobot:
         no_cache: bool = False,
         progress: _Progress | None = None,
     ) -> dict[str, list[str]]: ...
+    def write_preview(self, file: _Path, *, explode: float = 0.5) -> None: ...
+    def write_page(self, file: _Path) -> None: ...
 
 class EnclosedRobot:
     @property
@@ -473,6 +478,9 @@ class World:
         resting: bool = False,
         progress: _Progress | None = None,
     ) -> dict[str, Any] | None: ...
+    def draw(
+        self, q: ArrayLike, file: _Path | None = None, *, robot: str | None = None, resting: bool = False
+    ) -> bytes: ...
     def is_inside(
         self,
         what: str,
@@ -656,6 +664,34 @@ def hausdorff(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Distances: ...
+def write_heatmap(
+    file: _Path,
+    a: _Mesh | _Set,
+    b: _Mesh | _Set,
+    *,
+    # options of hausdorff
+    solid: bool = False,
+    gap: float = 0.001,
+    samples: int = 100000,
+    seed: int = 1,
+    backend: Literal["embree", "own"] = "embree",
+    # end of options
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Distances: ...
+def draw(
+    shapes: _Mesh | ConvexSet | CertifiedSet | list[Any],
+    file: _Path | None = None,
+    *,
+    # options of draw
+    width: int = 1500,
+    height: int = 620,
+    titles: str = "",
+    view: str = "-50,28",
+    colours: str = "grey,blue,orange",
+    edges: bool = False,
+    # end of options
+) -> bytes: ...
 def verify_mesh(
     original: _Mesh,
     approximation: _Mesh | ConvexSet | CertifiedSet,

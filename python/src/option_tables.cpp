@@ -7,6 +7,7 @@
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/path_options.h>
+#include <kaboum/picture/panels.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/scene/scene_options.h>
@@ -27,6 +28,7 @@ void bind_option_tables(py::module_& module) {
         out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
         out["shapes"] = table_of(keywords_of(robot::shape_options()));
+        out["draw"] = table_of(keywords_of(picture::panel_options()));
         out["sweep"] = table_of(keywords_of(certify::swept_set_options()));
         out["hausdorff"] = table_of(keywords_of(distance::compare_options()));
         out["check"] = table_of(keywords_of(world::state_options()));

@@ -24,14 +24,6 @@ using Drawing = std::string (*)(const plan::Model&, const plan::Plan&, const pla
 constexpr std::array<std::pair<const char*, Drawing>, 3> kDrawings{
     {{"text", &plan::plan_text}, {"dot", &plan::plan_dot}, {"svg", &plan::plan_svg}}};
 
-std::string required_path(const py::object& value, const char* argument) {
-  const auto path = path_of(value);
-  if (!path)
-    throw Error(ErrorCode::InvalidArgument,
-                std::string(argument) + " must be a str or an os.PathLike");
-  return *path;
-}
-
 std::string text_of_file(const std::string& path) {
   const std::vector<char> bytes = io::read_file(path);
   return {bytes.begin(), bytes.end()};

@@ -80,6 +80,8 @@ FRONT_ENDS = {
     "decimate_robot": (["shapes", "decimate_robot"], {"epsilons", "output_format", "partial", "no_cache"} | RUNS, "bmesh-decimate"),
     "sweep": (["sweep"], {"verify", "no_cache"} | RUNS, "sweep-approx"),
     "hausdorff": (["hausdorff"], RUNS, "hausdorff-eval"),
+    "write_heatmap": (["hausdorff"], RUNS, "hausdorff-eval"),
+    "draw": (["draw"], set(), "mesh-picture"),
     "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.check_motion": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
