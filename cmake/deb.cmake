@@ -28,7 +28,7 @@ endif()
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libkaboum-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libtbb-dev, libembree-dev, libgmp-dev, libmpfr-dev, libtinyxml2-dev, libzip-dev")
+    "libeigen3-dev, libtbb-dev, libembree-dev, libgmp-dev, libmpfr-dev, libpng-dev, libtinyxml2-dev, libzip-dev")
 if(yaml-cpp_FOUND)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libyaml-cpp-dev")
 endif()

@@ -106,4 +106,11 @@ const std::vector<Option<PlanRunRequest>>& run_options() {
   return options;
 }
 
+const std::vector<Option<PlanPageOptions>>& page_options() {
+  static const std::vector<Option<PlanPageOptions>> options{option<PlanPageOptions>(
+      option_named(robot::shape_options(), "package-path"),
+      [](auto& r) -> auto& { return r.packages; })};
+  return options;
+}
+
 }  // namespace kaboum::execution

@@ -45,6 +45,7 @@ from ._kaboum import (
     decimate,
     decimate_robot,
     decompose,
+    draw,
     draw_plan,
     hausdorff,
     inverse_kinematics,
@@ -66,6 +67,8 @@ from ._kaboum import (
     verify_sweep,
     wrap,
     write,
+    write_heatmap,
+    write_plan_page,
 )
 
 __all__ = [
@@ -102,6 +105,7 @@ __all__ = [
     "decimate",
     "decimate_robot",
     "decompose",
+    "draw",
     "draw_plan",
     "hausdorff",
     "inverse_kinematics",
@@ -123,4 +127,6 @@ __all__ = [
     "verify_sweep",
     "wrap",
     "write",
+    "write_heatmap",
+    "write_plan_page",
 ]

@@ -105,6 +105,7 @@ class BoundingMesh:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path) -> None: ...
 
 class ConvexSet:
     def __init__(self, bodies: list[Any], *, radii: ArrayLike = 0.0) -> None: ...
@@ -139,6 +140,7 @@ class CertifiedSet:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path, *, explode: float = 0.5) -> None: ...
     def __len__(self) -> int: ...
 
 class SweptSet:
@@ -161,6 +163,7 @@ class SweptSet:
     @property
     def bytes(self) -> bytes: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path) -> None: ...
     def __len__(self) -> int: ...
 
 class Distances:
@@ -222,6 +225,8 @@ class CertifiedRobot:
         no_cache: bool = False,
         progress: _Progress | None = None,
     ) -> dict[str, list[str]]: ...
+    def write_preview(self, file: _Path, *, explode: float = 0.5) -> None: ...
+    def write_page(self, file: _Path) -> None: ...
 
 class EnclosedRobot:
     @property
@@ -491,8 +496,16 @@ class World:
         progress: _Progress | None = None,
     ) -> Path: ...
     def nearest(
-        self, q: ArrayLike, *, robot: str | None = None, resting: bool = False
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        resting: bool = False,
+        progress: _Progress | None = None,
     ) -> dict[str, Any] | None: ...
+    def draw(
+        self, q: ArrayLike, file: _Path | None = None, *, robot: str | None = None, resting: bool = False
+    ) -> bytes: ...
     def is_inside(
         self,
         what: str,
@@ -675,6 +688,34 @@ def hausdorff(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Distances: ...
+def write_heatmap(
+    file: _Path,
+    a: _Mesh | _Set,
+    b: _Mesh | _Set,
+    *,
+    # options of hausdorff
+    solid: bool = False,
+    gap: float = 0.001,
+    samples: int = 100000,
+    seed: int = 1,
+    backend: Literal["embree", "own"] = "embree",
+    # end of options
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Distances: ...
+def draw(
+    shapes: _Mesh | ConvexSet | CertifiedSet | list[Any],
+    file: _Path | None = None,
+    *,
+    # options of draw
+    width: int = 1500,
+    height: int = 620,
+    titles: str = "",
+    view: str = "-50,28",
+    colours: str = "grey,blue,orange",
+    edges: bool = False,
+    # end of options
+) -> bytes: ...
 def verify_mesh(
     original: _Mesh,
     approximation: _Mesh | ConvexSet | CertifiedSet,
@@ -946,7 +987,28 @@ def draw_plan(
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
     # end of options
+    progress: _Progress | None = None,
 ) -> str: ...
+def write_plan_page(
+    file: _Path,
+    domain: _Path,
+    problem: _Path | None,
+    plan: Solution | dict[str, Any] | _Path,
+    *,
+    scene: _Path,
+    tree: bool = False,
+    # options of plan_page
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    # options of task
+    input_format: Literal["kpl", "pddl"] | None = None,
+    problem_format: Literal["kpl", "pddl"] | None = None,
+    processes: _Path | Sequence[_Path] | None = None,
+    process_timeout: float = 10.0,
+    plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
+    progress: _Progress | None = None,
+) -> list[str]: ...
 def convert_domain(
     domain: _Path,
     problem: _Path | None = None,
@@ -954,4 +1016,5 @@ def convert_domain(
     to: _Language,
     input_format: _Language | None = None,
     problem_format: _Language | None = None,
+    progress: _Progress | None = None,
 ) -> str: ...

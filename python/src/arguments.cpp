@@ -132,4 +132,12 @@ std::vector<std::string> spelled(std::vector<std::string> notes) {
   return notes;
 }
 
+std::string required_path(const py::object& value, const char* argument) {
+  const auto path = path_of(value);
+  if (!path)
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(argument) + " must be a str or an os.PathLike");
+  return *path;
+}
+
 }  // namespace kaboum::python

@@ -68,5 +68,7 @@ auto notes_of(std::vector<std::string> Value::*notes) {
 
 /// A str or os.PathLike as a path; nullopt: it is neither.
 std::optional<std::string> path_of(const py::object& value);
+/// The same. @throws Error{InvalidArgument} naming the argument: it is neither
+std::string required_path(const py::object& value, const char* argument);
 
 }  // namespace kaboum::python

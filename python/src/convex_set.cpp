@@ -8,6 +8,9 @@
 #include <kaboum/certify/set_options.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/file_unit.h>
+#include <kaboum/page/set_page.h>
+#include <kaboum/picture/bodies.h>
+#include <kaboum/picture/png_file.h>
 
 #include <cmath>
 #include <filesystem>
@@ -15,6 +18,7 @@
 
 #include "arguments.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "running.h"
 
@@ -105,6 +109,16 @@ radii : float or array (n,)
       });
 }
 
+void write_set_preview(const CertifiedSetValue& s, const py::object& file, double explode) {
+  write_preview(
+      file,
+      [&] {
+        return page::page_of_set({s.file.empty() ? "the mesh" : s.file, *s.mesh, s.preparation},
+                                 s.made.certificate(), s.made.artefact(), remedy_of_python);
+      },
+      [&] { return picture::encode_png(picture::draw_bodies(s.made.artefact(), explode)); });
+}
+
 void bind_certified(py::module_& module) {
   using Value = CertifiedSetValue;
   py::class_<Value>(
@@ -153,6 +167,14 @@ It may be given wherever a ConvexSet is expected.)")
           py::arg("path"),
           "Writes the certified .glb container, an .obj with one object per body, or a folder of "
           "STL files.")
+      .def(
+          "write_preview", &write_set_preview, py::arg("file"), py::kw_only(),
+          py::arg("explode") = picture::kExplode,
+          R"(Writes a page (.html) that shows the bodies over the mesh, or a picture (.png) of the bodies,
+as `bcd-decompose --preview`.
+
+The picture has a second panel, with the bodies moved apart by the share `explode` of their distance
+from the middle; 0: it has none.)")
       .def("__len__", [](const Value& s) { return s.made.artefact().bodies.size(); })
       .def("__repr__", [](const Value& s) {
         return "<kaboum.CertifiedSet of " + std::to_string(s.made.artefact().bodies.size()) +
@@ -204,6 +226,8 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
     CertifiedSetValue out;
     out.notes = value.notes;
     if (!value.sha256.empty()) out.file = value.source;
+    out.mesh = value.mesh;
+    out.preparation = r.preparation;
     const certify::SetCache cache(certify::SetCache::default_folder());
     auto found = certify::find_or_certify(
         *value.mesh, value.sha256, r, running.no_cache ? nullptr : &cache,

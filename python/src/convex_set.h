@@ -20,6 +20,8 @@ struct CertifiedSetValue {
   bool cached = false;
   std::vector<std::string> notes;
   std::string file = {};  ///< that the mesh was read from; empty: from none
+  std::shared_ptr<const geom::Mesh> mesh = nullptr;  ///< that it is of
+  geom::PrepareOptions preparation = {};             ///< of the mesh
 
   /// Keeps what it looks into.
   [[nodiscard]] std::shared_ptr<const geom::ConvexSet> set() const {

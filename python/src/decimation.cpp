@@ -4,12 +4,14 @@
 #include <kaboum/certify/mesh_bytes.h>
 #include <kaboum/certify/mesh_file.h>
 #include <kaboum/certify/mesh_options.h>
+#include <kaboum/page/mesh_page.h>
 
 #include <filesystem>
 
 #include "answers.h"
 #include "arguments.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "running.h"
 
@@ -39,6 +41,8 @@ struct BoundingMesh {
   std::vector<std::string> notes;
   bool wrapped = false;
   double diagonal = 0;
+  std::shared_ptr<const certify::BoundedMesh> series = nullptr;  ///< that it is one of
+  std::string name = {};                                         ///< of the original
 
   [[nodiscard]] const MeshCertificate& certificate() const { return made.certificate(); }
   /// Keeps what it looks into.
@@ -105,6 +109,13 @@ void write(const BoundingMesh& m, const py::object& path) {
   });
 }
 
+void write_mesh_preview(const BoundingMesh& m, const py::object& file) {
+  page::MeshWords words{m.name, {}, spelled(m.notes)};
+  for (std::size_t i = 0; i < m.series->series.meshes.size(); ++i)
+    words.summaries.push_back(page::summary_of(*m.series, i));
+  write_preview(file, [&] { return page::page_of_meshes(words, *m.series); }, {});
+}
+
 void bind_class(py::module_& module) {
   const auto of = [](auto member) {
     return [member](const BoundingMesh& m) { return m.certificate().*member; };
@@ -163,6 +174,9 @@ It may be given wherever a mesh is expected.)")
           "The certified file, in the format that was asked for.")
       .def("write", &write, py::arg("path"),
            "Writes the certified file; another extension: the same coordinates in that format.")
+      .def("write_preview", &write_mesh_preview, py::arg("file"),
+           "Writes a page (.html) that shows the result over the original, of a list all results, "
+           "as `bmesh-decimate --preview`.")
       .def("__repr__", [](const BoundingMesh& m) {
         return std::string("<kaboum.BoundingMesh (") + direction_of(m) + ") of " +
                std::to_string(m.certificate().vertices) + " vertices>";
@@ -220,9 +234,12 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshO
       for (std::string& text : certify::notes_of(made)) notes.push_back(std::move(text));
     }
     if (made.series.meshes.empty()) throw certify::TooCoarse(name);
+    if (original) made.original = *original;
+    const auto kept = std::make_shared<const certify::BoundedMesh>(std::move(made));
     std::vector<BoundingMesh> out;
-    for (const CertifiedMesh& one : made.series.meshes)
-      out.push_back({one, request.format, notes, made.wrap.has_value(), made.series.plan.diagonal});
+    for (const CertifiedMesh& one : kept->series.meshes)
+      out.push_back({one, request.format, notes, kept->wrap.has_value(), kept->series.plan.diagonal,
+                     kept, name});
     return out;
   });
 }

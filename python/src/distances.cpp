@@ -1,6 +1,9 @@
-// Distances: kaboum.hausdorff, as hausdorff-eval.
+// Distances: kaboum.hausdorff and write_heatmap, as hausdorff-eval.
 
 #include <kaboum/distance/compare_options.h>
+#include <kaboum/page/distance_page.h>
+
+#include <filesystem>
 
 #include "arguments.h"
 #include "convex_set.h"
@@ -54,6 +57,33 @@ Distances hausdorff(const py::object& a, const py::object& b, const py::kwargs& 
   });
 }
 
+/// What a shape is called on a page.
+std::string name_of(const py::object& shape, const char* argument) {
+  const auto path = path_of(shape);
+  return path ? std::filesystem::path(*path).filename().string() : argument;
+}
+
+Distances write_heatmap(const py::object& file, const py::object& a, const py::object& b,
+                        const py::kwargs& given) {
+  const std::string path = required_path(file, "file");
+  if (!page::is_heatmap(path))
+    throw Error(ErrorCode::InvalidArgument, "file: give a .png, .html or .ply file, not " + path);
+  distance::CompareOptions options;
+  const RunKeywords running =
+      take_keywords("write_heatmap", distance::compare_options(), given, options, Runs::Threads);
+  distance::Shape first = shape_of(a, "a"), second = shape_of(b, "b");
+  const std::array<std::string, 2> names{name_of(a, "a"), name_of(b, "b")};
+  Watch watch(running.progress);
+  options.progress = watch.hook();
+  return run(running.threads, [&] {
+    const distance::Comparison comparison(std::move(first), std::move(second), options);
+    Distances out{comparison.measure(), comparison.diagonal()};
+    watch("colours");
+    io::write_file(path, page::heatmap(path, {comparison, out.found, names, options.solid}));
+    return out;
+  });
+}
+
 void bind_class(py::module_& module) {
   py::class_<Distances>(module, "Distances",
                         R"(Distances between two shapes; brackets are certified. [length])")
@@ -96,6 +126,22 @@ Raises
 Error
     'invalid_input': no triangles, numbers that are not finite, no solid.)";
 
+constexpr const char* kHeatmapDoc =
+    R"(Measures distances as `hausdorff`, and draws them, as `hausdorff-eval --heatmap`.
+
+Parameters
+----------
+file : path
+    .png draws both shapes with a scale, .html is a page that shows them in a browser, .ply is the
+    first one with colours and the distance as `quality`.
+a, b
+    As for `hausdorff`.
+{keywords}
+
+Returns
+-------
+Distances)";
+
 }  // namespace
 
 void bind_distances(py::module_& module) {
@@ -106,6 +152,11 @@ void bind_distances(py::module_& module) {
       document("hausdorff", "a: object, b: object", keywords_of(distance::compare_options()),
                "kaboum.Distances", kDoc, Runs::Threads);
   module.def("hausdorff", &hausdorff, py::arg("a"), py::arg("b"), text.c_str());
+  const std::string drawing = document("write_heatmap", "file: object, a: object, b: object",
+                                       keywords_of(distance::compare_options()), "kaboum.Distances",
+                                       kHeatmapDoc, Runs::Threads);
+  module.def("write_heatmap", &write_heatmap, py::arg("file"), py::arg("a"), py::arg("b"),
+             drawing.c_str());
 }
 
 }  // namespace kaboum::python

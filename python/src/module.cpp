@@ -27,6 +27,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_scenes(module);
   bind_worlds(module);
   bind_batches(module);
+  bind_pictures(module);
   bind_option_tables(module);
   module.attr("__name__") = name;
 }

@@ -8,6 +8,7 @@
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/trajectory_options.h>
+#include <kaboum/picture/panels.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/scene/scene_options.h>
@@ -33,6 +34,7 @@ void bind_option_tables(py::module_& module) {
         out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
         out["shapes"] = table_of(keywords_of(robot::shape_options()));
+        out["draw"] = table_of(keywords_of(picture::panel_options()));
         out["sweep"] = table_of(keywords_of(certify::swept_set_options()));
         out["hausdorff"] = table_of(keywords_of(distance::compare_options()));
         out["verify_mesh"] = table_of(keywords_of(verify::mesh_verdict_options()));
@@ -48,6 +50,7 @@ void bind_option_tables(py::module_& module) {
         out["inverse_kinematics"] = table_of(keywords_of(kinematics::inverse_options()));
         out["solve"] = table_of(keywords_of(plan::solve_options()));
         out["task"] = table_of(keywords_of(execution::task_options()));
+        out["plan_page"] = table_of(keywords_of(execution::page_options()));
         out["run_plan"] = table_of(keywords_of(execution::run_options()));
         out["make_scene"] = table_of(keywords_of(scene::scene_options()));
         return out;

@@ -1,5 +1,7 @@
-// Planning: kaboum.solve, check_plan, draw_plan, run_plan and convert_domain, as kaboum-plan.
+// Planning: kaboum.solve, check_plan, draw_plan, write_plan_page, run_plan and convert_domain, as
+// kaboum-plan.
 
+#include <kaboum/execution/plan_page.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
@@ -21,14 +23,6 @@ constexpr std::array<std::pair<const char*, plan::Language>, 2> kLanguages{
 using Drawing = std::string (*)(const plan::Model&, const plan::Plan&, const plan::PlanProgress&);
 constexpr std::array<std::pair<const char*, Drawing>, 3> kDrawings{
     {{"text", &plan::plan_text}, {"dot", &plan::plan_dot}, {"svg", &plan::plan_svg}}};
-
-std::string required_path(const py::object& value, const char* argument) {
-  const auto path = path_of(value);
-  if (!path)
-    throw Error(ErrorCode::InvalidArgument,
-                std::string(argument) + " must be a str or an os.PathLike");
-  return *path;
-}
 
 std::string text_of_file(const std::string& path) {
   const std::vector<char> bytes = io::read_file(path);
@@ -78,6 +72,9 @@ std::vector<Keyword> solve_keywords() {
 }
 std::vector<Keyword> run_keywords() {
   return keywords_of(execution::run_options()) + task_keywords();
+}
+std::vector<Keyword> page_keywords() {
+  return keywords_of(execution::page_options()) + task_keywords();
 }
 
 struct SolutionValue {
@@ -256,14 +253,47 @@ std::string draw_plan(const py::object& domain, const py::object& problem, const
                       const py::kwargs& given_keywords) {
   py::dict keywords = given_keywords;
   const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
-  require_all_taken("draw_plan", keywords, task_keywords(), Runs::Briefly);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
+  require_all_taken("draw_plan", keywords, task_keywords(), Runs::Alone);
   const PlanText given(plan);
   const Drawing draw = value_of(kDrawings, format, "format");
+  Watch watch(running.progress);
+  const plan::PlanProgress drawing = [&] { watch("drawing the plan"); };
   return run(0, [&] {
+    watch("reading the plan");
     const execution::PlanningTask task(files);
     const plan::Model model = task.load();
-    const plan::Plan read = given.read(model);
-    return draw(model, tree ? plan::expand_tree(read) : read, {});
+    plan::Plan read = given.read(model);
+    if (tree) read = plan::expand_tree(read, plan::kMostTreeNodes, drawing);
+    return draw(model, read, drawing);
+  });
+}
+
+std::vector<std::string> write_plan_page(const py::object& file, const py::object& domain,
+                                         const py::object& problem, const py::object& plan,
+                                         const py::object& scene, bool tree,
+                                         const py::kwargs& given_keywords) {
+  py::dict keywords = given_keywords;
+  const std::string path = required_path(file, "file");
+  const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  execution::PlanPageOptions options{.tree = tree};
+  take_options(execution::page_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
+  require_all_taken("write_plan_page", keywords, page_keywords(), Runs::Alone);
+  if (files.scene.empty())
+    throw Error(ErrorCode::InvalidArgument, "scene is needed: what is there to be seen");
+  const PlanText given(plan);
+  Watch watch(running.progress);
+  options.progress = watch.hook();
+  return run(0, [&] {
+    watch("reading the plan");
+    const execution::PlanningTask task(files);
+    const plan::Model model = task.load();
+    const execution::PlanPage page = execution::plan_page(task, model, given.read(model), options);
+    io::write_file(path, page.html);
+    std::vector<std::string> notes = task.scene()->notes;
+    notes.insert(notes.end(), page.notes.begin(), page.notes.end());
+    return spelled(std::move(notes));
   });
 }
 
@@ -350,14 +380,18 @@ py::list replans_of(const execution::PlanRunReport& r) {
 
 std::string convert_domain(const py::object& domain, const py::object& problem,
                            const std::string& to, const std::optional<std::string>& input_format,
-                           const std::optional<std::string>& problem_format) {
+                           const std::optional<std::string>& problem_format,
+                           const py::object& progress) {
   py::dict keywords;
   keywords["input_format"] = input_format;
   keywords["problem_format"] = problem_format;
   const execution::TaskFiles files = files_of(domain, problem, py::none(), keywords);
   const plan::Language language = value_of(kLanguages, to, "to");
+  Watch watch(progress);
   return run(0, [&] {
+    watch("reading the domain");
     const plan::TaskTexts texts = execution::read_texts(files);
+    watch("converting the domain");
     return plan::convert(texts.domain, texts.problem ? &*texts.problem : nullptr, language);
   });
 }
@@ -481,6 +515,25 @@ Returns
 -------
 str)";
 
+constexpr const char* kPageDoc =
+    R"(Writes a page that plays a plan in its scene, every branch of it, as `kaboum-plan show --html`.
+
+Parameters
+----------
+file : path
+    One HTML file, which needs nothing besides itself (docs/pages.md).
+domain, problem, plan
+    As for `check_plan`.
+scene : path
+tree : bool
+    Expand shared sub-plans.
+{keywords}
+
+Returns
+-------
+list of str
+    What a user should know of scene and page.)";
+
 constexpr const char* kConvertDoc =
     R"(A domain, with its problem if there is one, in another language, as `kaboum-plan convert`.
 
@@ -490,6 +543,8 @@ domain, problem, input_format, problem_format
     As for `solve`.
 to : str
     'kpl' or 'pddl'.
+progress
+    As of `solve`.
 
 Returns
 -------
@@ -518,10 +573,16 @@ void bind_functions_with_options(py::module_& module) {
              py::kw_only(), py::arg("scene") = py::none(), checking.c_str());
   const std::string drawing = document(
       "draw_plan", of_plan + "format: str = 'svg', tree: bool = False, scene: object = None",
-      task_keywords(), "str", kDrawDoc, Runs::Briefly);
+      task_keywords(), "str", kDrawDoc, Runs::Alone);
   module.def("draw_plan", &draw_plan, py::arg("domain"), py::arg("problem"), py::arg("plan"),
              py::kw_only(), py::arg("format") = "svg", py::arg("tree") = false,
              py::arg("scene") = py::none(), drawing.c_str());
+  const std::string paging =
+      document("write_plan_page", "file: object, " + of_plan + "scene: object, tree: bool = False",
+               page_keywords(), "list[str]", kPageDoc, Runs::Alone);
+  module.def("write_plan_page", &write_plan_page, py::arg("file"), py::arg("domain"),
+             py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("scene"),
+             py::arg("tree") = false, paging.c_str());
   const std::string carrying = document(
       "run_plan", of_plan + "scene: object, outcomes: object = 'all', trajectories: object = None",
       run_keywords(), "kaboum.PlanRun", kRunDoc, Runs::Threads);
@@ -537,7 +598,7 @@ void bind_planning(py::module_& module) {
   bind_results(module);
   module.def("convert_domain", &convert_domain, py::arg("domain"), py::arg("problem") = py::none(),
              py::kw_only(), py::arg("to"), py::arg("input_format") = py::none(),
-             py::arg("problem_format") = py::none(), kConvertDoc);
+             py::arg("problem_format") = py::none(), py::arg("progress") = py::none(), kConvertDoc);
   bind_functions_with_options(module);
 }
 

@@ -5,13 +5,20 @@
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/certify/set_options.h>
+#include <kaboum/page/robot_page.h>
+#include <kaboum/page/set_page.h>
+#include <kaboum/picture/bodies.h>
+#include <kaboum/picture/png_file.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/certified_folder.h>
 #include <kaboum/robot_folder/loaders.h>
 #include <kaboum/scene/robot_pairs.h>
 
+#include <chrono>
+
 #include "convex_set.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "running.h"
 
@@ -119,8 +126,16 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons
     hooks.note = [&](const std::string& file, const std::string& text) {
       notes.push_back(file + ": " + text);
     };
+    std::vector<double> seconds;
+    using Clock = std::chrono::steady_clock;
+    hooks.made = [&, last = Clock::now()](const certify::CertifiedLinkMesh&) mutable {
+      seconds.push_back(std::chrono::duration<double>(Clock::now() - last).count());
+      last = Clock::now();
+    };
     certify::CertifiedRobot made = certify::certify_robot(*value.file, r, cache, hooks);
-    return CertifiedValue{std::move(made), value.file, std::move(notes)};
+    return CertifiedValue{std::move(made), value.file, std::move(notes),
+                          std::make_shared<const certify::RobotRequest>(std::move(r)),
+                          std::move(seconds)};
   });
 }
 
@@ -190,6 +205,37 @@ Raises
 Error
     'output_failed' where something else is in the folder's place; 'invalid_argument'.)";
 
+void write_robot_preview(const CertifiedValue& robot, const py::object& file, double explode) {
+  write_preview(
+      file,
+      [&] {
+        const certify::SetRequest& set = robot.request->set;
+        return page::page_of_robot(
+            {robot.file->path.string(), set.unit, set.parameters(), remedy_of_python}, *robot.file,
+            robot.made, certify::verdicts(robot.made));
+      },
+      [&] {
+        return picture::encode_png(
+            picture::draw_bodies(page::at_rest(robot.file->robot, robot.made.links), explode));
+      });
+}
+
+void write_robot_page(const CertifiedValue& robot, const py::object& file) {
+  write_preview(
+      file,
+      [&] {
+        return page::to_html(
+            {.robot = robot.file->robot.name,
+             .source = robot.file->path.string(),
+             .tool = "kaboum " KABOUM_VERSION " " + robot.request->parameters(),
+             .unit = robot.request->set.unit,
+             .notes = spelled(robot.notes),
+             .links = page::page_links(*robot.file, robot.made, *robot.request, robot.seconds),
+             .counts = page::counts_of(robot.made)});
+      },
+      {});
+}
+
 void bind_certified(py::module_& module) {
   using Value = CertifiedValue;
   py::class_<Value>(module, "CertifiedRobot",
@@ -227,6 +273,18 @@ void bind_certified(py::module_& module) {
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
            py::arg("srdf") = false, py::arg("no_cache") = false, py::arg("progress") = py::none(),
            kWriteDoc)
+      .def(
+          "write_preview", &write_robot_preview, py::arg("file"), py::kw_only(),
+          py::arg("explode") = picture::kExplode,
+          R"(Writes a page (.html) that shows the bodies over the links' shapes, or a picture (.png) of the
+bodies, at zero joint values, as `bcd-decompose ROBOT --preview`.
+
+The picture has a second panel, with the bodies moved apart by the share `explode` of their distance
+from the middle; 0: it has none.)")
+      .def("write_page", &write_robot_page, py::arg("file"),
+           "Writes a page (.html) with a row for each link: pictures, counts, verdict; as "
+           "`bcd-decompose ROBOT --html-report`, without the files of a folder and the command "
+           "that checks them.")
       .def("__repr__", [](const Value& r) {
         return "<kaboum.CertifiedRobot of " + std::to_string(r.made.links.size()) + " links>";
       });

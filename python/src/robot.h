@@ -22,6 +22,8 @@ struct CertifiedValue {
   certify::CertifiedRobot made;
   std::shared_ptr<const robot::RobotFile> file;
   std::vector<std::string> notes;
+  std::shared_ptr<const certify::RobotRequest> request = nullptr;
+  std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
 };
 
 /// A Robot, or the name of its file. @throws as robot::read_robot

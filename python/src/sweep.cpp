@@ -1,6 +1,8 @@
 // Swept volumes: kaboum.sweep, as sweep-approx, and verify_sweep, as `bound-verify sweep`.
 
 #include <kaboum/certify/sweep_options.h>
+#include <kaboum/page/sweep_page.h>
+#include <kaboum/page/sweep_picture.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/verify/robot_options.h>
@@ -8,6 +10,7 @@
 #include "answers.h"
 #include "convex_set.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "robot.h"
 #include "running.h"
@@ -41,9 +44,18 @@ robot::Path path_from(const py::object& value, const robot::Robot& robot,
   return path;
 }
 
+/// What a set is swept by.
+struct SweptBy {
+  robot::RobotFile robot;
+  certify::CertifiedBodies bodies;
+  robot::Path path;
+  std::string path_name;
+};
+
 struct SweptSet {
   certify::CertifiedSweep made;
   std::vector<std::string> notes;
+  std::shared_ptr<const SweptBy> by = nullptr;
 
   [[nodiscard]] std::shared_ptr<const geom::ConvexSet> set() const {
     auto kept = std::make_shared<certify::CertifiedSweep>(made);
@@ -55,6 +67,22 @@ const char* claim_of(const certify::SweepCertificate& c) {
   return c.motion == certify::MotionClaim::Decided  ? "decided"
          : c.motion == certify::MotionClaim::Proved ? "proved"
                                                     : "none";
+}
+
+void write_sweep_preview(const SweptSet& s, const py::object& file) {
+  write_preview(
+      file,
+      [&] {
+        const std::string summary =
+            page::summary_of(s.made.certificate(), s.by->bodies.artefact().size());
+        return page::page_of_sweep({s.by->robot.path.string(), s.by->path_name,
+                                    remedy_of_python(summary), remedy_of_python},
+                                   s.by->robot, s.by->bodies, s.by->path, s.made);
+      },
+      [&] {
+        return page::picture_of_sweep(s.by->robot.robot, s.by->bodies.artefact(), s.by->path,
+                                      s.made);
+      });
 }
 
 void bind_class(py::module_& module) {
@@ -96,6 +124,9 @@ void bind_class(py::module_& module) {
             write_set(s.made.artefact(), s.made.bytes(), path);
           },
           py::arg("path"), "As CertifiedSet.write.")
+      .def("write_preview", &write_sweep_preview, py::arg("file"),
+           "Writes a page (.html) that shows the bodies over the robot on its path, or a picture "
+           "(.png) of the path's ends and the bodies, as `sweep-approx --preview`.")
       .def("__len__", [](const SweptSet& s) { return s.made.artefact().bodies.size(); })
       .def("__repr__", [](const SweptSet& s) {
         return "<kaboum.SweptSet of " + std::to_string(s.made.artefact().bodies.size()) +
@@ -119,14 +150,15 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, bool verify
   take_options(certify::swept_set_options(), keywords, options);
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("sweep", keywords, keywords_of(certify::swept_set_options()));
-  const robot::RobotFile placed = placed_robot(robot_of(robot, "robot"), options);
+  robot::RobotFile placed = placed_robot(robot_of(robot, "robot"), options);
   SweptSet out;
-  const robot::Path waypoints = path_from(
+  robot::Path waypoints = path_from(
       path, placed.robot,
       {!options.ignore_limits, options.degrees, numbers_by_name(options.joints)}, out.notes);
   certify::SweepRequest r = certify::sweep_request_of(options);
   r.decide_motion = verify;
   const certify::RobotRequest bodies = certify::bodies_request_of(options);
+  const std::string path_name = path_of(path).value_or("the path");
   Watch watch(running.progress);
   r.search.progress = watch.hook();
   return run(running.threads, [&] {
@@ -136,11 +168,13 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, bool verify
     hooks.note = [&](const std::string& file, const std::string& text) {
       out.notes.push_back(file + ": " + text);
     };
-    const certify::CertifiedBodies made =
+    certify::CertifiedBodies made =
         certify::certify_bodies(placed, bodies, running.no_cache ? nullptr : &cache, hooks);
     auto swept = certify::certify_sweep(placed, made, waypoints, r);
     if (!swept) throw certify::TooCoarse(placed.path.string());
     out.made = std::move(*swept);
+    out.by = std::make_shared<const SweptBy>(std::move(placed), std::move(made),
+                                             std::move(waypoints), path_name);
     return out;
   });
 }

@@ -2,6 +2,7 @@
 
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/sampled_path.h>
+#include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/regions.h>
@@ -14,6 +15,7 @@
 
 #include "arguments.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "running.h"
 #include "scene.h"
@@ -308,15 +310,19 @@ InclusionValue stays_inside(const WorldValue& in, const std::string& what,
 }
 
 py::object nearest(const WorldValue& in, const py::object& q,
-                   const std::optional<std::string>& robot, bool resting) {
+                   const std::optional<std::string>& robot, bool resting,
+                   const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
   if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
+  Watch watch(progress);
+  const world::Checker::Options options{.resting = resting,
+                                        .progress = [&] { watch("distances of pairs"); }};
   const auto found = run(0, [&] {
     world::Scratch scratch;
-    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, {resting});
+    return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, options);
   });
   if (!found) return py::none();
   py::dict out;
@@ -325,6 +331,21 @@ py::object nearest(const WorldValue& in, const py::object& q,
   out["lower"] = found->clearance.lower;
   out["upper"] = found->clearance.upper;
   return out;
+}
+
+py::bytes draw_world(const WorldValue& in, const py::object& q, const py::object& file,
+                     const std::optional<std::string>& robot, bool resting) {
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
+  return png_bytes(file, [&] {
+    world::Scratch scratch;
+    const world::WorldState state = state_at(in, index, rows.front());
+    return page::picture_of(*in.checker, state,
+                            in.checker->find_contacts(state, scratch, {.resting = resting}));
+  });
 }
 
 /// What is known of a robot's pairs of links.
@@ -713,9 +734,14 @@ void bind_questions(WorldClass& world) {
            py::arg("progress") = py::none(),
            "Of n x k values, n bools: whether each configuration is free, for certain.")
       .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false,
+           py::arg("resting") = false, py::arg("progress") = py::none(),
            "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
            "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
+      .def("draw", &draw_world, py::arg("q"), py::arg("file") = py::none(), py::kw_only(),
+           py::arg("robot") = py::none(), py::arg("resting") = false,
+           "A PNG's bytes, which are written into a file where one is named: the world with a "
+           "robot at a configuration, as `kaboum-check --preview`. Robots are grey, objects blue, "
+           "what is in contact orange, and the bodies that meet red.")
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
            kInsideDoc);

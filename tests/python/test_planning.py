@@ -182,6 +182,40 @@ def test_plans_are_carried_out(tmp_path):
         kaboum.run_plan(*files, solution, scene=scene, outcomes=1.5)
 
 
+def test_pages_are_the_programs(tmp_path):
+    """write_plan_page as `show --html`, the plan as a tree too; progress, and what it refuses."""
+    scene = make_cell(tmp_path / "cell")
+    files = SOURCE / "examples" / "scenarios" / "stacked" / "domain.kpl", tmp_path / "cell" / "problem.kpl"
+    solution = kaboum.solve(*files, scene=scene, seed=3)
+    solution.write(tmp_path / "plan.json")
+    for tree in (False, True):
+        code, text = run("kaboum-plan", "show", *files, "--scene", scene, "--plan", tmp_path / "plan.json", "--html",
+                         tmp_path / "theirs.html", *["--tree"] * tree)
+        assert code == 0, text
+        stages = []
+        notes = kaboum.write_plan_page(tmp_path / "ours.html", *files, solution, scene=scene, tree=tree, progress=stages.append)
+        assert (tmp_path / "ours.html").read_bytes() == (tmp_path / "theirs.html").read_bytes()
+        assert stages and all(note in text for note in notes)
+
+    class Enough(Exception):
+        pass
+
+    def stop(_):
+        raise Enough
+
+    with pytest.raises(Enough):
+        kaboum.write_plan_page(tmp_path / "none.html", *files, solution, scene=scene, progress=stop)
+    assert not (tmp_path / "none.html").exists()
+    with pytest.raises(Enough):
+        kaboum.draw_plan(*files, solution, scene=scene, progress=stop)
+    with pytest.raises(Enough):
+        kaboum.convert_domain(*files, to="kpl", progress=stop)
+    with pytest.raises(kaboum.Error, match="scene"):
+        kaboum.write_plan_page(tmp_path / "none.html", *files, solution, scene=None)
+    with pytest.raises(TypeError, match="package_path"):
+        kaboum.write_plan_page(tmp_path / "none.html", *files, solution, scene=scene, package_pat="x")
+
+
 @pytest.fixture(scope="module")
 def cell(tmp_path_factory):
     return make_cell(tmp_path_factory.mktemp("cell") / "cell")

@@ -87,6 +87,8 @@ FRONT_ENDS = {
     "verify_robot": (["verify_robot"], RUNS, "bound-verify robot"),
     "verify_sweep": (["verify_sweep"], RUNS, "bound-verify sweep"),
     "World.__init__": (["margins"], set(), "kaboum-check"),
+    "write_heatmap": (["hausdorff"], RUNS, "hausdorff-eval"),
+    "draw": (["draw"], set(), "mesh-picture"),
     "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.check_motion": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
@@ -97,7 +99,8 @@ FRONT_ENDS = {
     "inverse_kinematics": (["inverse_kinematics"], {"tip", "base", "pose_of", "reference", "progress"}, "kaboum-ik"),
     "solve": (["solve", "task"], {"scene", "assume", "no_cache"} | RUNS, "kaboum-plan solve"),
     "check_plan": (["task"], {"scene"} | RUNS, "kaboum-plan check"),
-    "draw_plan": (["task"], {"scene", "format", "tree"}, "kaboum-plan show"),
+    "draw_plan": (["task"], {"scene", "format", "tree", "progress"}, "kaboum-plan show"),
+    "write_plan_page": (["plan_page", "task"], {"scene", "tree", "progress"}, "kaboum-plan show"),
     "run_plan": (["run_plan", "task"], {"scene", "outcomes", "trajectories"} | RUNS, "kaboum-plan run"),
 }
 

@@ -1,13 +1,15 @@
 // The program bcd-decompose: options, certify::certify_set or certify_robot, files.
 
 #include <kaboum/io/convex_io.h>
+#include <kaboum/io/file_unit.h>
+#include <kaboum/page/set_page.h>
+#include <kaboum/picture/bodies.h>
+#include <kaboum/picture/png_file.h>
 
 #include <CLI/CLI.hpp>
 
 #include "common/set_format.h"
 #include "options.h"
-#include "picture.h"
-#include "preview.h"
 #include "robot.h"
 #include "words.h"
 
@@ -26,19 +28,33 @@ certify::CertifiedFile certify_mesh(const DecomposeOptions& o) {
                                o.no_cache ? nullptr : &cache, hooks);
 }
 
+/// The page, of the mesh that is read again.
+std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& certificate,
+                    const geom::ConvexSet& set) {
+  const certify::SetRequest request = certify::request_of(o.set);
+  io::ReadResult read =
+      io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+  io::scale(read, request.scale, o.input);
+  return naming(o.input, [&] {
+    return page::page_of_set({o.input, read.mesh, request.preparation}, certificate, set,
+                             remedy_of_program);
+  });
+}
+
 int decompose_mesh(const DecomposeOptions& o) {
   const io::SetFormat format = set_format_for(o.output, o.output_format);
   if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
   const certify::CertifiedFile made = certify_mesh(o);
   const geom::ConvexSet& set = made.found.set.artefact();
   const certify::SetCertificate& certificate = made.found.set.certificate();
-  log(o.common.quiet, summary(certificate) + (made.found.cached ? " (from the cache)" : ""));
-  const std::string why = shortfall(certificate);
+  log(o.common.quiet,
+      page::summary_of(certificate) + (made.found.cached ? " (from the cache)" : ""));
+  const std::string why = page::shortfall_of(certificate);
   if (!why.empty()) log(o.common.quiet, why);
   if (is_page(o.preview))
-    io::write_file(o.preview, page_of_set(o, certificate, set));
+    io::write_file(o.preview, page_of(o, certificate, set));
   else if (!o.preview.empty())
-    io::write_file(o.preview, picture_of(set, o.explode));
+    io::write_file(o.preview, picture::encode_png(picture::draw_bodies(set, o.explode)));
   if (!o.common.report.empty()) {
     Json report = report_of(made);
     report["input"] = {{"file", o.input}, {"sha256", made.sha256}};

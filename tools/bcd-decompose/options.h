@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/certify/set_options.h>
+#include <kaboum/picture/bodies.h>
 
 #include <set>
 #include <string>
@@ -19,7 +20,7 @@ struct DecomposeOptions {
   certify::SetOptions set;
   std::set<std::string> stated;  ///< names of the set's options that were stated
   std::string input, output, input_format, output_format, preview, depfile;
-  double explode = 0.5;
+  double explode = picture::kExplode;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   bool no_cache = false, srdf = false;
   RobotOptions robot;

@@ -6,6 +6,10 @@
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/page/robot_page.h>
+#include <kaboum/page/set_page.h>
+#include <kaboum/picture/bodies.h>
+#include <kaboum/picture/png_file.h>
 #include <kaboum/robot_folder/certified_folder.h>
 #include <kaboum/scene/robot_pairs.h>
 
@@ -13,12 +17,9 @@
 #include <chrono>
 #include <optional>
 
-#include "picture.h"
-#include "preview.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
-#include "robots/page.h"
 #include "words.h"
 
 namespace kaboum::tools {
@@ -96,9 +97,9 @@ void certify_links(Run& run) {
     if (!mesh.flaw.empty()) log(run.o.common.quiet, mesh.flaw);
     if (!mesh.held) return;
     const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
-    log(run.o.common.quiet,
-        file + ": " + summary(certificate) + (mesh.made.found.cached ? " (from the cache)" : ""));
-    const std::string why = shortfall(certificate);
+    log(run.o.common.quiet, file + ": " + page::summary_of(certificate) +
+                                (mesh.made.found.cached ? " (from the cache)" : ""));
+    const std::string why = page::shortfall_of(certificate);
     if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
   };
   run.made = certify::certify_robot(run.robot, run.request, cache, hooks);
@@ -147,20 +148,8 @@ RobotCheck check_of(const Run& run, const RobotWriter& output) {
                          run.o.set.preparation, epsilon, run.verdicts);
 }
 
-RobotCounts counts_of(const Run& run) {
-  RobotCounts counts{.links = run.verdicts.size(), .meshes = run.bodies().meshes.size()};
-  for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
-    if (!mesh.held) ++counts.kept;
-  for (const certify::CertifiedLink& link : run.made.links) {
-    counts.bodies += link.artefact().bodies.size();
-    for (const geom::ConvexBody& body : link.artefact().bodies)
-      counts.vertices += body.core.vertices.size();
-  }
-  return counts;
-}
-
 Json robot_report(const Run& run, const RobotWriter& output) {
-  const RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = page::counts_of(run.made);
   Json report = report_of(output);
   report.update({{"bodies", counts.bodies},
                  {"vertices", counts.vertices},
@@ -177,44 +166,21 @@ Json robot_report(const Run& run, const RobotWriter& output) {
   return report;
 }
 
-/// A link's row of the page.
-PageLink page_link(const Run& run, const certify::LinkVerdict& link) {
-  PageLink out;
-  out.name = run.robot.robot.links[link.link].name;
-  out.shapes = link.shapes;
-  out.verdict = link;
-  if (const certify::CertifiedLink* set = run.set_of(link.link)) {
-    out.reach = set->certificate().distance;
-    out.bodies = set->artefact().bodies.size();
-    for (const geom::ConvexBody& body : set->artefact().bodies) {
-      out.vertices += body.core.vertices.size();
-      append_placed(out.result, body.core, {});
-    }
-  }
-  for (const robot::LinkShape& shape : run.bodies().shapes) {
-    if (shape.link != link.link || !shape.mesh) continue;
-    const certify::CertifiedLinkMesh& mesh = run.bodies().meshes[*shape.mesh];
-    out.meshes.push_back(mesh.mesh.file.filename().string());
-    if (mesh.held && !mesh.made.found.cached)
-      out.seconds = out.seconds.value_or(0) + run.seconds[*shape.mesh];
-  }
-  out.epsilon = epsilon_of(out.name, run.request.epsilons, run.request.set.wanted_epsilon());
-  out.original = drawn_shapes(run.robot, run.bodies().choice, link.link);
-  return out;
-}
-
 void write_page(const Run& run, const RobotWriter& output) {
-  RobotPage page{.robot = run.robot.robot.name,
-                 .source = run.o.input,
-                 .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
-                 .check = check_of(run, output),
-                 .unit = run.request.set.unit,
-                 .files = output.documents(),
-                 .notes = run.notes.lines(),
-                 .links = {},
-                 .counts = counts_of(run)};
-  for (const certify::LinkVerdict& link : run.verdicts) page.links.push_back(page_link(run, link));
-  io::write_file(run.o.robot.html, to_html(page));
+  const RobotCheck check = check_of(run, output);
+  io::write_file(
+      run.o.robot.html,
+      to_html(page::RobotPage{
+          .robot = run.robot.robot.name,
+          .source = run.o.input,
+          .tool = std::string("bcd-decompose ") + version() + " " + run.request.parameters(),
+          .command = check.command,
+          .passes = check.passes,
+          .unit = run.request.set.unit,
+          .files = output.documents(),
+          .notes = run.notes.lines(),
+          .links = page::page_links(run.robot, run.made, run.request, run.seconds),
+          .counts = page::counts_of(run.made)}));
 }
 
 }  // namespace
@@ -241,7 +207,7 @@ int decompose_robot(const DecomposeOptions& o) {
     output.add_document(".srdf", run.pairs->srdf);
   }
   write(run, output);
-  const RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = page::counts_of(run.made);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(counts.bodies, "body", "bodies") + " of " +
                           counted(counts.links, "link", "links") + ", from " + counts.of_meshes());
@@ -249,9 +215,13 @@ int decompose_robot(const DecomposeOptions& o) {
   say(output, o.common.quiet, run.notes);
   if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
   if (is_page(o.preview))
-    io::write_file(o.preview, page_of_robot(o, run.robot, run.made, run.verdicts));
+    io::write_file(o.preview,
+                   page::page_of_robot({o.input, o.set.request.unit,
+                                        certify::request_of(o.set).parameters(), remedy_of_program},
+                                       run.robot, run.made, run.verdicts));
   else if (!o.preview.empty())
-    io::write_file(o.preview, picture_of(at_rest(run.robot.robot, run.made.links), o.explode));
+    io::write_file(o.preview, picture::encode_png(picture::draw_bodies(
+                                  page::at_rest(run.robot.robot, run.made.links), o.explode)));
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty()) write_report(o.common, "bcd-decompose", robot_report(run, output));
   if (!o.depfile.empty()) {

@@ -12,12 +12,6 @@ namespace kaboum::tools {
 /// The exit code of a mesh's outcome.
 int code_of(const certify::SetCertificate& certificate);
 
-/// Why epsilon, if asked for, is not reached, and what helps; empty when it is.
-std::string shortfall(const certify::SetCertificate& certificate);
-
-/// Bodies, vertices and distance, in one line.
-std::string summary(const certify::SetCertificate& certificate);
-
 /// What the report says of one mesh: of its certificate, with what reading noted.
 Json report_of(const certify::CertifiedFile& made);
 

@@ -3,6 +3,7 @@
 #include "results.h"
 
 #include <kaboum/bmesh/progressive.h>
+#include <kaboum/page/mesh_page.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,7 +12,6 @@
 
 #include "common/result_files.h"
 #include "common/verdict.h"
-#include "player/gaps.h"
 
 namespace kaboum::tools {
 
@@ -27,6 +27,7 @@ class Lines {
  public:
   Lines(const DecimationCase& run, std::size_t place)
       : run_(run),
+        place_(place),
         made_(run.series().meshes[place].certificate()),
         file_(run.files[place].empty() ? run.asked.progressive : run.files[place]) {}
 
@@ -61,22 +62,7 @@ class Lines {
   }
 
   [[nodiscard]] std::string summary() const {
-    const double diagonal = run_.series().plan.diagonal;
-    std::string line = file_ + ": " + std::to_string(made_.statistics.vertices_in) + " → " +
-                       std::to_string(made_.vertices) + " vertices, " +
-                       run_.asked.value("direction");
-    if (made_.direction != bmesh::Direction::Any)
-      line += !made_.closed ? ", NOTHING IS ENCLOSED: the mesh is open"
-              : made_.surface_answer() == Answer::Verified ? ", certified"
-                                                           : ", NOT ALL TRIANGLES ARE CERTIFIED";
-    if (made_.original_to_result) {
-      const double wrap = run_.wrap() ? run_.wrap()->farthest_upper : 0;
-      const double within = made_.hausdorff_upper() + wrap;
-      line += ", within " + formatted(within) + " (" + formatted(100 * within / diagonal) + "%)";
-    }
-    if (made_.requested && made_.stop == bmesh::Stop::ErrorBound)
-      line += "; epsilon allows no fewer, " + std::to_string(*made_.requested) + " were wished";
-    return line;
+    return file_ + ": " + page::summary_of(run_.made, place_);
   }
 
  private:
@@ -178,6 +164,7 @@ class Lines {
   }
 
   const DecimationCase& run_;
+  std::size_t place_;
   const MeshCertificate& made_;
   std::string file_;
 };
@@ -211,6 +198,13 @@ std::string summary_of(const DecimationCase& run, std::size_t place) {
   return Lines(run, place).summary();
 }
 
+std::string page_of(const DecimationCase& run) {
+  page::MeshWords words{run.asked.input, {}, run.notes};
+  for (std::size_t i = 0; i < run.series().meshes.size(); ++i)
+    words.summaries.push_back(summary_of(run, i));
+  return page::page_of_meshes(words, run.made);
+}
+
 int conclude(const DecimationCase& run) {
   bool no = false, limit = false;
   for (std::size_t i = 0; i < run.series().meshes.size(); ++i) {
@@ -225,62 +219,6 @@ int conclude(const DecimationCase& run) {
     limit = true;
   }
   return no ? kNo : limit ? kLimit : kDone;
-}
-
-namespace {
-
-using page::Layer;
-
-std::string words_of(const certify::Claim& claim) {
-  std::string text = std::string(name_of(claim.answer)) + ", " + name_of(claim.basis);
-  if (claim.distance) text = "at most " + formatted(*claim.distance) + ": " + text;
-  if (!claim.reason.empty()) text += ": " + claim.reason;
-  return text;
-}
-
-}  // namespace
-
-std::string page_of(const DecimationCase& run) {
-  const bool inner = run.request().direction == bmesh::Direction::Inner;
-  const geom::Mesh& original = run.original().solid.mesh();
-  const double extent = run.series().plan.diagonal;
-  const std::string name = std::filesystem::path(run.asked.input).filename().string();
-  page::Preview preview{"Result of bmesh-decimate " + name};
-  preview.meaning = "distance from the other surface";
-  preview.facts.emplace_back("input", name + ", " + std::to_string(original.vertices.size()) +
-                                          " vertices, " +
-                                          std::to_string(original.triangles.size()) + " triangles" +
-                                          (run.wrap() ? " of a wrap round it" : ""));
-  if (run.series().plan.epsilon)
-    preview.facts.emplace_back("epsilon", formatted(*run.series().plan.epsilon) + " (" +
-                                              formatted(100 * *run.series().plan.epsilon / extent) +
-                                              "% of the diagonal)");
-  preview.layers.push_back({run.wrap() ? "wrap" : "input",
-                            inner ? Layer::View::Transparent : Layer::View::Shown, false});
-  const geom::DistanceQuery to_original(original);
-  for (std::size_t i = 0; i < run.series().meshes.size(); ++i) {
-    const certify::CertifiedMesh& made = run.series().meshes[i];
-    const bool last = i + 1 == run.series().meshes.size();
-    const std::string count = std::to_string(made.artefact().vertices.size()) + " vertices";
-    Layer& result = preview.layers.emplace_back();
-    result.name = run.series().meshes.size() == 1 ? "result" : count;
-    result.view = !last   ? Layer::View::Hidden
-                  : inner ? Layer::View::Shown
-                          : Layer::View::Transparent;
-    result.all_edges = true;
-    result.shapes.push_back(
-        page::measured(made.artefact(), extent, page::distance_to(to_original)));
-    preview.facts.emplace_back(result.name, summary_of(run, i));
-    for (const certify::Claim& claim : certificate_of(made).claims)
-      preview.facts.emplace_back(name_of(claim.kind), words_of(claim));
-    if (last) {
-      const geom::DistanceQuery to_result(made.artefact());
-      preview.layers.front().shapes.push_back(
-          page::measured(original, extent, page::distance_to(to_result)));
-    }
-  }
-  for (const std::string& note : run.notes) preview.facts.emplace_back("note", note);
-  return page::preview_page(preview);
 }
 
 namespace {

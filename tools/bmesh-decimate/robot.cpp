@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/certify/link_enclosures.h>
 #include <kaboum/certify/mesh_file.h>
+#include <kaboum/page/robot_page.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/robot_folder/enclosed_folder.h>
 
@@ -15,7 +16,6 @@
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
-#include "robots/page.h"
 
 namespace kaboum::tools {
 namespace {
@@ -112,8 +112,8 @@ std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
 }
 
 /// Meshes are counted once, however many links have them.
-RobotCounts counts_of(const Run& run) {
-  RobotCounts counts{.links = shapes_by_link(run).size(), .meshes = run.made.meshes.size()};
+page::RobotCounts counts_of(const Run& run) {
+  page::RobotCounts counts{.links = shapes_by_link(run).size(), .meshes = run.made.meshes.size()};
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
     if (!mesh.flaw.empty()) {
       ++counts.kept;
@@ -127,7 +127,7 @@ RobotCounts counts_of(const Run& run) {
 
 Json decimated_report(const Run& run, const RobotWriter& output) {
   Json report = report_of(output), links = Json::array();
-  const RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = counts_of(run);
   std::size_t before = 0, at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
     Json link{{"link", run.robot.robot.links[shapes.front().link].name},
@@ -167,10 +167,10 @@ Json decimated_report(const Run& run, const RobotWriter& output) {
   return report;
 }
 
-PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
-                   const certify::LinkVerdict& verdict) {
+page::PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
+                         const certify::LinkVerdict& verdict) {
   const robot::Link& link = run.robot.robot.links[shapes.front().link];
-  PageLink out;
+  page::PageLink out;
   out.name = link.name;
   out.shapes = shapes.size();
   out.verdict = verdict;
@@ -188,24 +188,25 @@ PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
     out.vertices += c.vertices;
     out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
     if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
-    append_placed(out.result, mesh.made.enclosure.artefact(), place);
+    page::append_placed(out.result, mesh.made.enclosure.artefact(), place);
   }
-  out.epsilon = epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
-  out.original = drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
+  out.epsilon = page::epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
+  out.original = page::drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
   return out;
 }
 
 void write_page(const Run& run, const RobotWriter& output) {
-  RobotPage page{.robot = run.robot.robot.name,
-                 .source = run.o.input,
-                 .tool = std::string("bmesh-decimate ") + version(),
-                 .check = check_of(run, output),
-                 .unit = "the robot's unit",
-                 .files = output.documents(),
-                 .notes = run.notes.lines(),
-                 .links = {},
-                 .counts = counts_of(run),
-                 .made = "meshes"};
+  const RobotCheck check = check_of(run, output);
+  page::RobotPage page{.robot = run.robot.robot.name,
+                       .source = run.o.input,
+                       .tool = std::string("bmesh-decimate ") + version(),
+                       .command = check.command,
+                       .passes = check.passes,
+                       .unit = "the robot's unit",
+                       .files = output.documents(),
+                       .notes = run.notes.lines(),
+                       .counts = counts_of(run),
+                       .made = "meshes"};
   std::size_t at = 0;
   for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
     page.links.push_back(page_link(run, shapes, run.verdicts[at++]));
@@ -263,7 +264,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   std::optional<certify::CacheFolder> written;
   if (!o.no_cache) written.emplace(certify::CacheFolder::default_folder());
   robot_folder::write_enclosed(output, run.made, written ? &*written : nullptr, note_in(run.notes));
-  const RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = counts_of(run);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(counts.bodies, "mesh", "meshes") + " of " +
                           counted(counts.links, "link", "links") +

@@ -5,6 +5,7 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/page/distance_page.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,9 +17,6 @@
 
 #include "common/cli.h"
 #include "common/request_options.h"
-#include "picture/heatmap.h"
-#include "picture/png_file.h"
-#include "picture/refine.h"
 #include "report.h"
 #include "shape_file.h"
 
@@ -34,7 +32,6 @@ struct Options {
   std::set<std::string> stated;  ///< names of these options that were stated
   std::string at_most;
   std::string csv, heatmap;
-  int width = 1600, height = 800;
   tools::UnitOption unit;  // of A
   tools::CommonOptions common;
 };
@@ -100,9 +97,7 @@ void check_files(const Options& o) {
   require(o.a != "-" || o.b != "-", "A and B cannot both be standard input");
   tools::require_apart({{"--report", o.common.report}, {"--csv", o.csv}, {"--heatmap", o.heatmap}},
                        {o.a, o.b});
-  if (o.heatmap.empty()) return;
-  const std::string extension = std::filesystem::path(o.heatmap).extension().string();
-  require(extension == ".png" || extension == ".ply" || tools::is_page(o.heatmap),
+  require(o.heatmap.empty() || page::is_heatmap(o.heatmap),
           "--heatmap: give a .png, .html or .ply file");
 }
 
@@ -112,25 +107,9 @@ distance::CompareOptions compare_options(const Options& o, tools::Progress& prog
   return out;
 }
 
-/// Bytes of the file asked for.
-std::vector<char> heatmap(const Options& o, const Comparison& c, const distance::Compared& result) {
-  if (tools::is_page(o.heatmap)) {
-    const std::string page = tools::page_of(c, result, {o.a, o.b}, o.compare.solid);
-    return {page.begin(), page.end()};
-  }
-  const double part = c.diagonal() / 100;
-  geom::Mesh a = picture::refined(c.surface(Comparison::A), part);
-  const std::vector<double> to_b = c.distances(a, Comparison::B);
-  if (std::filesystem::path(o.heatmap).extension() == ".ply") {
-    for (geom::Vec3& v : a.vertices) v += c.origin();
-    return picture::heatmap_ply(a, to_b, result.a_to_b.max.max_upper);
-  }
-  const geom::Mesh b = picture::refined(c.surface(Comparison::B), part);
-  const std::vector<double> to_a = c.distances(b, Comparison::A);
-  return picture::encode_png(
-      picture::draw_heatmap({{&a, &to_b, "A: distance to B", result.a_to_b.max.at - c.origin()},
-                             {&b, &to_a, "B: distance to A", result.b_to_a.max.at - c.origin()}},
-                            result.upper(), c.diagonal(), o.width, o.height));
+/// What a file is called on a page.
+std::string shown_name(const std::string& file) {
+  return file == "-" ? "standard input" : std::filesystem::path(file).filename().string();
 }
 
 /// Segments and points of a mesh bound nothing, so that no solid is near or far because of them.
@@ -209,7 +188,11 @@ int run(const Options& o) {
   const auto built = now();
   const distance::Compared result = comparison.measure();
   progress.show("colours");
-  if (!o.heatmap.empty()) io::write_file(o.heatmap, heatmap(o, comparison, result));
+  if (!o.heatmap.empty())
+    io::write_file(
+        o.heatmap,
+        page::heatmap(o.heatmap,
+                      {comparison, result, {shown_name(o.a), shown_name(o.b)}, o.compare.solid}));
   const double measuring = since(built);
   const tools::ComparisonReport report{files, comparison, result, o.compare.solid};
   if (!o.csv.empty()) io::write_file(o.csv, report.csv());

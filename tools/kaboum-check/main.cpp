@@ -3,6 +3,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/page/world_picture.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
@@ -15,7 +16,6 @@
 #include "common/scene_file.h"
 #include "inside.h"
 #include "options.h"
-#include "picture.h"
 
 namespace {
 
@@ -80,7 +80,7 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
   }
   report["motion"] = tools::to_json(scene.world, answer);
   say(o, tools::describe(scene.world, answer));
-  if (!o.preview.empty()) io::write_file(o.preview, tools::picture_of(checker, at, contacts));
+  if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
   const collide::Inclusion inside = tools::decide_inside(
       checker, initial_state(scene.world), robot, path, o.motion, wanted,
       [&](const std::string& line) { say(o, line); }, report);
@@ -123,7 +123,7 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
         checker, state, wanted, before, [&](const std::string& line) { say(o, line); }, one);
     if (inside != Inclusion::NotIncluded && here != Inclusion::Included) inside = here;
     if (!o.preview.empty() && !drawn && (!contacts.empty() || i + 1 == values.size())) {
-      io::write_file(o.preview, tools::picture_of(checker, state, contacts));
+      io::write_file(o.preview, page::picture_of(checker, state, contacts));
       drawn = true;
     }
     if (o.distance) {

@@ -88,8 +88,7 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
       ->excludes("--output-format")
       ->excludes("--output")
       ->type_name("FILE");
-  add_request_options(*w, options_named(execution::run_options(), {"package-path"}), o.run,
-                      o.stated);
+  add_request_options(*w, execution::page_options(), o.page, o.stated);
   add_common_options(*w, o.common);
   return w;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/execution/plan_page.h>
 #include <kaboum/execution/run_plan.h>
 #include <kaboum/plan/solve_options.h>
 
@@ -18,9 +19,10 @@ namespace kaboum::tools {
 
 struct PlanOptions {
   execution::TaskFiles task;
-  plan::SearchRequest search;     ///< of solve
-  execution::PlanRunRequest run;  ///< of run
-  std::set<std::string> stated;   ///< names of options of these three that were stated
+  plan::SearchRequest search;       ///< of solve
+  execution::PlanRunRequest run;    ///< of run
+  execution::PlanPageOptions page;  ///< of show
+  std::set<std::string> stated;     ///< names of options of these that were stated
   std::string plan, output = "-", output_format;
   bool tree = false, explain = false, no_cache = false;
   std::string outcomes = "all", trajectories;  ///< of run

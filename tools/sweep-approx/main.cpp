@@ -1,6 +1,8 @@
 // The program sweep-approx: options, certify::certify_robot and certify_sweep, files.
 
 #include <kaboum/base/error.h>
+#include <kaboum/page/sweep_page.h>
+#include <kaboum/page/sweep_picture.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/robot_folder/urdf_text.h>
@@ -12,8 +14,6 @@
 
 #include "common/result_files.h"
 #include "options.h"
-#include "picture.h"
-#include "preview.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/urdf_output.h"
@@ -109,23 +109,12 @@ bool sweep_bodies(Run& run) {
 }
 
 std::string summary(const Run& run) {
-  const certify::SweepCertificate& c = run.swept.certificate();
-  const std::size_t bodies = run.bodies.artefact().size();
-  std::ostringstream message;
-  message.precision(3);
-  message << c.bodies << (c.bodies == 1 ? " body" : " bodies") << " for " << bodies
-          << " of the robot; margin " << c.margin << "; no point farther than " << c.excess
-          << " from what the robot's bodies sweep, these within " << c.bodies_distance
-          << " of its shapes";
-  if (c.motion == certify::MotionClaim::None)
-    message << "; NOT certified: --bound baginski is not proved";
   std::string out;
   for (const certify::LinkVerdict& link : run.verdicts)
     if (link.outcome == certify::Outcome::Kept)
       out += (out.empty() ? "; NOT swept, as they are not held: " : ", ") +
              run.robot.robot.links[link.link].name;
-  message << out;
-  return message.str();
+  return page::summary_of(run.swept.certificate(), run.bodies.artefact().size()) + out;
 }
 
 void write_set(const Run& run, io::SetFormat format) {
@@ -183,11 +172,13 @@ void write_files(const Run& run, io::SetFormat format) {
   const SweepApproxOptions& o = run.o;
   const auto preview = [&] {
     if (is_page(o.preview))
-      io::write_file(o.preview, page_of_sweep({o.robot, o.path, summary(run)}, run.robot,
-                                              run.bodies, run.path, run.swept));
+      io::write_file(
+          o.preview,
+          page::page_of_sweep({o.robot, o.path, remedy_of_program(summary(run)), remedy_of_program},
+                              run.robot, run.bodies, run.path, run.swept));
     else
-      io::write_file(o.preview,
-                     picture_of_sweep(run.robot.robot, run.bodies.artefact(), run.path, run.swept));
+      io::write_file(o.preview, page::picture_of_sweep(run.robot.robot, run.bodies.artefact(),
+                                                       run.path, run.swept));
   };
   const auto depfile = [&] {
     std::vector<std::string> inputs{o.robot, o.path};

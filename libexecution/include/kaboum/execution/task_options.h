@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/option.h>
+#include <kaboum/execution/plan_page.h>
 #include <kaboum/execution/run_plan.h>
 
 namespace kaboum::execution {
@@ -10,5 +11,8 @@ const std::vector<Option<TaskFiles>>& task_options();
 
 /// The options of carrying out a plan.
 const std::vector<Option<PlanRunRequest>>& run_options();
+
+/// The options of a page that plays a plan.
+const std::vector<Option<PlanPageOptions>>& page_options();
 
 }  // namespace kaboum::execution
