@@ -76,4 +76,10 @@ const std::vector<Option<SceneMaker>>& scene_options() {
   return options;
 }
 
+const std::vector<Option<SceneMaker>>& update_options() {
+  static const std::vector<Option<SceneMaker>> options =
+      options_named(scene_options(), {"package-path"});
+  return options;
+}
+
 }  // namespace kaboum::scene

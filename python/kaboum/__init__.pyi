@@ -500,11 +500,18 @@ class World:
         q: ArrayLike,
         *,
         robot: str | None = None,
-        resting: bool = False,
+        # options of check
+        # end of options
         progress: _Progress | None = None,
     ) -> dict[str, Any] | None: ...
     def draw(
-        self, q: ArrayLike, file: _Path | None = None, *, robot: str | None = None, resting: bool = False
+        self,
+        q: ArrayLike,
+        file: _Path | None = None,
+        *,
+        robot: str | None = None,
+        # options of check
+        # end of options
     ) -> bytes: ...
     def is_inside(
         self,
@@ -884,7 +891,8 @@ def make_scene(
 def update_scene(
     path: _Path,
     *,
-    package_path: _Path | Sequence[_Path] = (),
+    # options of update_scene
+    # end of options
     no_cache: bool = False,
     threads: int = 0,
     progress: _Progress | None = None,

@@ -52,6 +52,7 @@ void bind_option_tables(py::module_& module) {
         out["task"] = table_of(keywords_of(execution::task_options()));
         out["plan_page"] = table_of(keywords_of(execution::page_options()));
         out["run_plan"] = table_of(keywords_of(execution::run_options()));
+        out["update_scene"] = table_of(keywords_of(scene::update_options()));
         out["make_scene"] = table_of(keywords_of(scene::scene_options()));
         return out;
       },

@@ -343,18 +343,6 @@ std::vector<std::string> links_of(const py::object& links) {
   return links.cast<std::vector<std::string>>();
 }
 
-std::vector<std::string> packages_of(const py::object& packages) {
-  if (packages.is_none()) return {};
-  if (const auto one = path_of(packages)) return {*one};
-  std::vector<std::string> out;
-  for (const py::handle item : packages) {
-    const auto path = path_of(py::reinterpret_borrow<py::object>(item));
-    if (!path) throw Error(ErrorCode::InvalidArgument, "package_path must be folders' names");
-    out.push_back(*path);
-  }
-  return out;
-}
-
 certify::LinkEpsilons epsilons_of(const py::object& given) {
   certify::LinkEpsilons out;
   if (given.is_none()) return out;

@@ -34,8 +34,6 @@ std::vector<Option<certify::SetOptions>> link_options();
 
 /// Names, or None for all.
 std::vector<std::string> links_of(const py::object& links);
-/// Folders: one, several or none.
-std::vector<std::string> packages_of(const py::object& packages);
 /// A dict of links' names and lengths.
 certify::LinkEpsilons epsilons_of(const py::object& given);
 /// What a robot's folder is to hold.

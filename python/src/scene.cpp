@@ -231,14 +231,16 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
   }));
 }
 
-py::dict update_scene(const py::object& path, const py::object& package_path, bool no_cache,
-                      int threads, const py::object& progress) {
-  Watch watch(progress);
+py::dict update_scene(const py::object& path, const py::kwargs& given) {
+  scene::SceneMaker asked;
+  const RunKeywords running =
+      take_keywords("update_scene", scene::update_options(), given, asked, Runs::Cached);
+  Watch watch(running.progress);
   const std::string file = path_text(path, "path");
-  const std::vector<std::string> packages = packages_of(package_path);
-  return dict_of(run(threads, [&] {
+  return dict_of(run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
-    return scene::update_scene({file, packages, no_cache ? nullptr : &cache, watch.hook()});
+    return scene::update_scene(
+        {file, asked.options.packages, running.no_cache ? nullptr : &cache, watch.hook()});
   }));
 }
 
@@ -324,9 +326,7 @@ constexpr const char* kUpdateDoc =
 Parameters
 ----------
 path : str or path
-package_path : str or sequence of str
-no_cache, threads, progress
-    As for `decompose`.
+{keywords}
 
 Returns
 -------
@@ -410,11 +410,12 @@ std::optional<world::SceneFile> scene_file_of(const py::object& value) {
 
 void bind_scenes(py::module_& module) {
   bind_scene(module);
-  module.def("update_scene", &update_scene, py::arg("path"), py::kw_only(),
-             py::arg("package_path") = py::tuple(), py::arg("no_cache") = false,
-             py::arg("threads") = 0, py::arg("progress") = py::none(), kUpdateDoc);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
+  const std::string update_text =
+      document("update_scene", "path: object", keywords_of(scene::update_options()), "dict",
+               kUpdateDoc, Runs::Cached);
+  module.def("update_scene", &update_scene, py::arg("path"), update_text.c_str());
   const std::string text = document(
       "make_scene",
       "path: object, *, robots: object = None, objects: object = None, regions: object = None, "

@@ -310,16 +310,17 @@ InclusionValue stays_inside(const WorldValue& in, const std::string& what,
 }
 
 py::object nearest(const WorldValue& in, const py::object& q,
-                   const std::optional<std::string>& robot, bool resting,
-                   const py::object& progress) {
+                   const std::optional<std::string>& robot, const py::kwargs& given) {
+  world::Checker::Options options;
+  const RunKeywords running =
+      take_keywords("nearest", world::state_options(), given, options, Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
   if (!one) throw Error(ErrorCode::InvalidArgument, "q must be one configuration");
-  Watch watch(progress);
-  const world::Checker::Options options{.resting = resting,
-                                        .progress = [&] { watch("distances of pairs"); }};
+  Watch watch(running.progress);
+  options.progress = [&] { watch("distances of pairs"); };
   const auto found = run(0, [&] {
     world::Scratch scratch;
     return in.checker->find_nearest(state_at(in, index, rows.front()), scratch, options);
@@ -334,7 +335,9 @@ py::object nearest(const WorldValue& in, const py::object& q,
 }
 
 py::bytes draw_world(const WorldValue& in, const py::object& q, const py::object& file,
-                     const std::optional<std::string>& robot, bool resting) {
+                     const std::optional<std::string>& robot, const py::kwargs& given) {
+  world::Checker::Options options;
+  take_keywords("draw", world::state_options(), given, options, Runs::Briefly);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
@@ -343,8 +346,7 @@ py::bytes draw_world(const WorldValue& in, const py::object& q, const py::object
   return png_bytes(file, [&] {
     world::Scratch scratch;
     const world::WorldState state = state_at(in, index, rows.front());
-    return page::picture_of(*in.checker, state,
-                            in.checker->find_contacts(state, scratch, {.resting = resting}));
+    return page::picture_of(*in.checker, state, in.checker->find_contacts(state, scratch, options));
   });
 }
 
@@ -686,6 +688,41 @@ Returns
 -------
 Inclusion)";
 
+constexpr const char* kNearestDoc =
+    R"(The pair that is nearest at a configuration, the other robots at home.
+
+Parameters
+----------
+q : array
+    A value for each variable.
+robot : str, optional
+{keywords}
+
+Returns
+-------
+dict or None
+    'pair' and a certified bracket 'lower', 'upper' of its sets' distance, negative where they meet;
+    None where no pair is looked at. [length])";
+
+constexpr const char* kDrawDoc =
+    R"(A picture of the world with a robot at a configuration, as `kaboum-check --preview`.
+
+Robots are grey, objects blue, what is in contact orange, and the bodies that meet red.
+
+Parameters
+----------
+q : array
+    A value for each variable.
+file : path, optional
+    The picture is written into it as well.
+robot : str, optional
+{keywords}
+
+Returns
+-------
+bytes
+    A PNG.)";
+
 constexpr const char* kPairsDoc =
     R"(Pairs of a robot's links: which never touch, or need no check, as `kaboum-scene pairs`.
 
@@ -709,6 +746,11 @@ void bind_questions_with_options(WorldClass& world) {
   };
   const std::string check_text =
       text("check", "q: object, ", world::state_options(), "object", kCheckDoc);
+  const std::string nearest_text =
+      text("nearest", "q: object, ", world::state_options(), "object", kNearestDoc);
+  const std::string draw_text =
+      document("draw", "self: object, q: object, file: object = None, *, robot: object = None",
+               keywords_of(world::state_options()), "bytes", kDrawDoc, Runs::Briefly);
   const std::string motion_text = text("check_motion", "path: object, ", world::motion_options(),
                                        "kaboum.MotionCheck", kMotionDoc);
   const std::string path_text = text("find_path", "start: object, goals: object, ",
@@ -725,6 +767,9 @@ void bind_questions_with_options(WorldClass& world) {
            path_text.c_str())
       .def("stays_inside", &stays_inside, py::arg("what"), py::arg("region"), py::arg("path"),
            py::kw_only(), robot, stays_text.c_str())
+      .def("nearest", &nearest, py::arg("q"), py::kw_only(), robot, nearest_text.c_str())
+      .def("draw", &draw_world, py::arg("q"), py::arg("file") = py::none(), py::kw_only(), robot,
+           draw_text.c_str())
       .def("link_pairs", &link_pairs, py::kw_only(), robot, pairs_text.c_str());
 }
 
@@ -733,15 +778,6 @@ void bind_questions(WorldClass& world) {
       .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
            py::arg("progress") = py::none(),
            "Of n x k values, n bools: whether each configuration is free, for certain.")
-      .def("nearest", &nearest, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("resting") = false, py::arg("progress") = py::none(),
-           "The pair that is nearest at a configuration: a dict of 'pair' and a certified bracket "
-           "'lower', 'upper' of its sets' distance; None where no pair is looked at. [length]")
-      .def("draw", &draw_world, py::arg("q"), py::arg("file") = py::none(), py::kw_only(),
-           py::arg("robot") = py::none(), py::arg("resting") = false,
-           "A PNG's bytes, which are written into a file where one is named: the world with a "
-           "robot at a configuration, as `kaboum-check --preview`. Robots are grey, objects blue, "
-           "what is in contact orange, and the bodies that meet red.")
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
            kInsideDoc);

@@ -62,8 +62,7 @@ CLI::App* describe_update(CLI::App& app, SceneOptions& o) {
       ->add_option("SCENE", o.scene,
                    "Scene file; all but its sets (and of YAML, comments) stays as it is")
       ->required();
-  add_request_options(*update, options_named(scene::scene_options(), {"package-path"}), o.make,
-                      o.stated);
+  add_request_options(*update, scene::update_options(), o.make, o.stated);
   add_sources_of_sets(*update, o);
   add_common_options(*update, o.common);
   return update;
