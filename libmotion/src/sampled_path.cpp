@@ -9,7 +9,7 @@ namespace kaboum::motion {
 namespace {
 
 /// More would take minutes to decide and gigabytes to write.
-constexpr std::size_t kMostSamples = 5'000'000;
+constexpr std::size_t kMostWritten = 5'000'000;
 
 }  // namespace
 
@@ -50,11 +50,11 @@ SampledPath sample_path(const MovingRobot& moving, const robot::Path& path,
   SpeedLimits limits = speed_limits(options, moving.kinematics());
   Trajectory trajectory(path, limits, options.rate,
                         options.time_optimal ? Profile::Trapezoid : Profile::Quintic);
-  if (trajectory.samples() > kMostSamples)
+  if (trajectory.samples() > kMostWritten)
     throw Error(ErrorCode::LimitReached,
                 "the trajectory has " + std::to_string(trajectory.samples()) + " samples in " +
                     std::to_string(trajectory.duration()) + " s, more than " +
-                    std::to_string(kMostSamples) + ": give a lower «rate» or higher limits");
+                    std::to_string(kMostWritten) + ": give a lower «rate» or higher limits");
   std::string csv = to_csv(trajectory, moving.kinematics(), unit);
   require_free(moving, parse_path(csv, moving.kinematics(), unit), resolution, "the samples",
                progress);
