@@ -156,7 +156,7 @@ std::string value_words(const OptionDescription& option) {
 
 std::string range_words(const OptionDescription& option) {
   const bool whole = option.kind == Kind::Count || option.kind == Kind::Counts;
-  if (!whole && option.kind != Kind::Number) return {};
+  if (!whole && option.kind != Kind::Number && option.kind != Kind::Settings) return {};
   const auto digits = [&](double limit) {
     return whole ? std::to_string(static_cast<std::size_t>(limit)) : number_text(limit);
   };
