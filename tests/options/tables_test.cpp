@@ -9,6 +9,7 @@
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/trajectory_options.h>
+#include <kaboum/picture/panels.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/robot/shape_options.h>
@@ -117,6 +118,8 @@ TEST(OptionTables, AreSound) {
   check("plans", plan::solve_options());
   check("planning tasks", execution::task_options());
   check("executions", execution::run_options());
+  check("pages of plans", execution::page_options());
+  check("pictures", picture::panel_options());
 }
 
 /// Records of swept sets state what the links' bodies are made with, and digits as they were given.
