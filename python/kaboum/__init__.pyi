@@ -354,6 +354,10 @@ class Path:
         self,
         *,
         # options of trajectory
+        time_optimal: bool = False,
+        rate: float = 1000.0,
+        max_velocity: float | Mapping[str, float] | None = None,
+        max_acceleration: float | Mapping[str, float] | None = None,
         # end of options
         progress: _Progress | None = None,
     ) -> Trajectory: ...
@@ -441,6 +445,7 @@ class World:
         scene: Scene | _Path,
         *,
         # options of margins
+        margin: float | Mapping[str, float] | None = None,
         # end of options
     ) -> None: ...
     @property
@@ -501,6 +506,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check
+        resting: bool = False,
         # end of options
         progress: _Progress | None = None,
     ) -> dict[str, Any] | None: ...
@@ -511,6 +517,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check
+        resting: bool = False,
         # end of options
     ) -> bytes: ...
     def is_inside(
@@ -563,6 +570,9 @@ def prepare(
     mesh: _Mesh,
     *,
     # options of prepare
+    drop_sheets: bool = False,
+    holes: Literal["fill", "keep", "refuse"] = "fill",
+    keep_orientation: bool = False,
     # end of options
 ) -> Prepared: ...
 @overload
@@ -729,6 +739,13 @@ def verify_mesh(
     *,
     relation: Literal["outer", "inner"] = "outer",
     # options of verify_mesh
+    claims: Literal["all", "solid", "surface"] = "all",
+    epsilon: _Length | None = None,
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    exact_points: int = 17,
+    max_contacts: int = 100000000,
+    max_work: float | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -738,6 +755,13 @@ def verify_cover(
     set: _Set,
     *,
     # options of verify_cover
+    claims: Literal["all", "solid", "surface"] = "all",
+    epsilon: _Length | None = None,
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    exact_points: int = 17,
+    max_contacts: int = 100000000,
+    max_work: float | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -748,6 +772,18 @@ def verify_sweep(
     swept: _Set,
     *,
     # options of verify_sweep
+    claims: Literal["all", "surface"] = "all",
+    prepare: bool = False,
+    drop_sheets: bool = False,
+    exact_points: int = 17,
+    gap: float | None = None,
+    max_cells: int = 20000,
+    base_pose: str = "",
+    joint: Mapping[str, float] | None = None,
+    degrees: bool = False,
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -757,6 +793,16 @@ def verify_robot(
     result: _Robot,
     *,
     # options of verify_robot
+    claims: Literal["all", "solid", "surface"] = "all",
+    epsilon: _Length | None = None,
+    prepare: bool | Literal["auto", "wrap"] = False,
+    drop_sheets: bool = False,
+    exact_points: int = 17,
+    max_contacts: int = 100000000,
+    max_work: float | None = None,
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -854,6 +900,9 @@ def wrap(
     *,
     precision: Literal["float", "double"] = "float",
     # options of wrap
+    offset: _Length | None = None,
+    seal: _Length | None = None,
+    epsilon: _Length | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -892,6 +941,7 @@ def update_scene(
     path: _Path,
     *,
     # options of update_scene
+    package_path: _Path | Sequence[_Path] | None = None,
     # end of options
     no_cache: bool = False,
     threads: int = 0,
@@ -932,6 +982,7 @@ def solve(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    margin: float | Mapping[str, float] | None = None,
     # end of options
     no_cache: bool = False,
     threads: int = 0,
@@ -949,6 +1000,7 @@ def check_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    margin: float | Mapping[str, float] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -976,6 +1028,7 @@ def run_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    margin: float | Mapping[str, float] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -994,6 +1047,7 @@ def draw_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    margin: float | Mapping[str, float] | None = None,
     # end of options
     progress: _Progress | None = None,
 ) -> str: ...
@@ -1014,6 +1068,7 @@ def write_plan_page(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    margin: float | Mapping[str, float] | None = None,
     # end of options
     progress: _Progress | None = None,
 ) -> list[str]: ...
