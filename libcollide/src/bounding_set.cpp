@@ -87,10 +87,13 @@ Direction direction_of(const geom::ConvexSet& set) {
               "the set does not state whether it is an outer or an inner one");
 }
 
+double epsilon_of(const geom::ConvexSet& set) {
+  if (set.provenance.epsilon) return *set.provenance.epsilon;
+  throw Error(ErrorCode::InvalidInput,
+              "the set states no epsilon: how far it is from its solid is not certified");
+}
+
 std::vector<geom::ConvexBody> bodies_of(const geom::ConvexSet& set) {
-  if (!set.provenance.epsilon)
-    throw Error(ErrorCode::InvalidInput,
-                "the set states no epsilon: how far it is from its solid is not certified");
   if (const auto i = geom::find_not_convex(set))
     throw Error(ErrorCode::InvalidInput,
                 "body " + std::to_string(*i) + " ('" + set.bodies[*i].name + "') is not convex");
@@ -126,7 +129,7 @@ BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction directi
 }
 
 BoundingSet::BoundingSet(const geom::ConvexSet& set)
-    : BoundingSet(bodies_of(set), direction_of(set), set.provenance.epsilon.value()) {}
+    : BoundingSet(bodies_of(set), direction_of(set), epsilon_of(set)) {}
 
 PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error)
     : set_(&set), boxes_(6 * set.stride()) {

@@ -65,6 +65,9 @@ PlanningTask::PlanningTask(const TaskFiles& files) : data_(std::make_unique<Data
   d.files = files;
   d.texts = read_texts(files);
   plan::ExternalBindings bindings;
+  if (files.scene.empty() && !files.margin.margins.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "«margin»: there is no scene in which things could be kept apart");
   if (!files.scene.empty()) {
     d.scene = world::read_scene(files.scene);
     d.scene->world.margins = world::margins_of(d.scene->world, files.margin);

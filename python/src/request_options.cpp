@@ -101,7 +101,8 @@ std::string text_of_settings(const OptionDescription& option, const py::object& 
   for (const auto& [name, number] : value.cast<py::dict>()) {
     const auto given = number_of(number);
     if (!py::isinstance<py::str>(name) || !given) refuse(option, what, value);
-    out += name.cast<std::string>() + '=' + option_text::of(*given) + '\n';
+    const auto key = name.cast<std::string>();
+    out += (key.empty() && option.for_all ? key : key + '=') + option_text::of(*given) + '\n';
   }
   return out;
 }

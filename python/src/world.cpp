@@ -790,7 +790,8 @@ constexpr const char* kWorldDoc =
 Parameters
 ----------
 scene : Scene or path
-{keywords})";
+{keywords}
+)";
 
 void bind_init(WorldClass& world) {
   py::options signatures;

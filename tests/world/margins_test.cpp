@@ -129,16 +129,22 @@ TEST_F(MarginsOfAnArm, StatesAreFreeWhereEachPairIsFarEnoughApart) {
 
 TEST_F(MarginsOfAnArm, MotionsAreFreeAtEveryInstant) {
   World world = this->world();
-  // The stretched arm's upper side is at y = 0.05, the box begins at 0.75: it turns towards it.
+  // It turns towards the box, and is nearest at the end.
   const robot::Path path{{-0.2, 0, 0}, {0, 0, 0}};
+  Scratch scratch;
+  WorldState end = initial_state(world);
+  end.q[0] = path.back();
+  const auto nearest = Checker(world).find_nearest(end, scratch, {});
+  ASSERT_TRUE(nearest && nearest->items[1].robot == Item::kObject);
+  const double between = nearest->clearance.lower;
   const auto outcome = [&](double margin) {
     world.margins.all = margin;
     return check_motion(Checker(world), initial_state(world), 0, path, {}).outcome;
   };
   using Outcome = MotionAnswer::Outcome;
   EXPECT_EQ(outcome(0), Outcome::Free);
-  EXPECT_EQ(outcome(0.69), Outcome::Free);
-  EXPECT_EQ(outcome(0.71), Outcome::Contact);
+  EXPECT_EQ(outcome(between - 1e-3), Outcome::Free);
+  EXPECT_EQ(outcome(between + 1e-3), Outcome::Contact);
 }
 
 /// Neither links of one robot nor what it carries are kept apart, but where their pair says so.

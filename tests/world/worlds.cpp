@@ -46,7 +46,7 @@ geom::ConvexSet set_of(const std::vector<geom::Mesh>& hulls, const std::string& 
   geom::ConvexSet out;
   for (const geom::Mesh& hull : hulls) out.bodies.push_back({"body", hull});
   out.provenance.direction = direction;
-  out.provenance.epsilon = epsilon;
+  if (epsilon >= 0) out.provenance.epsilon = epsilon;
   out.provenance.covers_solid = out.provenance.covers_surface = direction == "outer";
   out.provenance.frame = frame;
   return out;

@@ -26,7 +26,8 @@ void add_problem(CLI::App& app, PlanOptions& o) {
 
 CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
   add_request_options(
-      app, options_named(execution::task_options(), {"process", "process-timeout", "plugin"}),
+      app,
+      options_named(execution::task_options(), {"process", "process-timeout", "plugin", "margin"}),
       o.task, o.stated);
   return app
       .add_option("--scene", o.task.scene,
