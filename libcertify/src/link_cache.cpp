@@ -145,7 +145,10 @@ std::optional<CertifiedLink> LinkCache::find(std::string& flaw) const {
     Reader r(*content);
     geom::ConvexSet set;
     set.provenance = link_.claims;
-    set.provenance.epsilon = r.value<double>();
+    const auto epsilon = r.value<double>();
+    if (!(epsilon >= 0 && std::isfinite(epsilon)))
+      throw Error(ErrorCode::InvalidInput, "an epsilon that is no length");
+    set.provenance.epsilon = epsilon;
     for (std::size_t n = r.count(1); n > 0; --n) {
       geom::ConvexBody& body = set.bodies.emplace_back();
       body.name = r.text();

@@ -64,9 +64,13 @@ const std::vector<Option<TaskFiles>>& task_options() {
           {.name = "plugin",
            .text = "A shared library with external functions; there may be several",
            .plural = "plugins"},
-          [](auto& r) -> auto& { return r.plugins; }),
-      options_of_part<R>(
-          world::margin_options(), [](auto& r) -> auto& { return r.margin; })[0]};
+          [](auto& r) -> auto& { return r.plugins; })};
+  return options;
+}
+
+const std::vector<Option<TaskFiles>>& task_margin_options() {
+  static const std::vector<Option<TaskFiles>> options = options_of_part<TaskFiles>(
+      world::margin_options(), [](auto& r) -> auto& { return r.margin; });
   return options;
 }
 

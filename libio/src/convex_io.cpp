@@ -417,6 +417,8 @@ void take_record(const Json& record, const Source& source, geom::ConvexSet& set)
     record.at("frame").get_to(p.frame);
     record.at("direction").get_to(p.direction);
     if (!record.at("epsilon").is_null()) p.epsilon = record.at("epsilon").get<double>();
+    if (p.epsilon && !(*p.epsilon >= 0 && std::isfinite(*p.epsilon)))
+      fail(source, "the record's epsilon is no length from 0 on; have the set made anew");
     record.at("covers_solid").get_to(p.covers_solid);
     record.at("covers_surface").get_to(p.covers_surface);
     record.at("source").get_to(p.source);
@@ -467,6 +469,26 @@ geom::ConvexSet read_convex_set(const fs::path& path, std::optional<Format> form
   fs::path directory;
   if (path != "-") directory = path.has_parent_path() ? path.parent_path() : ".";
   return parse_convex_set(out.bytes, *format, name, &out, directory);
+}
+
+bool is_meant_as_set(const geom::ConvexSet& set, const SetReadDetails& details) {
+  return details.has_record || (set.bodies.size() > 1 && !geom::find_not_convex(set));
+}
+
+std::optional<geom::ConvexSet> find_convex_set(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return read_convex_set(path);
+  const auto format = format_from_name(fs::path(path).extension().string());
+  if (format != Format::Glb && format != Format::Obj) return std::nullopt;
+  const std::vector<char> bytes = read_file(path);
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  try {
+    SetReadDetails details;
+    geom::ConvexSet set = parse_convex_set(bytes, *format, path, &details, folder);
+    if (is_meant_as_set(set, details)) return set;
+  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): the reader of meshes says what is wrong
+  }
+  return std::nullopt;
 }
 
 std::vector<char> serialise_convex_set(const geom::ConvexSet& set, SetFormat format) {

@@ -39,9 +39,8 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
   const std::string pair = motion.contact ? ": " + world.name_of(motion.contact->items[0]) +
                                                 " and " + world.name_of(motion.contact->items[1])
                                           : "";
-  throw Error(ErrorCode::LimitReached, what + " pass too near to be certified, after waypoint " +
-                                           std::to_string(motion.segment + 1) + pair +
-                                           "; give a smaller «resolution»");
+  throw Error(ErrorCode::LimitReached, what + " pass too near to be certified" + pair +
+                                           "; have the path found with a smaller «resolution»");
 }
 
 SampledPath sample_path(const MovingRobot& moving, const robot::Path& path,

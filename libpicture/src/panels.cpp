@@ -21,6 +21,8 @@ constexpr std::pair<const char*, Colour> kColours[] = {{"grey", {0.70F, 0.71F, 0
                                                        {"green", {0.45F, 0.72F, 0.45F}},
                                                        {"red", {0.86F, 0.42F, 0.38F}}};
 
+constexpr std::size_t kMostPixels = 64'000'000;
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -77,6 +79,8 @@ Image draw_panels(std::span<const geom::Mesh> meshes, const PanelOptions& option
   const std::vector<Colour> colours = parse_colours(options.colours);
   const std::vector<std::string> titles = split(options.titles);
   if (meshes.empty()) refuse("there is no mesh to be drawn");
+  if (options.width * options.height > kMostPixels)
+    refuse("«width» times «height»: more than 64,000,000 pixels");
   if (titles.size() > meshes.size()) refuse("«titles»: more titles than meshes");
   if (options.width < 32 * meshes.size()) refuse("«width»: less than 32 pixels per mesh");
   const int panels = static_cast<int>(meshes.size());

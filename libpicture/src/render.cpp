@@ -1,5 +1,6 @@
 // Meshes drawn in software.
 
+#include <kaboum/base/error.h>
 #include <kaboum/picture/render.h>
 
 #include <Eigen/Geometry>
@@ -15,6 +16,7 @@ namespace {
 
 using geom::Vec3;
 constexpr int kSamples = 2;  // per pixel and direction
+constexpr double kLargest = 1e60;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// The panel in samples.
@@ -55,7 +57,7 @@ double brightness(const Vec3& normal, const Camera& camera) {
 void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c,
                    const std::array<Colour, 3>& colour) {
   const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-  if (area == 0) return;
+  if (!(std::abs(area) > 0)) return;
   const double inverse = 1 / area;
   const auto low = [](double x, double y, double z) {
     return static_cast<int>(std::clamp(std::ceil(std::min({x, y, z}) - 0.5), 0.0, 1e6));
@@ -71,7 +73,7 @@ void fill_triangle(Buffer& buffer, const Vec3& a, const Vec3& b, const Vec3& c,
       const double px = x + 0.5, py = y + 0.5;
       const double u = ((b.x() - px) * (c.y() - py) - (b.y() - py) * (c.x() - px)) * inverse;
       const double v = ((c.x() - px) * (a.y() - py) - (c.y() - py) * (a.x() - px)) * inverse;
-      if (u < 0 || v < 0 || u + v > 1) continue;
+      if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
       const auto z = static_cast<float>(u * a.z() + v * b.z() + (1 - u - v) * c.z());
       const std::size_t i = buffer.index(x, y);
       if (z >= buffer.depth[i]) continue;
@@ -206,6 +208,10 @@ void draw_mesh(Image& image, int left, int top, int width, int height, const geo
   for (const Vec3& p : mesh.vertices) {
     Vec3 q = camera.project(p);
     q.head<2>() *= kSamples;
+    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kLargest || !q.allFinite() ||
+        q.cwiseAbs().maxCoeff() > kLargest)
+      throw Error(ErrorCode::InvalidInput,
+                  "a vertex with a coordinate that is not finite, or beyond 1e60, cannot be drawn");
     projected.push_back(q);
   }
   std::vector<Vec3> normals;

@@ -13,13 +13,14 @@ std::vector<Option<R>> table(const std::string& epsilon) {
               claims_option(), [](auto& r) -> auto& { return r.claims; }, kClaims),
           option<R>(
               {.name = "epsilon", .text = epsilon}, [](auto& r) -> auto& { return r.epsilon; }),
-          option<R>(
+          choice<R>(
               {.name = "prepare",
                .text = "Judge the original as decimation and decomposition prepare it, which "
                        "is what their claims and a container's epsilon are about, instead of "
                        "the file as it is: " +
-                       preparation_words()},
-              [](auto& r) -> auto& { return r.prepare; }),
+                       preparation_words(),
+               .implied = "auto"},
+              [](auto& r) -> auto& { return r.prepare; }, kPrepared),
           option<R>(
               drop_sheets_option(), [](auto& r) -> auto& { return r.drop_sheets; }),
           option<R>(

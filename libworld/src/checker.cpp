@@ -107,6 +107,8 @@ Checker::Checker(const World& world, Observer* observer)
     : world_(&world),
       observer_(observer),
       largest_margin_(world.margins.largest() * (1 + 0x1p-50)) {
+  if (!(largest_margin_ >= 0 && std::isfinite(largest_margin_)))
+    throw Error(ErrorCode::InvalidArgument, "a margin that is no number from 0 on");
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     const RobotModel& robot = world.robots[r];
     const std::size_t n = robot.kinematics.variables.size();

@@ -451,6 +451,8 @@ class World:
     @property
     def unit(self) -> str: ...
     @property
+    def margins(self) -> str: ...
+    @property
     def robots(self) -> list[str]: ...
     @property
     def objects(self) -> list[str]: ...
@@ -741,7 +743,7 @@ def verify_mesh(
     # options of verify_mesh
     claims: Literal["all", "solid", "surface"] = "all",
     epsilon: _Length | None = None,
-    prepare: bool = False,
+    prepare: bool | Literal["auto"] = False,
     drop_sheets: bool = False,
     exact_points: int = 17,
     max_contacts: int = 100000000,
@@ -757,7 +759,7 @@ def verify_cover(
     # options of verify_cover
     claims: Literal["all", "solid", "surface"] = "all",
     epsilon: _Length | None = None,
-    prepare: bool = False,
+    prepare: bool | Literal["auto"] = False,
     drop_sheets: bool = False,
     exact_points: int = 17,
     max_contacts: int = 100000000,
@@ -773,7 +775,7 @@ def verify_sweep(
     *,
     # options of verify_sweep
     claims: Literal["all", "surface"] = "all",
-    prepare: bool = False,
+    prepare: bool | Literal["auto"] = False,
     drop_sheets: bool = False,
     exact_points: int = 17,
     gap: float | None = None,
@@ -982,6 +984,8 @@ def solve(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
+    # options of margins
     margin: float | Mapping[str, float] | None = None,
     # end of options
     no_cache: bool = False,
@@ -1000,6 +1004,8 @@ def check_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
+    # end of options
+    # options of margins
     margin: float | Mapping[str, float] | None = None,
     # end of options
     threads: int = 0,
@@ -1028,7 +1034,6 @@ def run_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
-    margin: float | Mapping[str, float] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -1047,7 +1052,6 @@ def draw_plan(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
-    margin: float | Mapping[str, float] | None = None,
     # end of options
     progress: _Progress | None = None,
 ) -> str: ...
@@ -1068,7 +1072,6 @@ def write_plan_page(
     processes: _Path | Sequence[_Path] | None = None,
     process_timeout: float = 10.0,
     plugins: _Path | Sequence[_Path] | None = None,
-    margin: float | Mapping[str, float] | None = None,
     # end of options
     progress: _Progress | None = None,
 ) -> list[str]: ...

@@ -1,6 +1,7 @@
 // Distances: kaboum.hausdorff and write_heatmap, as hausdorff-eval.
 
 #include <kaboum/distance/compare_options.h>
+#include <kaboum/io/convex_io.h>
 #include <kaboum/page/distance_page.h>
 
 #include <filesystem>
@@ -32,15 +33,16 @@ py::dict one_way(const distance::OneWay& way) {
   return out;
 }
 
-/// A set where there is one; else a mesh.
+/// A set where there is one, in a file too; else a mesh.
 distance::Shape shape_of(const py::object& value, const char* name) {
   distance::Shape out{name, {}, {}};
   const bool set = py::isinstance<SetValue>(value) || py::isinstance<CertifiedSetValue>(value) ||
                    (py::isinstance<py::list>(value) && py::len(value) != 2);
   if (set)
     out.set = *set_of(value);
-  else
-    out.mesh = *mesh_of(value, name).mesh;
+  else if (const auto path = path_of(value))
+    out.set = io::find_convex_set(*path);
+  if (!out.set) out.mesh = *mesh_of(value, name).mesh;
   return out;
 }
 

@@ -36,9 +36,11 @@ std::string json_text(const py::handle& value) {
 /// The files of a task, whose options are taken from keywords.
 /// @param scene  None: none
 execution::TaskFiles files_of(const py::object& domain, const py::object& problem,
-                              const py::object& scene, py::dict& keywords) {
+                              const py::object& scene, py::dict& keywords,
+                              bool keeps_apart = false) {
   execution::TaskFiles out;
   take_options(execution::task_options(), keywords, out);
+  if (keeps_apart) take_options(execution::task_margin_options(), keywords, out);
   out.domain = required_path(domain, "domain");
   if (!problem.is_none()) out.problem = required_path(problem, "problem");
   if (!scene.is_none()) out.scene = required_path(scene, "scene");
@@ -67,8 +69,11 @@ py::dict dict_of(const plan::PlanSize& size) {
 }
 
 std::vector<Keyword> task_keywords() { return keywords_of(execution::task_options()); }
+std::vector<Keyword> check_keywords() {
+  return task_keywords() + keywords_of(execution::task_margin_options());
+}
 std::vector<Keyword> solve_keywords() {
-  return keywords_of(plan::solve_options()) + task_keywords();
+  return keywords_of(plan::solve_options()) + check_keywords();
 }
 std::vector<Keyword> run_keywords() {
   return keywords_of(execution::run_options()) + task_keywords();
@@ -177,7 +182,7 @@ void bind_class(py::module_& module) {
 SolutionValue solve(const py::object& domain, const py::object& problem, const py::object& scene,
                     const py::object& assume, const py::kwargs& given) {
   py::dict keywords = given;
-  execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  execution::TaskFiles files = files_of(domain, problem, scene, keywords, true);
   plan::SearchRequest options;
   take_options(plan::solve_options(), keywords, options);
   const RunKeywords running = take_run_keywords(keywords);
@@ -230,9 +235,9 @@ struct CheckValue {
 CheckValue check_plan(const py::object& domain, const py::object& problem, const py::object& plan,
                       const py::object& scene, const py::kwargs& given_keywords) {
   py::dict keywords = given_keywords;
-  const execution::TaskFiles files = files_of(domain, problem, scene, keywords);
+  const execution::TaskFiles files = files_of(domain, problem, scene, keywords, true);
   const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
-  require_all_taken("check_plan", keywords, task_keywords(), Runs::Threads);
+  require_all_taken("check_plan", keywords, check_keywords(), Runs::Threads);
   const PlanText given(plan);
   Watch watch(running.progress);
   return run(running.threads, [&] {
@@ -567,7 +572,7 @@ void bind_functions_with_options(py::module_& module) {
   module.def("solve", &solve, py::arg("domain"), py::arg("problem") = py::none(), py::kw_only(),
              py::arg("scene") = py::none(), py::arg("assume") = py::none(), solving.c_str());
   const std::string checking =
-      document("check_plan", of_plan + "scene: object = None", task_keywords(), "kaboum.PlanCheck",
+      document("check_plan", of_plan + "scene: object = None", check_keywords(), "kaboum.PlanCheck",
                kCheckDoc, Runs::Threads);
   module.def("check_plan", &check_plan, py::arg("domain"), py::arg("problem"), py::arg("plan"),
              py::kw_only(), py::arg("scene") = py::none(), checking.c_str());

@@ -102,6 +102,7 @@ std::string text_of_settings(const OptionDescription& option, const py::object& 
     const auto given = number_of(number);
     if (!py::isinstance<py::str>(name) || !given) refuse(option, what, value);
     const auto key = name.cast<std::string>();
+    if (key.find('\n') != std::string::npos) refuse(option, what, value);
     out += (key.empty() && option.for_all ? key : key + '=') + option_text::of(*given) + '\n';
   }
   return out;
@@ -247,6 +248,7 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
         text = option.implied;
         break;
       }
+      if (!option.implied.empty() && !is_text) refuse(option, "True, False or a str", value);
       [[fallthrough]];
     case Kind::Text:
       if (!is_text) refuse(option, "a str", value);

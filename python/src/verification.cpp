@@ -1,5 +1,6 @@
 // Claims about meshes and sets: kaboum.verify_mesh and verify_cover, as bound-verify.
 
+#include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
@@ -7,6 +8,7 @@
 #include <kaboum/verify/verdict_options.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "answers.h"
 #include "convex_set.h"
@@ -112,14 +114,33 @@ struct Approximation {
   [[nodiscard]] const geom::Mesh& triangles() const { return set ? sum : *mesh.mesh; }
 };
 
+/// Whether a file says that it holds a set of convex bodies: a folder, or a container.
+bool holds_bodies(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return true;
+  if (io::format_from_name(std::filesystem::path(path).extension().string()) != io::Format::Glb)
+    return false;
+  const std::vector<char> bytes = io::read_file(path);
+  try {
+    io::SetReadDetails details;
+    io::parse_convex_set(bytes, io::Format::Glb, path, &details);
+    return details.has_record;
+  } catch (const Error&) {  // the reader of meshes says what is wrong
+    return false;
+  }
+}
+
 Approximation approximation_of(const py::object& value, verify::Relation relation) {
   Approximation out;
+  const auto path = path_of(value);
+  const bool is_set_in_file = path && holds_bodies(*path);
   if (relation == verify::Relation::Cover) {
     out.set = set_of(value);
     if (!out.set)
       throw Error(ErrorCode::InvalidArgument,
                   "set: a set is a ConvexSet, the name of a file or folder, or a list of meshes");
-  } else if (py::isinstance<SetValue>(value) || py::isinstance<CertifiedSetValue>(value)) {
+  } else if (is_set_in_file || py::isinstance<SetValue>(value) ||
+             py::isinstance<CertifiedSetValue>(value)) {
     if (relation == verify::Relation::Outer)
       throw Error(ErrorCode::InvalidArgument,
                   "approximation is a set of convex bodies: ask verify_cover whether it covers");

@@ -27,6 +27,7 @@ namespace {
 struct WorldValue {
   std::shared_ptr<const world::SceneFile> scene;
   std::shared_ptr<const world::Checker> checker;
+  std::string margins;  ///< in words
 
   [[nodiscard]] const world::World& world() const { return scene->world; }
 };
@@ -126,6 +127,7 @@ WorldValue read_world(const py::object& scene, const py::kwargs& given) {
         std::make_shared<world::SceneFile>(made ? std::move(*made) : world::read_scene(*file));
     read->world.margins = world::margins_of(read->world, margin);
     out.scene = std::move(read);
+    out.margins = words_of(margin);
     out.checker = std::make_shared<const world::Checker>(out.scene->world);
     return out;
   });
@@ -621,6 +623,8 @@ using WorldClass = py::class_<WorldValue>;
 constexpr const char* kCheckDoc =
     R"(All contacts of the world with a robot at a configuration, the other robots at home.
 
+Limits of joints are not looked at: a configuration beyond them may be free. `find_path` keeps them.
+
 Parameters
 ----------
 q : array
@@ -632,6 +636,8 @@ robot : str, optional
 
 constexpr const char* kMotionDoc =
     R"(Whether a robot may move along straight segments of joint values: at every instant, not at samples.
+
+Limits of joints are not looked at.
 
 Parameters
 ----------
@@ -812,6 +818,8 @@ It never changes. Angles are in radians, lengths in the scene's unit.)");
   world
       .def_property_readonly(
           "unit", [](const WorldValue& w) { return w.world().unit; }, "Of length.")
+      .def_readonly("margins", &WorldValue::margins,
+                    "That things are kept apart by, in words; empty: by none.")
       .def_property_readonly(
           "robots",
           [](const WorldValue& w) {

@@ -55,11 +55,16 @@ expect 2 'joint needs --path, --configuration' "$BIN/kaboum-check" near.json --j
 expect 2 'degrees needs' "$BIN/kaboum-check" near.json --degrees
 expect 2 'resolution needs --path' "$BIN/kaboum-check" near.json --configuration 0,0 --resolution 0.1
 # Margins: the tip is 14 from the box.
-shows 0 '^free$' "$BIN/kaboum-check" free.json --margin 13.9
+shows 0 '^free, with margins kept: 13.9$' "$BIN/kaboum-check" free.json --margin 13.9 --report margin.json
+grep -q '"margins": "13.9"' margin.json || fail "no margins in the report"
 shows 1 'arm/tip and box are within the margin of 14.1: no farther apart than 14' "$BIN/kaboum-check" free.json --margin 14.1
 shows 1 'arm/tip and box' "$BIN/kaboum-check" free.json --margin box=15 --report margin.json
 grep -q '"margin": 15' margin.json || fail "no margin in the report"
-shows 0 '^free$' "$BIN/kaboum-check" free.json --margin 15 --margin arm,box=13
+shows 0 '^free, with margins kept: 15; arm,box=13$' "$BIN/kaboum-check" free.json --margin 15 --margin arm,box=13
+shows 0 '^free, ' "$BIN/kaboum-check" free.json --margin 15 --margin 'arm, box=13'
+expect 2 "'box,arm' gives 15 to box and arm/base, which another one gives 13" "$BIN/kaboum-check" free.json --margin arm,box=13 --margin box,arm=15
+expect 2 "'box,box' names one thing twice" "$BIN/kaboum-check" free.json --margin box,box=13
+expect 2 "a link is named with its robot: 'arm/tip'" "$BIN/kaboum-check" free.json --margin tip=13
 expect 2 "no object, robot or link 'arm/tpi'; did you mean 'arm/tip'" "$BIN/kaboum-check" free.json --margin arm/tpi=1
 expect 2 'at least 0' "$BIN/kaboum-check" free.json --margin=-1
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv

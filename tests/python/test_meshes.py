@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import kaboum
-from conftest import cube, signed_volume
+from conftest import cube, signed_volume, torus
 
 
 def test_arrays_are_views_that_cannot_be_written(box):
@@ -224,3 +224,18 @@ def test_cache(tmp_path, bracket):
     one.write_bytes(one.read_bytes()[:-1] + b"?")
     assert any(e["flaw"] for e in kaboum.cache_entries(folder=folder, verify=True))
     assert kaboum.prune_cache(size=0)["removed"] == len(entries) and kaboum.cache_entries() == []
+
+
+def test_files_of_sets_are_sets(tmp_path):
+    part, bodies = torus(32, 16), tmp_path / "set.glb"
+    made = kaboum.decompose(part, epsilon="5%", effort="fast")
+    made.write(bodies)
+    kaboum.write(part, tmp_path / "part.ply")
+    by_file, by_value = kaboum.hausdorff(part, bodies), kaboum.hausdorff(part, kaboum.read_set(bodies))
+    assert (by_file.lower, by_file.upper) == (by_value.lower, by_value.upper)
+    with pytest.raises(kaboum.Error, match="verify_cover"):
+        kaboum.verify_mesh(part, bodies)
+    inner = kaboum.decompose(part, epsilon="5%", direction="inner", effort="fast")
+    inner.write(tmp_path / "inner.glb")
+    for set_ in (tmp_path / "inner.glb", inner):
+        assert kaboum.verify_mesh(part, set_, relation="inner", prepare=True, epsilon="5%")

@@ -142,3 +142,16 @@ def test_worlds(arm, tmp_path):
         assert drawn == (tmp_path / "ours.png").read_bytes() == world.draw(q)
     with pytest.raises(kaboum.Error, match="one configuration"):
         world.draw([[0, 0], [1, 0]])
+
+
+def test_what_cannot_be_drawn_is_refused():
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    for v in (1e155, 1e300, 1e-320):
+        vertices = np.array([[0, 0, 0], [v, 0, 0], [0, v, 0.0], [0, 0, v]])
+        if v > 1:
+            with pytest.raises(kaboum.Error, match="cannot be drawn"):
+                kaboum.draw((vertices, faces))
+        else:
+            assert kaboum.draw((vertices, faces))
+    with pytest.raises(kaboum.Error, match="more than 64,000,000 pixels"):
+        kaboum.draw(torus(32, 16), width=16384, height=16384)

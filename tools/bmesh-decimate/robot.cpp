@@ -226,6 +226,7 @@ void require_separate(const DecimationOptions& o) {
 }  // namespace
 
 int decimate_robot(const CLI::App& app, DecimationOptions o) {
+  require_absent(app, "a robot (.urdf), whose page is --html-report", {"--preview"});
   require_absent(app, "a robot (.urdf)", {"--progressive", "--log"});
   require_absent(app, "a robot (.urdf), which states its meshes' scales itself",
                  {"--unit", "--scale"});

@@ -84,6 +84,9 @@ class WrappedHelp : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool positional) const override {
     std::string head = make_option_name(option, positional);
+    // A flag that may have a value: "--prepare{auto}".
+    if (const std::size_t implied = head.find('{'); implied != std::string::npos)
+      head = head.substr(0, implied) + "[=" + option->get_type_name() + "]";
     std::vector<std::string> details;
     if (option->get_type_size() != 0) {
       const std::string type = option->get_type_name();

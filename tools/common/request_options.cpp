@@ -38,7 +38,8 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
     app.add_flag(name + '{' + option.implied + '}', *stated, text)
         ->check(CLI::Validator(
             [option](const std::string& value) { return flaw_of(option, value); }, ""))
-        ->each([assign, stated](const std::string& value) { assign(value); });
+        ->each([assign, stated](const std::string& value) { assign(value); })
+        ->type_name(value_words(option));
     return;
   }
   const bool names = option.kind == OptionDescription::Kind::Names;
@@ -58,7 +59,8 @@ void add_request_option(CLI::App& app, const OptionDescription& option,
                },
                text)
             ->type_name(value_words(option));
-    if (names) added->delimiter(',')->allow_extra_args(false);
+    if (names) added->delimiter(',');
+    if (names || option.kind == OptionDescription::Kind::Settings) added->allow_extra_args(false);
     return;
   }
   app.add_option_function<std::string>(name, assign, text)

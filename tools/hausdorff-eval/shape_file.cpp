@@ -74,7 +74,7 @@ bool parse_set(ShapeFile& out, const std::vector<char>& bytes, std::optional<io:
                             : io::read_convex_set(file, {}, &details);
   const bool several = set.bodies.size() > 1;
   const auto crooked = several ? geom::find_not_convex(set) : std::nullopt;
-  if (!asked_for && format && !details.has_record && (!several || crooked)) {
+  if (!asked_for && format && !io::is_meant_as_set(set, details)) {
     if (crooked)
       out.notes.push_back("taken as a mesh, not as a set of bodies: body '" +
                           set.bodies[*crooked].name + "' is not exactly convex");

@@ -47,6 +47,12 @@ void say(const tools::CheckOptions& o, const std::string& line) {
   if (!o.common.quiet) std::cout << line << '\n';
 }
 
+/// End of what is said of what is free.
+std::string kept_apart(const tools::CheckOptions& o) {
+  const std::string margins = words_of(o.margin);
+  return margins.empty() ? "" : ", with margins kept: " + margins;
+}
+
 std::vector<double> configuration_at(const robot::Path& path, std::size_t segment, double share) {
   const std::vector<double>&from = path[segment],
         &to = path[std::min(segment + 1, path.size() - 1)];
@@ -79,7 +85,8 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
     contacts.push_back(*answer.contact);
   }
   report["motion"] = tools::to_json(scene.world, answer);
-  say(o, tools::describe(scene.world, answer));
+  say(o, tools::describe(scene.world, answer) +
+             (answer.outcome == world::MotionAnswer::Outcome::Free ? kept_apart(o) : ""));
   if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
   const collide::Inclusion inside = tools::decide_inside(
       checker, initial_state(scene.world), robot, path, o.motion, wanted,
@@ -112,7 +119,7 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
     tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
     const std::string before =
         values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
-    if (contacts.empty()) say(o, before + "free");
+    if (contacts.empty()) say(o, before + "free" + kept_apart(o));
     for (const world::Contact& contact : contacts) {
       free = false;
       certain = certain || contact.certain;
@@ -182,6 +189,7 @@ int check(const tools::CheckOptions& o) {
   const int code = o.path.empty() ? check_states(o, scene, robot, values, report)
                                   : check_path(o, scene, *robot, values, report);
   if (!notes.empty()) report["notes"] = notes;
+  if (!o.margin.margins.empty()) report["margins"] = words_of(o.margin);
   tools::write_report(o.common, "kaboum-check", report);
   return code;
 }

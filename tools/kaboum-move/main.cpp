@@ -54,6 +54,7 @@ int move(const MoveOptions& o) {
   tools::log(o.common.quiet,
              std::to_string(answer.path.size()) + " waypoints" +
                  (answer.straight ? ", straight" : "") + ", free at every instant" +
+                 (o.margin.margins.empty() ? "" : ", with margins kept: " + words_of(o.margin)) +
                  (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : ""));
   return tools::kDone;
 }

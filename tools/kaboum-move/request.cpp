@@ -100,6 +100,7 @@ Json answer_json(const MoveRequest& r, const PathAnswer& answer, const MoveOptio
     out["straight"] = answer.straight;
     out["waypoints"] = answer.path;
   }
+  if (!o.margin.margins.empty()) out["margins"] = words_of(o.margin);
   if (answer.contact) out["contact"] = to_json(r.scene.world, *answer.contact);
   return out;
 }

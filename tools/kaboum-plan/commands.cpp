@@ -119,6 +119,7 @@ int solve(const PlanOptions& o) {
                  {"refused", solution.refused},
                  {"scene", o.task.scene},
                  {"statistics", statistics_json(solution.statistics)}};
+  if (!o.task.margin.margins.empty()) report["margins"] = words_of(o.task.margin);
   task.keep_answers();
   if (!o.task.scene.empty()) {
     report["geometry"] = geometry_json(task.counters());

@@ -26,8 +26,7 @@ void add_problem(CLI::App& app, PlanOptions& o) {
 
 CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
   add_request_options(
-      app,
-      options_named(execution::task_options(), {"process", "process-timeout", "plugin", "margin"}),
+      app, options_named(execution::task_options(), {"process", "process-timeout", "plugin"}),
       o.task, o.stated);
   return app
       .add_option("--scene", o.task.scene,
@@ -41,6 +40,7 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
   add_inputs(*s, o);
   add_problem(*s, o);
   add_scene(*s, o);
+  add_request_options(*s, execution::task_margin_options(), o.task, o.stated);
   add_request_options(*s, plan::solve_options(), o.search, o.stated);
   s->add_option("-o,--output", o.output, "The plan (JSON); - is stdout")
       ->capture_default_str()
@@ -64,6 +64,7 @@ CLI::App* add_check_command(CLI::App& app, PlanOptions& o) {
   add_inputs(*c, o);
   add_problem(*c, o);
   add_scene(*c, o);
+  add_request_options(*c, execution::task_margin_options(), o.task, o.stated);
   c->add_option("--plan", o.plan, "The plan to check, or -")->required()->type_name("FILE");
   add_common_options(*c, o.common);
   return c;

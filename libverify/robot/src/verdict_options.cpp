@@ -50,11 +50,12 @@ std::vector<Option<MotionVerdictOptions>> motion_table() {
   std::vector<Option<R>> out{
       choice<R>(
           claims_option(), [](auto& r) -> auto& { return r.claims; }, kOfMotions),
-      option<R>(
+      choice<R>(
           {.name = "prepare",
            .text = "Judge the links' meshes as decomposition prepares them (" +
-                   preparation_words() + "); one that preparing refuses, as it is"},
-          [](auto& r) -> auto& { return r.shapes.prepare; }),
+                   preparation_words() + "); one that preparing refuses, as it is",
+           .implied = "auto"},
+          [](auto& r) -> auto& { return r.shapes.prepare; }, kPrepared),
       option<R>(
           drop_sheets_option(), [](auto& r) -> auto& { return r.shapes.drop_sheets; }),
       option<R>(

@@ -9,6 +9,9 @@ namespace kaboum::execution {
 /// The options of a planning task: languages of its files, and external functions of a user's own.
 const std::vector<Option<TaskFiles>>& task_options();
 
+/// What a task may keep apart where a plan is found or checked, besides: margin.
+const std::vector<Option<TaskFiles>>& task_margin_options();
+
 /// The options of carrying out a plan.
 const std::vector<Option<PlanRunRequest>>& run_options();
 

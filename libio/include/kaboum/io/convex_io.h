@@ -32,6 +32,14 @@ struct SetReadDetails {
   std::string unit;                ///< as ReadResult::unit: what states it, or nothing
 };
 
+/// Whether what may be a mesh or a set, as GLB and OBJ files, is meant as a set: it has a record,
+/// or several bodies that are all exactly convex.
+bool is_meant_as_set(const geom::ConvexSet& set, const SetReadDetails& details);
+
+/// The set that a folder or a file holds; nullopt where a file holds a mesh.
+/// @throws Error as read_convex_set, of folders and of files that cannot be read
+std::optional<geom::ConvexSet> find_convex_set(const std::string& path);
+
 /// Parses a set from a file in memory: every mesh format, see read_convex_set.
 /// @throws as parse_mesh.
 geom::ConvexSet parse_convex_set(std::span<const char> bytes, Format format,

@@ -24,7 +24,8 @@ const std::vector<Option<PanelOptions>>& panel_options();
 
 /// Meshes side by side, one camera for all.
 /// @throws Error{InvalidArgument} naming the option: no view, an unknown colour, more titles than
-///   meshes, less than 32 pixels per mesh; where there is no mesh
+///   meshes, less than 32 pixels per mesh, too many pixels; where there is no mesh;
+///   Error{InvalidInput} for coordinates that are not finite or beyond 1e60
 Image draw_panels(std::span<const geom::Mesh> meshes, const PanelOptions& options = {});
 
 }  // namespace kaboum::picture

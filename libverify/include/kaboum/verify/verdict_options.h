@@ -33,6 +33,8 @@ std::string contradiction(const MeshVerdictOptions& options);
 inline constexpr std::array<std::pair<const char*, Claims>, 3> kClaims{
     {{"all", Claims::All}, {"solid", Claims::Solid}, {"surface", Claims::Surface}}};
 const char* name_of(Claims claims);
+/// Names of how a mesh is prepared; without one it is judged as it is.
+inline constexpr std::array<std::pair<const char*, bool>, 1> kPrepared{{{"auto", true}}};
 
 /// What options of several verdicts are. Each request has its own members for them.
 OptionDescription claims_option();

@@ -76,8 +76,8 @@ class Observer {
 /// of objects that rest are looked at on request. Const throughout: threads may share it.
 class Checker {
  public:
-  /// Refers to the world, which must not change, and to the observer, if there is one: threads may
-  /// share the checker as far as they may share that.
+  /// Refers to the world, which must not change (its margins neither), and to the observer, if
+  /// there is one: threads may share the checker as far as they may share that.
   explicit Checker(const World& world, Observer* observer = nullptr);
 
   struct Options {

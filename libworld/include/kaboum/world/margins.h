@@ -23,6 +23,9 @@ struct MarginRequest {
 /// The option of margins: margin.
 const std::vector<Option<MarginRequest>>& margin_options();
 
+/// The margins that are asked for, in one line: "0.02; arm/tool,box=0"; empty: none are.
+std::string words_of(const MarginRequest& request);
+
 /// The margins that are asked for.
 /// @throws Error{InvalidArgument} for names that the world lacks, distances that are negative or
 ///   not finite

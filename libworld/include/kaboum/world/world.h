@@ -128,6 +128,7 @@ struct Item {
 struct Margins {
   double all = 0;                                      ///< of any two things
   std::map<Item, double> of = {};                      ///< of a thing from all others
+  std::map<std::size_t, double> of_robots = {};        ///< of what a robot carries, likewise
   std::map<std::array<Item, 2>, double> between = {};  ///< of a pair, the lesser item first
 
   [[nodiscard]] double largest() const;
