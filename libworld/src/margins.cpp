@@ -64,10 +64,12 @@ bool is_exempt(const World& world, const Item& a, const Item& b) {
     if (ordered(x, y) == ordered(a, b)) return true;
   if (a.robot == Item::kObject || a.robot != b.robot) return false;
   const RobotModel& robot = world.robots[a.robot];
-  const auto [low, high] = std::minmax(robot.shapes[a.index].link, robot.shapes[b.index].link);
-  return low == high || std::ranges::any_of(robot.allowed, [&](const AllowedPair& pair) {
-           return pair.a == low && pair.b == high && pair.reason != AllowedPair::Reason::Never;
-         });
+  const std::uint32_t x = robot.shapes[a.index].link, y = robot.shapes[b.index].link;
+  if (x == y) return true;
+  return std::ranges::any_of(robot.allowed, [&](const AllowedPair& pair) {
+    return pair.a == std::min(x, y) && pair.b == std::max(x, y) &&
+           pair.reason != AllowedPair::Reason::Never;
+  });
 }
 
 /// Margins of pairs that were stated with the same number of names of single things: the more, the
