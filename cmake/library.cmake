@@ -1,3 +1,15 @@
+# What most sources of libraries include is read once, for all of them. Clang-tidy reads each source by itself and sees
+# what one forgot to include.
+if(KABOUM_UNITY)
+  file(WRITE ${PROJECT_BINARY_DIR}/library_headers.cpp "")
+  add_library(kaboum_library_headers OBJECT ${PROJECT_BINARY_DIR}/library_headers.cpp)
+  set_target_properties(kaboum_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(kaboum_library_headers PRIVATE kaboum_options Eigen3::Eigen nlohmann_json::nlohmann_json)
+  target_precompile_headers(kaboum_library_headers PRIVATE <algorithm> <array> <charconv> <cmath> <filesystem> <functional>
+                            <map> <memory> <numeric> <optional> <set> <span> <sstream> <string> <unordered_map> <vector>
+                            <Eigen/Geometry> <nlohmann/json.hpp>)
+endif()
+
 # kaboum_add_library(<name> SOURCES ... PUBLIC ... PRIVATE ... HEADERS_OF ... ALONE ...)
 # A library (static, or with BUILD_SHARED_LIBS shared) with the alias and exported target kaboum::<name>, a component of the package; headers
 # in include/. HEADERS_OF are libraries of which only this one's sources include something: who uses the
@@ -12,6 +24,9 @@ function(kaboum_add_library name)
                         POSITION_INDEPENDENT_CODE ON
                         UNITY_BUILD ${KABOUM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(KABOUM_UNITY)
+    target_precompile_headers(kaboum_${name} REUSE_FROM kaboum_library_headers)
+  endif()
   target_compile_features(kaboum_${name} PUBLIC cxx_std_20)
   target_include_directories(kaboum_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>

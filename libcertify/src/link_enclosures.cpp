@@ -30,6 +30,15 @@ double now() {
 
 }  // namespace
 
+std::vector<std::vector<robot::LinkShape>> LinkEnclosures::shapes_by_link() const {
+  std::vector<std::vector<robot::LinkShape>> out;
+  for (const robot::LinkShape& shape : shapes) {
+    if (out.empty() || out.back().front().link != shape.link) out.emplace_back();
+    out.back().push_back(shape);
+  }
+  return out;
+}
+
 LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosuresRequest& request,
                              const CacheFolder* cache,
                              const std::function<void(const std::string& stage)>& progress) {

@@ -158,3 +158,11 @@ Transform SceneValues::pose_member(const Located& object, const char* name) cons
 }
 
 }  // namespace kaboum::world::detail
+
+namespace kaboum::world {
+
+Primitive parse_primitive(const std::string& text, const std::string& name) {
+  return detail::SceneValues(text, name).primitive(detail::parse_located(text, name));
+}
+
+}  // namespace kaboum::world

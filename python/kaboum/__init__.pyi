@@ -116,6 +116,7 @@ class ConvexSet:
     @property
     def record(self) -> dict[str, Any]: ...
     def write(self, path: _Path) -> None: ...
+    def write_preview(self, file: _Path, *, explode: float = 0.5) -> None: ...
     def __len__(self) -> int: ...
 
 class CertifiedSet:
@@ -246,6 +247,7 @@ class EnclosedRobot:
         mesh_prefix: str | None = None,
         no_cache: bool = False,
     ) -> dict[str, list[str]]: ...
+    def write_page(self, file: _Path) -> None: ...
     def __bool__(self) -> bool: ...
 
 class Solution:
@@ -920,7 +922,7 @@ def make_scene(
     path: _Path,
     *,
     robots: Mapping[str, _Path] | None = None,
-    objects: Mapping[str, _Path] | None = None,
+    objects: Mapping[str, _Path | Mapping[str, Any]] | None = None,
     regions: Mapping[str, _Path] | None = None,
     at: Mapping[str, Sequence[float]] | None = None,
     scale: Mapping[str, float] = {},

@@ -77,7 +77,7 @@ batch::BatchResult run_batch(
   return run(0, [&] { return batch::run_batch(request); });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kBatchDoc =
     R"(Runs a program on many files, at the same time, with limits, and resumably, as `kaboum-batch`.
 
 Each file has a process of its own, which is ended with this one. Called again after anything, it goes
@@ -156,7 +156,7 @@ void bind_batches(py::module_& module) {
              py::arg("memory") = py::none(), py::arg("max_memory") = py::none(),
              py::arg("timeout") = py::none(), py::arg("shard") = py::none(),
              py::arg("summary") = false, py::arg("retry") = false, py::arg("pictures") = true,
-             py::arg("programs") = py::none(), py::arg("progress") = py::none(), kDoc);
+             py::arg("programs") = py::none(), py::arg("progress") = py::none(), kBatchDoc);
 }
 
 }  // namespace kaboum::python

@@ -103,6 +103,18 @@ radii : float or array (n,)
           "write", [](const SetValue& s, const py::object& path) { write_set(*s.set, {}, path); },
           py::arg("path"),
           "Writes a .glb container, an .obj with one object per body, or a folder of STL files.")
+      .def(
+          "write_preview",
+          [](const SetValue& s, const py::object& file, double explode) {
+            if (file.is_none()) throw Error(ErrorCode::InvalidArgument, "file: a name is expected");
+            png_bytes(file,
+                      [&] { return picture::encode_png(picture::draw_bodies(*s.set, explode)); });
+          },
+          py::arg("file"), py::kw_only(), py::arg("explode") = picture::kExplode,
+          R"(Writes a picture (.png) of the bodies.
+
+It has a second panel, with the bodies moved apart by the share `explode` of their distance from the
+middle; 0: it has none.)")
       .def("__len__", [](const SetValue& s) { return s.set->bodies.size(); })
       .def("__repr__", [](const SetValue& s) {
         return "<kaboum.ConvexSet of " + std::to_string(s.set->bodies.size()) + " bodies>";
@@ -243,7 +255,7 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
   });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kConvexSetDoc =
     R"(Decomposes a solid into few convex bodies whose union provably contains it.
 
 Options and defaults are those of bcd-decompose (docs/algorithms/convex-decomposition.md). A mesh
@@ -320,7 +332,7 @@ void bind_convex_sets(py::module_& module) {
     signatures.disable_function_signatures();  // the table's
     const std::string text =
         document("decompose", "mesh: object", keywords_of(certify::set_options()),
-                 "kaboum.CertifiedSet", kDoc);
+                 "kaboum.CertifiedSet", kConvexSetDoc);
     module.def("decompose", &decompose, py::arg("mesh"), text.c_str());
   }
   module.def(

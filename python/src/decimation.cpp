@@ -116,7 +116,7 @@ void write_mesh_preview(const BoundingMesh& m, const py::object& file) {
   write_preview(file, [&] { return page::page_of_meshes(words, *m.series); }, {});
 }
 
-void bind_class(py::module_& module) {
+void bind_decimation_class(py::module_& module) {
   const auto of = [](auto member) {
     return [member](const BoundingMesh& m) { return m.certificate().*member; };
   };
@@ -260,7 +260,7 @@ py::object decimate(const py::object& mesh, const py::kwargs& given) {
   return py::cast(std::move(made.front()));
 }
 
-constexpr const char* kDoc =
+constexpr const char* kDecimationDoc =
     R"(Simplifies a mesh so that the result provably encloses it, or is enclosed by it.
 
 Options and defaults are those of bmesh-decimate (docs/algorithms/bounding-mesh.md).
@@ -286,11 +286,11 @@ Error
 }  // namespace
 
 void bind_decimation(py::module_& module) {
-  bind_class(module);
+  bind_decimation_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::string text = document("decimate", "mesh: object", keywords_of(decimate_options()),
-                                    "object", kDoc, Runs::Threads);
+                                    "object", kDecimationDoc, Runs::Threads);
   module.def("decimate", &decimate, py::arg("mesh"), text.c_str());
 }
 

@@ -86,7 +86,7 @@ Distances write_heatmap(const py::object& file, const py::object& a, const py::o
   });
 }
 
-void bind_class(py::module_& module) {
+void bind_distances_class(py::module_& module) {
   py::class_<Distances>(module, "Distances",
                         R"(Distances between two shapes; brackets are certified. [length])")
       .def_property_readonly(
@@ -115,7 +115,7 @@ void bind_class(py::module_& module) {
       });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kDistancesDoc =
     R"(Distances between two surfaces, or two solids, both ways, as hausdorff-eval.
 
 Parameters
@@ -147,12 +147,12 @@ Distances)";
 }  // namespace
 
 void bind_distances(py::module_& module) {
-  bind_class(module);
+  bind_distances_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::string text =
       document("hausdorff", "a: object, b: object", keywords_of(distance::compare_options()),
-               "kaboum.Distances", kDoc, Runs::Threads);
+               "kaboum.Distances", kDistancesDoc, Runs::Threads);
   module.def("hausdorff", &hausdorff, py::arg("a"), py::arg("b"), text.c_str());
   const std::string drawing = document("write_heatmap", "file: object, a: object, b: object",
                                        keywords_of(distance::compare_options()), "kaboum.Distances",

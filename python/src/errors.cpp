@@ -13,7 +13,7 @@ namespace {
 
 PyObject* error_type = nullptr;  // kaboum.Error; lives as long as the interpreter
 
-constexpr const char* kDoc = R"(Why a call could not do its work.
+constexpr const char* kErrorsDoc = R"(Why a call could not do its work.
 
 Attributes
 ----------
@@ -64,7 +64,7 @@ void bind_errors(py::module_& module) {
   py::dict attributes;
   attributes["code"] = "internal";
   attributes["exit_code"] = 6;
-  error_type = PyErr_NewExceptionWithDoc("kaboum.Error", kDoc, nullptr, attributes.ptr());
+  error_type = PyErr_NewExceptionWithDoc("kaboum.Error", kErrorsDoc, nullptr, attributes.ptr());
   if (error_type == nullptr) throw py::error_already_set();
   module.add_object("Error", error_type);
   py::register_local_exception_translator(translate);

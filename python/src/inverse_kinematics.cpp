@@ -150,7 +150,7 @@ InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
   return out;
 }
 
-constexpr const char* kDoc =
+constexpr const char* kInverseKinematicsDoc =
     R"(The configurations with which a robot's chain reaches a pose, as `kaboum-ik`.
 
 All of them, in closed form, for arms with a spherical wrist, with three parallel axes, or with five
@@ -222,11 +222,12 @@ void bind_inverse_kinematics(py::module_& module) {
   bind_answer(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text = document(
-      "inverse_kinematics",
-      "robot: object, pose: object = None, *, tip: object = None, base: object = None, "
-      "pose_of: object = None, reference: object = None",
-      keywords_of(kinematics::inverse_options()), "kaboum.InverseKinematics", kDoc, Runs::Alone);
+  const std::string text =
+      document("inverse_kinematics",
+               "robot: object, pose: object = None, *, tip: object = None, base: object = None, "
+               "pose_of: object = None, reference: object = None",
+               keywords_of(kinematics::inverse_options()), "kaboum.InverseKinematics",
+               kInverseKinematicsDoc, Runs::Alone);
   module.def("inverse_kinematics", &inverse_kinematics, py::arg("robot"),
              py::arg("pose") = py::none(), py::kw_only(), py::arg("tip") = py::none(),
              py::arg("base") = py::none(), py::arg("pose_of") = py::none(),

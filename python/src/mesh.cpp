@@ -118,7 +118,7 @@ std::string describe(const MeshValue& m) {
          std::to_string(m.mesh->triangles.size()) + " faces>";
 }
 
-void bind_class(py::module_& module) {
+void bind_mesh_class(py::module_& module) {
   py::class_<MeshValue>(module, "Mesh", R"(A triangle mesh, which never changes.
 
 It may be given wherever a mesh is expected, here and to libraries that take `vertices` and `faces`.)")
@@ -217,7 +217,7 @@ py::array_t<std::uint32_t> faces_of(const std::shared_ptr<const geom::Mesh>& mes
 py::array_t<double> array_of(const geom::Vec3& p) { return py::array_t<double>(3, p.data()); }
 
 void bind_meshes(py::module_& module) {
-  bind_class(module);
+  bind_mesh_class(module);
   module.def(
       "read",
       [](const py::object& path, const std::optional<std::string>& format) {

@@ -44,7 +44,7 @@ py::bytes draw(const py::object& shapes, const py::object& file, const py::kwarg
   return png_bytes(file, [&] { return picture::encode_png(draw_panels(meshes, options)); });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kPicturesDoc =
     R"(Draws shapes side by side, one camera for all, as mesh-picture.
 
 Parameters
@@ -99,7 +99,7 @@ void bind_pictures(py::module_& module) {
   signatures.disable_function_signatures();  // the table's
   const std::string text =
       document("draw", "shapes: object, file: object = None", keywords_of(picture::panel_options()),
-               "bytes", kDoc, Runs::Briefly);
+               "bytes", kPicturesDoc, Runs::Briefly);
   module.def("draw", &draw, py::arg("shapes"), py::arg("file") = py::none(), text.c_str());
 }
 

@@ -113,7 +113,7 @@ py::dict statistics_of(const SolutionValue& s) {
   return out;
 }
 
-void bind_class(py::module_& module) {
+void bind_planning_class(py::module_& module) {
   py::class_<SolutionValue>(
       module, "Solution",
       R"(What became of a search for a plan. True if and only if there is a plan.)")
@@ -599,7 +599,7 @@ void bind_functions_with_options(py::module_& module) {
 }  // namespace
 
 void bind_planning(py::module_& module) {
-  bind_class(module);
+  bind_planning_class(module);
   bind_results(module);
   module.def("convert_domain", &convert_domain, py::arg("domain"), py::arg("problem") = py::none(),
              py::kw_only(), py::arg("to"), py::arg("input_format") = py::none(),

@@ -32,7 +32,7 @@ auto number(Member geom::PreparationReport::*member) {
   return [member](const PreparedValue& p) { return p.prepared->report.*member; };
 }
 
-constexpr const char* kDoc =
+constexpr const char* kPreparationDoc =
     R"(Gives a mesh a solid, as all tools do first (docs/algorithms/preparation.md).
 
 Equal vertices are merged, inconsistent triangles turned to agree, walls and copies dropped, holes
@@ -99,7 +99,7 @@ expected; `decimate` does not prepare it again.)")
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::string text = document("prepare", "mesh: object", keywords_of(repair_options()),
-                                    "kaboum.Prepared", kDoc, Runs::Briefly);
+                                    "kaboum.Prepared", kPreparationDoc, Runs::Briefly);
   module.def("prepare", &prepare, py::arg("mesh"), text.c_str());
 }
 

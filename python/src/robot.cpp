@@ -168,7 +168,7 @@ py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
   return dict_of(written, notes);
 }
 
-constexpr const char* kWriteDoc =
+constexpr const char* kRobotWriteDoc =
     R"(Writes the robot's folder, the same bytes as `bcd-decompose ROBOT -o FOLDER`.
 
 It has the bodies of each mesh, a container for each link, and the robot's URDF with these bodies
@@ -272,7 +272,7 @@ void bind_certified(py::module_& module) {
       .def("write", &write_robot, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
            py::arg("srdf") = false, py::arg("no_cache") = false, py::arg("progress") = py::none(),
-           kWriteDoc)
+           kRobotWriteDoc)
       .def(
           "write_preview", &write_robot_preview, py::arg("file"), py::kw_only(),
           py::arg("explode") = picture::kExplode,
@@ -290,7 +290,7 @@ from the middle; 0: it has none.)")
       });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kRobotDoc =
     R"(Convex bodies that provably hold the shapes of a robot's links, as `bcd-decompose robot.urdf`.
 
 Parameters
@@ -312,7 +312,7 @@ Error
     `partial` only where no link can be held.)";
 
 /// Keywords that are no options of a set, in the signature.
-constexpr const char* kParameters =
+constexpr const char* kRobotParameters =
     "robot: object, *, epsilons: object = None, robot_bodies: object = None, robot_vertices: "
     "object = None, "
     "partial: bool = False";
@@ -407,8 +407,8 @@ Error
     'invalid_input' naming the line.)");
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text =
-      document("certify_robot", kParameters, certify_keywords(), "kaboum.CertifiedRobot", kDoc);
+  const std::string text = document("certify_robot", kRobotParameters, certify_keywords(),
+                                    "kaboum.CertifiedRobot", kRobotDoc);
   module.def("certify_robot", &certify_robot, py::arg("robot"), py::kw_only(),
              py::arg("epsilons") = py::none(), py::arg("robot_bodies") = py::none(),
              py::arg("robot_vertices") = py::none(), py::arg("partial") = false, text.c_str());

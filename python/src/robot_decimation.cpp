@@ -1,6 +1,7 @@
 // Robots with simplified meshes: kaboum.decimate_robot, as bmesh-decimate on a robot.
 
 #include <kaboum/certify/link_verdict.h>
+#include <kaboum/page/robot_page.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/enclosed_folder.h>
 
@@ -8,6 +9,7 @@
 
 #include "answers.h"
 #include "mesh.h"
+#include "pictures.h"
 #include "request_options.h"
 #include "robot.h"
 #include "running.h"
@@ -19,7 +21,7 @@ namespace {
 struct EnclosedValue {
   std::shared_ptr<const certify::LinkEnclosures> made;
   std::shared_ptr<const robot::RobotFile> file;
-  robot::ShapeChoice shapes;
+  certify::LinkEnclosuresRequest request;
   io::Format format = io::Format::Stl;
   std::vector<std::string> notes;
 };
@@ -47,7 +49,7 @@ EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons
   certify::LinkEnclosuresRequest request{
       certify::link_request_of(options, format), shapes, {}, epsilons_of(epsilons)};
   request.partial = partial;
-  EnclosedValue out{nullptr, value.file, request.shapes, format.value_or(io::Format::Stl), {}};
+  EnclosedValue out{nullptr, value.file, request, format.value_or(io::Format::Stl), {}};
   Watch watch(running.progress);
   return run(running.threads, [&] {
     const certify::CacheFolder kept(certify::CacheFolder::default_folder());
@@ -96,7 +98,7 @@ py::dict write(const EnclosedValue& r, const py::object& folder, const py::objec
     throw Error(ErrorCode::InvalidArgument, "loader '" + *loader + "' reads " + options.bodies +
                                                 ": decimate_robot with output_format '" +
                                                 options.bodies + "'");
-  options.shapes = r.shapes;
+  options.shapes = r.request.shapes;
   std::vector<std::string> notes;
   const robot_folder::WrittenRobot written = run(0, [&] {
     std::optional<certify::CacheFolder> cache;
@@ -119,7 +121,22 @@ double distance_of(const EnclosedValue& r) {
   return most;
 }
 
-constexpr const char* kDoc =
+void write_page(const EnclosedValue& r, const py::object& file) {
+  write_preview(file,
+                [&] {
+                  return page::to_html({.robot = r.file->robot.name,
+                                        .source = r.file->path.string(),
+                                        .tool = "kaboum " KABOUM_VERSION,
+                                        .unit = "the robot's unit",
+                                        .notes = r.notes,
+                                        .links = page::page_links(*r.file, *r.made, r.request),
+                                        .counts = page::counts_of(*r.made),
+                                        .made = "meshes"});
+                },
+                {});
+}
+
+constexpr const char* kRobotDecimationDoc =
     R"(Simplifies the meshes of a robot's links so that the results provably enclose them, as `bmesh-decimate robot.urdf`.
 
 Parameters
@@ -140,7 +157,7 @@ Error
     'invalid_argument' naming an unknown link; 'invalid_input' naming the link or file, with
     `partial` only where no mesh can be enclosed.)";
 
-constexpr const char* kWriteDoc =
+constexpr const char* kRobotDecimationWriteDoc =
     R"(Writes the robot's folder, the same bytes as `bmesh-decimate ROBOT -o FOLDER`.
 
 Parameters
@@ -154,11 +171,11 @@ dict
     As of `CertifiedRobot.write`.)";
 
 /// Keywords that are no options of a mesh, in the signature.
-constexpr const char* kParameters =
+constexpr const char* kRobotDecimationParameters =
     "robot: object, *, epsilons: object = None, output_format: object = None, partial: bool = "
     "False";
 
-void bind_class(py::module_& module) {
+void bind_robot_decimation_class(py::module_& module) {
   using Value = EnclosedValue;
   py::class_<Value>(module, "EnclosedRobot",
                     "Meshes round those of a robot's links; true if every triangle of all links is "
@@ -189,7 +206,11 @@ void bind_class(py::module_& module) {
                              "What a user should know of the meshes.")
       .def("write", &write, py::arg("folder"), py::kw_only(), py::arg("formats") = py::none(),
            py::arg("loader") = py::none(), py::arg("mesh_prefix") = py::none(),
-           py::arg("no_cache") = false, kWriteDoc)
+           py::arg("no_cache") = false, kRobotDecimationWriteDoc)
+      .def("write_page", &write_page, py::arg("file"),
+           "Writes a page (.html) with a row for each link: pictures, counts, verdict; as "
+           "`bmesh-decimate ROBOT --html-report`, without the files of a folder and the command "
+           "that checks them.")
       .def("__repr__", [](const Value& r) {
         return "<kaboum.EnclosedRobot of " + std::to_string(r.made->meshes.size()) + " meshes>";
       });
@@ -205,11 +226,12 @@ std::vector<Option<certify::MeshOptions>> link_mesh_options() {
 }
 
 void bind_robot_decimation(py::module_& module) {
-  bind_class(module);
+  bind_robot_decimation_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::string text =
-      document("decimate_robot", kParameters, decimate_keywords(), "kaboum.EnclosedRobot", kDoc);
+      document("decimate_robot", kRobotDecimationParameters, decimate_keywords(),
+               "kaboum.EnclosedRobot", kRobotDecimationDoc);
   module.def("decimate_robot", &decimate_robot, py::arg("robot"), py::kw_only(),
              py::arg("epsilons") = py::none(), py::arg("output_format") = py::none(),
              py::arg("partial") = false, text.c_str());

@@ -97,7 +97,7 @@ Verdict verify_robot(const py::object& original, const py::object& result,
   return verdict_of(found);
 }
 
-constexpr const char* kDoc =
+constexpr const char* kRobotVerificationDoc =
     R"(Decides whether the collision shapes of a robot hold the shapes of another, as `bound-verify robot`.
 
 Parameters
@@ -122,9 +122,9 @@ Error
 void bind_robot_verification(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text =
-      document("verify_robot", "original: object, result: object",
-               keywords_of(verify::robot_verdict_options()), "kaboum.Verdict", kDoc, Runs::Threads);
+  const std::string text = document("verify_robot", "original: object, result: object",
+                                    keywords_of(verify::robot_verdict_options()), "kaboum.Verdict",
+                                    kRobotVerificationDoc, Runs::Threads);
   module.def("verify_robot", &verify_robot, py::arg("original"), py::arg("result"), text.c_str());
 }
 

@@ -7,6 +7,7 @@
 #include <kaboum/scene/scene_draft.h>
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/scene/scene_update.h>
+#include <kaboum/world/primitive.h>
 
 #include <memory>
 
@@ -102,7 +103,7 @@ scene::SceneSet set_from(const py::object& shape, const py::dict& given, const c
   return run(0, [&] { return scene::SceneSet{value.made, sources_of(value.file)}; });
 }
 
-py::dict dict_of(const scene::MadeScene& made) {
+py::dict dict_of_made(const scene::MadeScene& made) {
   py::dict out;
   std::vector<std::string> containers;
   for (const std::filesystem::path& path : made.containers) containers.push_back(path.string());
@@ -187,14 +188,23 @@ void add_region(SceneValue& scene, const std::string& name, const py::object& sh
 }
 
 /// A dict of names and files.
-std::vector<scene::NamedFile> files_of(const py::object& given, const char* argument) {
+/// Files by name; of what is described by its sizes, a primitive, where those are taken.
+std::vector<scene::NamedFile> files_of(const py::object& given, const char* argument,
+                                       std::vector<scene::NamedPrimitive>* primitives = nullptr) {
   std::vector<scene::NamedFile> out;
   if (given.is_none()) return out;
   if (!py::isinstance<py::dict>(given))
     throw Error(ErrorCode::InvalidArgument,
                 std::string(argument) + " must be a dict of names and files");
-  for (const auto& [name, file] : given.cast<py::dict>())
-    out.push_back({py::str(name), path_text(py::reinterpret_borrow<py::object>(file), argument)});
+  for (const auto& [key, shape] : given.cast<py::dict>()) {
+    const auto value = py::reinterpret_borrow<py::object>(shape);
+    const std::string name = py::str(key);
+    if (primitives != nullptr && is_primitive(value))
+      primitives->push_back(
+          {name, world::parse_primitive(json_text(value), "object '" + name + "'")});
+    else
+      out.push_back({name, path_text(value, argument)});
+  }
   return out;
 }
 
@@ -206,7 +216,7 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
       take_keywords("make_scene", scene::scene_options(), given, maker, Runs::Cached);
   maker.scene = path_text(path, "path");
   maker.robots = files_of(robots, "robots");
-  maker.objects = files_of(objects, "objects");
+  maker.objects = files_of(objects, "objects", &maker.primitives);
   maker.regions = files_of(regions, "regions");
   if (!at.is_none())
     for (const auto& [name, pose] : at.cast<py::dict>()) {
@@ -224,7 +234,7 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
   }
   Watch watch(running.progress);
   maker.options.progress = watch.hook();
-  return dict_of(run(running.threads, [&] {
+  return dict_of_made(run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
     if (!running.no_cache) maker.options.cache = &cache;
     return scene::make_scene(maker);
@@ -237,7 +247,7 @@ py::dict update_scene(const py::object& path, const py::kwargs& given) {
       take_keywords("update_scene", scene::update_options(), given, asked, Runs::Cached);
   Watch watch(running.progress);
   const std::string file = path_text(path, "path");
-  return dict_of(run(running.threads, [&] {
+  return dict_of_made(run(running.threads, [&] {
     const certify::SetCache cache(certify::SetCache::default_folder());
     return scene::update_scene(
         {file, asked.options.packages, running.no_cache ? nullptr : &cache, watch.hook()});
@@ -283,7 +293,7 @@ features, grasps : list of dict, optional
 **options
     Of `decompose`, for a mesh: the same for `shape` and `inner`, so that one is inside the other.)";
 
-constexpr const char* kWriteDoc =
+constexpr const char* kSceneWriteDoc =
     R"(Writes the scene (.json or .yaml), and its sets into a folder of its name beside it.
 
 Parameters
@@ -308,7 +318,7 @@ Parameters
 path : str or path
     The scene to write (.json or .yaml); sets go into a folder beside it.
 robots, objects, regions : dict, optional
-    By name, files: URDFs, meshes.
+    By name, files: URDFs, meshes. An object may be a primitive, a dict as of `Scene.add_object`.
 at : dict, optional
     By name, where things stand: x, y, z; and roll, pitch, yaw or a quaternion x, y, z, w.
 scale : dict
@@ -391,9 +401,9 @@ void bind_scene(py::module_& module) {
           "write",
           [](SceneValue& s, const py::object& path, bool force) {
             const std::string file = path_text(path, "path");
-            return dict_of(run(0, [&] { return s.draft->write(file, force); }));
+            return dict_of_made(run(0, [&] { return s.draft->write(file, force); }));
           },
-          py::arg("path"), py::kw_only(), py::arg("force") = false, kWriteDoc)
+          py::arg("path"), py::kw_only(), py::arg("force") = false, kSceneWriteDoc)
       .def("__repr__", [](const SceneValue& s) {
         const std::string file = file_of(s);
         return "<kaboum.Scene" + (file.empty() ? "" : " '" + file + "'") + ">";

@@ -85,7 +85,7 @@ void write_sweep_preview(const SweptSet& s, const py::object& file) {
       });
 }
 
-void bind_class(py::module_& module) {
+void bind_sweep_class(py::module_& module) {
   py::class_<SweptSet>(
       module, "SweptSet",
       R"(Convex bodies that, enlarged by `margin`, hold a robot at every instant of a path.)")
@@ -280,7 +280,7 @@ Error
 }  // namespace
 
 void bind_sweeps(py::module_& module) {
-  bind_class(module);
+  bind_sweep_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   std::string text =

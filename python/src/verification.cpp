@@ -165,7 +165,7 @@ Verdict verify_relation(const char* function, verify::Relation relation, const T
   return decide(relation, first, second.triangles(), second.set.get(), asked, running);
 }
 
-void bind_class(py::module_& module) {
+void bind_verification_class(py::module_& module) {
   py::class_<Verdict>(module, "Verdict",
                       R"(What was decided, exactly. True if and only if it is 'verified'.)")
       .def_property_readonly(
@@ -250,7 +250,7 @@ py::dict exact_points_not_looked_at() {
 }
 
 void bind_verification(py::module_& module) {
-  bind_class(module);
+  bind_verification_class(module);
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   std::string text = document("verify_mesh", "original: object, approximation: object",

@@ -44,7 +44,7 @@ WrapValue wrap(const py::object& mesh, const std::string& precision, const py::k
   });
 }
 
-constexpr const char* kDoc =
+constexpr const char* kWrapDoc =
     R"(A closed mesh whose solid holds every triangle of the input, whatever they are like.
 
 Decided exactly by what shares nothing with the search, as `mesh-prepare --prepare wrap`
@@ -99,7 +99,7 @@ void bind_wraps(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   std::string text = document("wrap", "mesh: object", keywords_of(certify::wrap_options()),
-                              "kaboum.Wrap", kDoc, Runs::Threads);
+                              "kaboum.Wrap", kWrapDoc, Runs::Threads);
   text.replace(text.find("*,"), 2, "*, precision: str = 'float',");
   module.def("wrap", &wrap, py::arg("mesh"), py::kw_only(), py::arg("precision") = "float",
              text.c_str());

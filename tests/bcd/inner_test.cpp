@@ -19,7 +19,7 @@ using geom::Mesh;
 using geom::Vec3;
 using test::prism;
 
-InnerCandidate run(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
+InnerCandidate fill(const Mesh& mesh, double epsilon_percent, std::size_t max_vertices = 64) {
   return find_inner(geom::prepare(mesh).solid,
                     test::quick_inner(mesh, epsilon_percent, max_vertices));
 }
@@ -60,7 +60,7 @@ TEST(Inner, LiesInEveryFamily) {
     // A body beside its copy, rotated: every triangle crosses others; minutes.
     if (f.name == "component-twice-rotated") return;
     const std::size_t most = seen % 2 == 0 ? 64 : 32;
-    const InnerCandidate result = run(prepared.solid.mesh(), 3, most);
+    const InnerCandidate result = fill(prepared.solid.mesh(), 3, most);
     if (result.stop == Stop::TooCoarse) return;
     expect_claims(prepared.solid.mesh(), result, most);
     done += result.stop == Stop::Done ? 1 : 0;
@@ -73,7 +73,7 @@ TEST(Inner, LiesInEveryFamily) {
 TEST(Inner, NoDeepPointIsLeft) {
   for (const double percent : {3.0}) {
     const Mesh knot = geom::prepare(kaboum::test::torus_knot(2, 3, 0.3, 40, 8)).solid.mesh();
-    const InnerCandidate result = run(knot, percent);
+    const InnerCandidate result = fill(knot, percent);
     EXPECT_LE(result.uncovered_depth_upper, 0.01 * percent * geom::bounding_box(knot).diagonal());
     expect_claims(knot, result, 64);
     expect_no_deep_point_left(knot, result, 1000);
@@ -86,7 +86,7 @@ TEST(Inner, WallsBetweenOverlappingBodiesAreNoObstacle) {
   const Mesh two = kaboum::test::merged(
       {box(Vec3(4, 1, 1), 1), kaboum::test::translated(box(Vec3(4, 1, 1), 1), Vec3(3, 0, 0))});
   const Mesh mesh = geom::prepare(two).solid.mesh();
-  const InnerCandidate result = run(mesh, 1);
+  const InnerCandidate result = fill(mesh, 1);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_EQ(result.bodies.size(), 1U);
   expect_claims(mesh, result, 64);
@@ -126,17 +126,17 @@ TEST(Inner, KeepsClearOfWhatTheExactCheckFinds) {
 
 TEST(Inner, ObviousOnes) {
   const Mesh l = prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1);
-  const InnerCandidate result = run(l, 0.5);
+  const InnerCandidate result = fill(l, 0.5);
   EXPECT_EQ(result.bodies.size(), 2U);
   expect_claims(geom::prepare(l).solid.mesh(), result, 64);
   const Mesh one = kaboum::test::box(Vec3(1, 2, 3), 1);
-  EXPECT_EQ(run(one, 0.1).bodies.size(), 1U);
+  EXPECT_EQ(fill(one, 0.1).bodies.size(), 1U);
 }
 
 TEST(Inner, MutantsAreRefuted) {
   const Mesh l =
       geom::prepare(prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)).solid.mesh();
-  const InnerCandidate result = run(l, 0.5);
+  const InnerCandidate result = fill(l, 0.5);
   for (std::size_t i = 0; i < result.bodies.size(); ++i) {
     std::vector<geom::ConvexBody> mutant = result.bodies;  // grown by a hundred thousandth
     const Vec3 center = geom::bounding_box(mutant[i].core).center();
@@ -148,7 +148,7 @@ TEST(Inner, MutantsAreRefuted) {
 TEST(Inner, EightVerticesPerBodyGetOnInsideRoundWalls) {
   // A body that holds little more than its seed leaves the next search the same place.
   const Mesh torus = geom::prepare(kaboum::test::torus(1, 0.3, 40, 16)).solid.mesh();
-  const InnerCandidate result = run(torus, 2, 8);
+  const InnerCandidate result = fill(torus, 2, 8);
   expect_claims(torus, result, 8);
   EXPECT_EQ(result.stop, Stop::Done);
   EXPECT_LE(result.bodies.size(), 400U);

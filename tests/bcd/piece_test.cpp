@@ -21,7 +21,7 @@ Piece part(const Piece& piece, const Plane& plane, bool lower, const SolidField&
 /// Cells reach across a cut along a face, by their overlap, into the solid there; a body must not
 /// contain their corners: it would span whatever is between them and its part of the solid.
 TEST(Piece, NothingOfTheSolidIsBeyondItsFaceHoweverThinTheCell) {
-  const Mesh box = test::box({10, 10, 2}, 3);
+  const Mesh box = kaboum::test::box({10, 10, 2}, 3);
   const SolidField solid(box, 1000, 0);
   const double top = solid.box().max.z(), shift = 0x1p-36 * 10;
   const Vec3 middle = solid.box().center();
@@ -43,7 +43,7 @@ TEST(Piece, ThinCellsThroughWallsHaveTheirCorners) {
         const double shift = safety * 0x1p-36 * 10;
         if (wall < 32 * shift || thickness < 32 * shift) continue;
         SCOPED_TRACE(testing::Message() << wall << ' ' << thickness << ' ' << safety);
-        const Mesh box = test::box({wall, 10, 10}, 3);
+        const Mesh box = kaboum::test::box({wall, 10, 10}, 3);
         const SolidField solid(box, 1000, 0);
         const Vec3 middle = solid.box().center();
         // Along the wall's middle, across it twice: one edge of the cell is in the wall.

@@ -16,8 +16,8 @@ using namespace kaboum::bmesh;  // NOLINT
 using verify::replay;
 using verify::replay_progressive;
 
-test::Recorded run(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
-                   Effort effort = Effort::Fast) {
+test::Recorded record(const geom::Mesh& mesh, Direction direction, Cost cost = Cost::Planes,
+                      Effort effort = Effort::Fast) {
   DecimateOptions o;
   o.direction = direction;
   o.cost = cost;
@@ -33,13 +33,13 @@ geom::Mesh sphere() {
 
 TEST(Replay, VerifiesWhatDecimateDid) {
   for (const Direction d : {Direction::Outer, Direction::Inner, Direction::Any}) {
-    const test::Recorded r = run(sphere(), d);
+    const test::Recorded r = record(sphere(), d);
     const auto checked = replay(r.input, r.log, r.result.mesh);
     EXPECT_TRUE(checked.verified) << checked.violation;
     EXPECT_TRUE(checked.closed);
     EXPECT_EQ(checked.steps, r.log.steps.size());
     EXPECT_EQ(checked.predicates == 0, d == Direction::Any);
-    const test::Recorded best = run(sphere(), d, Cost::Distance, Effort::Best);
+    const test::Recorded best = record(sphere(), d, Cost::Distance, Effort::Best);
     const auto also = replay(best.input, best.log, best.result.mesh);
     EXPECT_TRUE(also.verified) << also.violation;
   }
@@ -51,7 +51,7 @@ TEST(Replay, RefutesInwardSteps) {
   std::mt19937_64 random(51);
   const geom::Vec3 center = geom::bounding_box(sphere()).center();
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
-    const test::Recorded r = run(sphere(), d);
+    const test::Recorded r = record(sphere(), d);
     for (const double size : {1e-2, 1e-4, 1e-6}) {
       for (int i = 0; i < 20; ++i) {
         Log mutant = r.log;
@@ -76,7 +76,7 @@ TEST(Replay, RefutesStepsThatCutTheOriginal) {
   const geom::Vec3 center = geom::bounding_box(sphere()).center();
   std::size_t flips = 0;
   for (const Direction d : {Direction::Outer, Direction::Inner}) {
-    const test::Recorded r = run(sphere(), d, Cost::Distance, Effort::Normal);
+    const test::Recorded r = record(sphere(), d, Cost::Distance, Effort::Normal);
     const auto checked = replay(r.input, r.log, r.result.mesh);
     ASSERT_TRUE(checked.verified) << checked.violation;
     EXPECT_GT(checked.against_original, 0U);
@@ -160,7 +160,7 @@ TEST(Replay, RefutesFlipsThatCutTheOriginal) {
 }
 
 TEST(Replay, RefutesAnotherResult) {
-  const test::Recorded r = run(sphere(), Direction::Outer);
+  const test::Recorded r = record(sphere(), Direction::Outer);
   geom::Mesh moved = r.result.mesh;
   moved.vertices[3].x() = std::nextafter(moved.vertices[3].x(), 1e9);
   EXPECT_FALSE(replay(r.input, r.log, moved).verified);
@@ -178,14 +178,14 @@ TEST(Replay, RefutesAnotherResult) {
 }
 
 TEST(Replay, RefutesDropsThatChangeTheSolid) {
-  test::Recorded r = run(sphere(), Direction::Outer);
+  test::Recorded r = record(sphere(), Direction::Outer);
   r.log.dropped.push_back(5);
   EXPECT_FALSE(replay(r.input, r.log, r.result.mesh).verified);
   // A real copy may go.
   geom::Mesh twice = sphere();
   const auto n = twice.triangles.size();
   for (std::size_t t = 0; t < n; ++t) twice.triangles.push_back(twice.triangles[t]);
-  const test::Recorded copy = run(twice, Direction::Outer);
+  const test::Recorded copy = record(twice, Direction::Outer);
   EXPECT_EQ(copy.log.dropped.size(), n);
   EXPECT_TRUE(replay(copy.input, copy.log, copy.result.mesh).verified);
   test::Recorded partial = copy;
@@ -195,7 +195,7 @@ TEST(Replay, RefutesDropsThatChangeTheSolid) {
 
 TEST(Replay, RefutesMovesOfTheBorder) {
   for (const auto& f : test::open_families()) {
-    test::Recorded r = run(f.mesh, Direction::Outer);
+    test::Recorded r = record(f.mesh, Direction::Outer);
     const auto checked = replay(r.input, r.log, r.result.mesh);
     EXPECT_TRUE(checked.verified) << f.name << ": " << checked.violation;
     EXPECT_FALSE(checked.closed);
@@ -419,7 +419,7 @@ TEST(Replay, NothingIsVerifiedOfNothing) {
 }
 
 TEST(Replay, RefusesNonsense) {
-  test::Recorded r = run(sphere(), Direction::Outer);
+  test::Recorded r = record(sphere(), Direction::Outer);
   Log mutant = r.log;
   mutant.steps[0].gone = 1U << 30;
   EXPECT_THROW(replay(r.input, mutant, r.result.mesh), Error);

@@ -124,7 +124,7 @@ triangles = kaboum.verify_sweep("mm.urdf", "still.csv", "strict-mm/links/base.gl
 assert triangles and triangles.claims["exact_points"]["answer"] == "undefined", triangles.claims
 END
 fi
-expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --no-cache
+expect 0 'the exact faces' "$BIN/kaboum-scene" make cell.json --object vase=parts/vase.step --scale vase=0.001 --epsilon 2% --effort fast --no-cache
 shows 0 'exact points: verified' "$BIN/bound-verify" cover parts/vase.step cell/vase.glb --scale 0.001
 head -c 2000 parts/vase.step >cut.step
 expect 3 'cut.step' "$BIN/mesh-prepare" cut.step -o none.ply
@@ -293,7 +293,7 @@ for part in more/variants/*-renamed.step; do
   expect 3 "X_$type" "$BIN/bcd-decompose" "$part" -o none.glb --no-cache
 done
 for part in more/variants/*-dropped.step; do
-  for tool in "mesh-prepare $part -o whole.ply" "bcd-decompose --no-cache --effort fast $part -o whole.obj"; do
+  for tool in "mesh-prepare $part -o whole.ply" "bcd-decompose --no-cache --effort fast --epsilon 5% $part -o whole.obj"; do
     # shellcheck disable=SC2086
     if "$BIN"/$tool >out.txt 2>err.txt; then
       "$PARTS" covers-box "${tool##* -o }" || fail "$part: exit 0, and the box is not covered"

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SetRequest fast(double percent) {
+SetRequest fast_request(double percent) {
   SetRequest request;
   request.epsilon = kaboum::Length{percent, true};
   request.effort = bcd::Effort::Fast;
@@ -36,7 +36,7 @@ SetRequest fast(double percent) {
   return request;
 }
 
-geom::Mesh torus() { return test::torus(1, 0.3, 24, 12); }
+geom::Mesh coarse_torus() { return test::torus(1, 0.3, 24, 12); }
 
 bool same_bodies(const geom::ConvexSet& a, const geom::ConvexSet& b) {
   if (a.bodies.size() != b.bodies.size()) return false;
@@ -48,7 +48,7 @@ bool same_bodies(const geom::ConvexSet& a, const geom::ConvexSet& b) {
 }
 
 TEST(CertifySet, IsWhatItsContainerHolds) {
-  const auto made = certify_set(torus(), "abc", fast(5));
+  const auto made = certify_set(coarse_torus(), "abc", fast_request(5));
   ASSERT_TRUE(made);
   const geom::ConvexSet back =
       io::parse_convex_set(made->bytes(), io::Format::Glb, "the container");
@@ -58,19 +58,19 @@ TEST(CertifySet, IsWhatItsContainerHolds) {
   EXPECT_EQ(back.provenance.epsilon, made->certificate().distance_upper);
   EXPECT_EQ(made->certificate().stop, bcd::Stop::Done);
   EXPECT_LE(made->certificate().distance_upper, 0.05 * made->certificate().diagonal);
-  const verify::Cover cover = verify::verify_cover(torus(), made->artefact());
+  const verify::Cover cover = verify::verify_cover(coarse_torus(), made->artefact());
   EXPECT_EQ(cover.inclusion.solid.answer, verify::Answer::Verified);
   EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
 }
 
 TEST(CertifySet, InnerSetsLieInside) {
-  SetRequest request = fast(3);
+  SetRequest request = fast_request(3);
   request.direction = SetRequest::Direction::Inner;
-  const auto made = certify_set(torus(), "", request);
+  const auto made = certify_set(coarse_torus(), "", request);
   ASSERT_TRUE(made);
   ASSERT_FALSE(made->artefact().bodies.empty());
   const verify::Inclusion inside =
-      verify::verify_inclusion(verify::sum_of(made->artefact()), torus());
+      verify::verify_inclusion(verify::sum_of(made->artefact()), coarse_torus());
   EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);
 }
 
@@ -103,7 +103,7 @@ double height_above(const geom::ConvexSet& set, const geom::Vec3& p) {
 
 TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
   const geom::Mesh input = soup();
-  SetRequest request = fast(10);
+  SetRequest request = fast_request(10);
   request.wrap.emplace();
   request.wrap->clearance = 0.01;
   const auto made = certify_set(input, "", request);
@@ -136,7 +136,7 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
 }
 
 TEST(CertifySet, DistancesOfAWrapAndOfItsCoverAddUp) {
-  SetRequest request = fast(10);
+  SetRequest request = fast_request(10);
   request.epsilon.reset();
   request.max_bodies = 6;
   WrapRequest wrap;
@@ -156,26 +156,27 @@ TEST(CertifySet, DistancesOfAWrapAndOfItsCoverAddUp) {
 }
 
 TEST(CertifySet, BodiesInsideHaveNoWrap) {
-  SetRequest request = fast(10);
+  SetRequest request = fast_request(10);
   request.direction = SetRequest::Direction::Inner;
   request.wrap.emplace();
-  EXPECT_THROW(certify_set(torus(), "", request), Error);
+  EXPECT_THROW(certify_set(coarse_torus(), "", request), Error);
 }
 
 TEST(CertifySet, WhatFloat32CannotHoldIsNotMade) {
-  EXPECT_FALSE(certify_set(test::translated(torus(), {1e9, 0, 0}), "", fast(1)));
+  EXPECT_FALSE(certify_set(test::translated(coarse_torus(), {1e9, 0, 0}), "", fast_request(1)));
 }
 
 TEST(CertifySet, ProgressMayCancel) {
   struct Cancelled {};
   Hooks hooks;
   hooks.progress = [](const std::string&) { throw Cancelled(); };
-  EXPECT_THROW(certify_set(torus(), "", fast(1), hooks), Cancelled);
+  EXPECT_THROW(certify_set(coarse_torus(), "", fast_request(1), hooks), Cancelled);
 }
 
 TEST(SetCertificate, SurvivesItsRecord) {
-  const auto made = certify_set(
-      test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }), "", fast(5));
+  const auto made =
+      certify_set(test::without(coarse_torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }),
+                  "", fast_request(5));
   ASSERT_TRUE(made);
   SetCertificate c = made->certificate();
   EXPECT_GT(c.subject.holes, 0U);
@@ -206,17 +207,17 @@ std::string said(const CertifiedSet& set, const std::string& key) {
   return text.substr(begin, text.find('"', begin) - begin);
 }
 
-/// A torus, and beside it a square seen from both sides: four triangles without volume.
+/// A coarse_torus, and beside it a square seen from both sides: four triangles without volume.
 geom::Mesh with_sheet() {
   geom::Mesh sheet;
   sheet.vertices = {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}};
-  return test::merged({torus(), sheet});
+  return test::merged({coarse_torus(), sheet});
 }
 
 TEST(CertifySet, ClaimsSayWhatTheyAreAbout) {
-  SetRequest request = fast(5);
-  const auto whole = certify_set(torus(), "", request);
+  SetRequest request = fast_request(5);
+  const auto whole = certify_set(coarse_torus(), "", request);
   ASSERT_TRUE(whole);
   EXPECT_EQ(said(*whole, "of"), "the input");
   EXPECT_EQ(said(*whole, "surface"), "verified");
@@ -230,8 +231,9 @@ TEST(CertifySet, ClaimsSayWhatTheyAreAbout) {
   EXPECT_EQ(said(*made, "solid"), "verified");
   EXPECT_EQ(made->certificate().subject.dropped_sheets, 4U);
   EXPECT_FALSE(made->artefact().provenance.covers_surface);
-  const auto open = certify_set(
-      test::without(torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }), "", fast(5));
+  const auto open =
+      certify_set(test::without(coarse_torus(), [](const geom::Vec3& p) { return p.x() > 1.2; }),
+                  "", fast_request(5));
   ASSERT_TRUE(open);
   EXPECT_EQ(said(*open, "of"), "the input: with 1 hole filled, its solid the one so closed");
   EXPECT_EQ(said(*open, "solid"), "verified, of the closed mesh");
@@ -282,7 +284,7 @@ static_assert(!kLendsParts<CertifiedSet> && !kLendsParts<const CertifiedMesh>);
 static_assert(kLendsParts<CertifiedSet&>);
 
 TEST(Certified, WhatWasMovedFromClaimsNothing) {
-  auto made = certify_set(torus(), "", fast(5));
+  auto made = certify_set(coarse_torus(), "", fast_request(5));
   ASSERT_TRUE(made);
   const CertifiedSet taken = std::move(*made);
   EXPECT_TRUE(taken);
@@ -311,34 +313,35 @@ class SetCacheTest : public ::testing::Test {
 
 TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {
   const SetCache cache(folder_);
-  const auto first = find_or_certify(torus(), "abc", fast(5), &cache);
+  const auto first = find_or_certify(coarse_torus(), "abc", fast_request(5), &cache);
   ASSERT_TRUE(first);
   EXPECT_FALSE(first->cached);
-  const auto again = find_or_certify(torus(), "abc", fast(5), &cache);
+  const auto again = find_or_certify(coarse_torus(), "abc", fast_request(5), &cache);
   ASSERT_TRUE(again);
   EXPECT_TRUE(again->cached);
   EXPECT_EQ(again->set.bytes(), first->set.bytes());
   EXPECT_EQ(to_json(again->set), to_json(first->set));
   std::string flaw;
-  EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abc", fast(4)), flaw));
-  EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abd", fast(5)), flaw));
-  EXPECT_FALSE(
-      cache.find(SetCache::key_of(test::scaled(torus(), {1, 1, 1.0000001}), "abc", fast(5)), flaw));
-  SetRequest inner = fast(5);
+  EXPECT_FALSE(cache.find(SetCache::key_of(coarse_torus(), "abc", fast_request(4)), flaw));
+  EXPECT_FALSE(cache.find(SetCache::key_of(coarse_torus(), "abd", fast_request(5)), flaw));
+  EXPECT_FALSE(cache.find(
+      SetCache::key_of(test::scaled(coarse_torus(), {1, 1, 1.0000001}), "abc", fast_request(5)),
+      flaw));
+  SetRequest inner = fast_request(5);
   inner.direction = SetRequest::Direction::Inner;
-  EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abc", inner), flaw));
-  SetRequest wrapped = fast(5);
+  EXPECT_FALSE(cache.find(SetCache::key_of(coarse_torus(), "abc", inner), flaw));
+  SetRequest wrapped = fast_request(5);
   wrapped.wrap.emplace();
-  const std::string round = SetCache::key_of(torus(), "abc", wrapped).hash;
-  EXPECT_NE(round, SetCache::key_of(torus(), "abc", fast(5)).hash);
+  const std::string round = SetCache::key_of(coarse_torus(), "abc", wrapped).hash;
+  EXPECT_NE(round, SetCache::key_of(coarse_torus(), "abc", fast_request(5)).hash);
   wrapped.wrap->clearance = 1e-3;
-  EXPECT_NE(round, SetCache::key_of(torus(), "abc", wrapped).hash);
+  EXPECT_NE(round, SetCache::key_of(coarse_torus(), "abc", wrapped).hash);
   EXPECT_TRUE(flaw.empty());
 }
 
 TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {
   const SetCache cache(folder_);
-  const auto made = find_or_certify(torus(), "abc", fast(5), &cache);
+  const auto made = find_or_certify(coarse_torus(), "abc", fast_request(5), &cache);
   ASSERT_TRUE(made);
   ASSERT_EQ(entries().size(), 1U);
   const fs::path entry = entries()[0];
@@ -350,13 +353,13 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
     std::ofstream(entry, std::ios::binary) << damaged;
     std::string flaw;
-    EXPECT_FALSE(cache.find(SetCache::key_of(torus(), "abc", fast(5)), flaw)) << at;
+    EXPECT_FALSE(cache.find(SetCache::key_of(coarse_torus(), "abc", fast_request(5)), flaw)) << at;
     EXPECT_FALSE(flaw.empty()) << at;
   }
   std::vector<std::string> notes;
   Hooks hooks;
   hooks.note = [&](const std::string& text) { notes.push_back(text); };
-  const auto again = find_or_certify(torus(), "abc", fast(5), &cache, hooks);
+  const auto again = find_or_certify(coarse_torus(), "abc", fast_request(5), &cache, hooks);
   ASSERT_TRUE(again);
   EXPECT_FALSE(again->cached);
   ASSERT_EQ(notes.size(), 1U);
@@ -366,7 +369,7 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {
 
 TEST_F(SetCacheTest, EntriesThatClaimMoreThanTheirContainersAreMadeAgain) {
   const SetCache cache(folder_);
-  SetRequest request = fast(5);
+  SetRequest request = fast_request(5);
   request.preparation.drop_sheets = true;
   const auto made = find_or_certify(with_sheet(), "abc", request, &cache);
   ASSERT_TRUE(made);
@@ -386,7 +389,7 @@ TEST_F(SetCacheTest, EntriesThatClaimMoreThanTheirContainersAreMadeAgain) {
 
 TEST_F(SetCacheTest, EntriesThatClaimAnotherDistanceOrWrapAreMadeAgain) {
   const SetCache cache(folder_);
-  SetRequest request = fast(20);
+  SetRequest request = fast_request(20);
   request.wrap.emplace();
   ASSERT_TRUE(find_or_certify(soup(), "abc", request, &cache));
   ASSERT_EQ(entries().size(), 1U);

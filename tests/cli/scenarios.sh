@@ -93,7 +93,7 @@ cmp -s anew.json again.json || fail "another plan without kept answers"
 sed '/^action move/,/^  effects: add(Kf, conf/d; s/^goal:.*/goal: K(containsBearing(o4))/
   s/K(isABearing(?b)) & K(isATree(?t))/K(isABearing(?b)) \& K(isATree(?t)) \& K(?r != robot1)/' "$D" >inner.kpl
 expect 7 'join(robot2, o[12], o4, home): not found.*does not slide into o4' "$P" solve inner.kpl bimanual-assembly/problem.kpl \
-  --scene bimanual-assembly/cell.json -o none.json --explain --timeout 8
+  --scene bimanual-assembly/cell.json -o none.json --explain --timeout 4
 [ ! -e none.json ] || fail "a plan was written"
 # A plan that swaps the grasps is refused where it does: a bearing that is held inside goes onto the tree, one that is held outside
 # into the pipe. The same action with the other gripper is accepted.

@@ -218,7 +218,8 @@ shows 1 'solid claim: refuted' "$V" cover two.off set.obj --report cover.json
 grep -q '"bodies": 2' cover.json || fail 'no number of bodies in the report'
 shows 0 'distance from the union to the solid' "$V" cover one.off set.obj --epsilon 1.74
 expect 1 '' "$V" cover one.off set.obj --epsilon 1.73
-shows 1 'convexity: refuted' "$V" cover "$BRACKET" "$BRACKET"
+printf 'OFF\n5 6 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n.3 .3 .3\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n3 2 3 4\n3 3 1 4\n' >dent.off
+shows 1 'convexity: refuted' "$V" cover dent.off dent.off
 shows 1 'convexity: refuted' "$V" cover open.off open.off
 
 # What bcd-decompose claims of an open mesh is about the mesh as prepared.

@@ -11,7 +11,7 @@ using kaboum::geom::ConvexSet;
 using kaboum::geom::Mesh;
 using kaboum::geom::Vec3;
 
-ConvexSet set_of(const std::vector<Mesh>& bodies) {
+ConvexSet bodies_of(const std::vector<Mesh>& bodies) {
   ConvexSet set;
   for (const Mesh& body : bodies)
     set.bodies.push_back({"body " + std::to_string(set.bodies.size()), body});
@@ -25,16 +25,16 @@ TEST(UnionBoundary, OfBoxes) {
   const auto at = [&](double x, double y, double z) {
     return kaboum::test::translated(box, {x, y, z});
   };
-  EXPECT_NEAR(area(set_of({box})), 6, 1e-12);
-  EXPECT_NEAR(area(set_of({box, at(3, 0, 0)})), 12, 1e-12);
-  EXPECT_NEAR(area(set_of({box, at(0.5, 0, 0)})), 8, 1e-12);  // coplanar sides count once
-  EXPECT_NEAR(area(set_of({box, at(0.5, 0.5, 0.5)})), 10.5, 1e-12);
-  EXPECT_NEAR(area(set_of({box, at(1, 0, 0)})), 10, 1e-12);       // shared face
-  EXPECT_NEAR(area(set_of({box, at(1, 0.25, 0)})), 10.5, 1e-12);  // part of a face shared
-  EXPECT_NEAR(area(set_of({box, at(1, 1, 0)})), 12, 1e-12);       // shared edge
-  EXPECT_NEAR(area(set_of({box, box})), 6, 1e-12);
-  EXPECT_NEAR(area(set_of({box, box, at(1, 0, 0), at(0.5, 0, 0)})), 10, 1e-12);
-  EXPECT_NEAR(area(set_of({kaboum::test::scaled(box, {3, 3, 3}), at(1, 1, 1)})), 54, 1e-12);
+  EXPECT_NEAR(area(bodies_of({box})), 6, 1e-12);
+  EXPECT_NEAR(area(bodies_of({box, at(3, 0, 0)})), 12, 1e-12);
+  EXPECT_NEAR(area(bodies_of({box, at(0.5, 0, 0)})), 8, 1e-12);  // coplanar sides count once
+  EXPECT_NEAR(area(bodies_of({box, at(0.5, 0.5, 0.5)})), 10.5, 1e-12);
+  EXPECT_NEAR(area(bodies_of({box, at(1, 0, 0)})), 10, 1e-12);       // shared face
+  EXPECT_NEAR(area(bodies_of({box, at(1, 0.25, 0)})), 10.5, 1e-12);  // part of a face shared
+  EXPECT_NEAR(area(bodies_of({box, at(1, 1, 0)})), 12, 1e-12);       // shared edge
+  EXPECT_NEAR(area(bodies_of({box, box})), 6, 1e-12);
+  EXPECT_NEAR(area(bodies_of({box, box, at(1, 0, 0), at(0.5, 0, 0)})), 10, 1e-12);
+  EXPECT_NEAR(area(bodies_of({kaboum::test::scaled(box, {3, 3, 3}), at(1, 1, 1)})), 54, 1e-12);
 }
 
 // No point of the boundary lies inside a body; points of facets outside all other bodies are kept.
@@ -45,7 +45,7 @@ TEST(UnionBoundary, OfRandomHulls) {
       bodies.push_back(kaboum::test::translated(
           kaboum::test::random_hull(20, kaboum::test::Cloud::Sphere, 10 * seed + i),
           {0.4 * i, 0.1 * i, 0}));
-    const auto boundary = union_boundary(set_of(bodies));
+    const auto boundary = union_boundary(bodies_of(bodies));
     EXPECT_LT(boundary.error, 1e-14);
     const auto height = [](const Mesh& body, const Vec3& p) {
       double largest = -1e300;
@@ -89,7 +89,7 @@ TEST(UnionBoundary, OfRandomHulls) {
 }
 
 TEST(UnionBoundary, RefusesWhatIsNotConvex) {
-  EXPECT_ANY_THROW(union_boundary(set_of({kaboum::test::torus(1, 0.3, 12, 8)})));
+  EXPECT_ANY_THROW(union_boundary(bodies_of({kaboum::test::torus(1, 0.3, 12, 8)})));
 }
 
 }  // namespace

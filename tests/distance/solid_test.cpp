@@ -27,7 +27,7 @@ using kaboum::geom::Vec3;
 using kaboum::test::flipped;
 using kaboum::test::merged;
 
-Mesh block(const Vec3& low, const Vec3& high, int n = 1) {
+Mesh divided_block(const Vec3& low, const Vec3& high, int n = 1) {
   return kaboum::test::translated(kaboum::test::box(high - low, n), low);
 }
 
@@ -60,7 +60,7 @@ ConvexSet set_of(const std::vector<Mesh>& bodies, double margin = 0) {
 double area_of(const Mesh& mesh) { return kaboum::geom::area(solid_boundary(mesh).mesh); }
 
 TEST(SolidBoundary, OfBoxesThatMeet) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1}, 2);
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1}, 2);
   const auto at = [&](double x, double y, double z) {
     return kaboum::test::translated(cube, {x, y, z});
   };
@@ -74,17 +74,18 @@ TEST(SolidBoundary, OfBoxesThatMeet) {
   EXPECT_NEAR(area_of(merged({cube, at(1, 0.25, 0)})), 10.5, 1e-12);
   EXPECT_NEAR(area_of(merged({cube, at(1, 1, 0)})), 12, 1e-12);
   // A fold inside, a cavity, a box that sticks out, a pocket cut by an inverted box, a sheet.
-  EXPECT_NEAR(area_of(merged({cube, block({.25, .25, .25}, {.75, .75, .75})})), 6, 1e-12);
-  EXPECT_NEAR(area_of(merged({cube, flipped(block({.25, .25, .25}, {.75, .75, .75}))})), 7.5,
+  EXPECT_NEAR(area_of(merged({cube, divided_block({.25, .25, .25}, {.75, .75, .75})})), 6, 1e-12);
+  EXPECT_NEAR(area_of(merged({cube, flipped(divided_block({.25, .25, .25}, {.75, .75, .75}))})),
+              7.5, 1e-12);
+  EXPECT_NEAR(area_of(merged({cube, divided_block({.5, .25, .25}, {1.5, .75, .75})})), 7, 1e-12);
+  EXPECT_NEAR(area_of(merged({cube, flipped(divided_block({.5, .25, .25}, {1.5, .75, .75}))})), 7,
               1e-12);
-  EXPECT_NEAR(area_of(merged({cube, block({.5, .25, .25}, {1.5, .75, .75})})), 7, 1e-12);
-  EXPECT_NEAR(area_of(merged({cube, flipped(block({.5, .25, .25}, {1.5, .75, .75}))})), 7, 1e-12);
   const Mesh sheet{{{2, 0, 0}, {3, 0, 0}, {2, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
   EXPECT_NEAR(area_of(merged({cube, sheet})), 6, 1e-12);
 }
 
 TEST(SolidBoundary, RefusesWhatHasNoSolid) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1});
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1});
   EXPECT_THROW(solid_boundary(flipped(cube)), kaboum::Error);
   Mesh open = cube;
   open.triangles.pop_back();
@@ -112,13 +113,13 @@ Mesh tangle(std::mt19937_64& random, int parts, bool grid) {
     if (grid) p = (4 * p).array().floor() / 4;
     return p;
   };
-  std::vector<Mesh> meshes{block({0, 0, 0}, {0.75, 0.75, 0.75})};
+  std::vector<Mesh> meshes{divided_block({0, 0, 0}, {0.75, 0.75, 0.75})};
   for (int i = 0; i < parts; ++i) {
     Mesh part;
     if (random() % 2 == 0) {
       const Vec3 low = point();
-      part = block(low, low + (grid ? Vec3(Vec3::Constant(0.25) + point())
-                                    : Vec3(Vec3::Constant(0.1) + 0.7 * point())));
+      part = divided_block(low, low + (grid ? Vec3(Vec3::Constant(0.25) + point())
+                                            : Vec3(Vec3::Constant(0.1) + 0.7 * point())));
     } else {
       std::vector<Vec3> points;
       while (points.size() < 5) points.push_back(point());
@@ -160,10 +161,10 @@ TEST(SolidBoundary, GoesRoundTheSolidOnce) {
 // -- known distances -----------------------------------------------------------------------------
 
 TEST(SolidDistance, IsLargestInsideCavities) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1});
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1});
   const auto with = [&](const std::vector<std::pair<Vec3, Vec3>>& cavities) {
     std::vector<Mesh> parts{cube};
-    for (const auto& [low, high] : cavities) parts.push_back(flipped(block(low, high)));
+    for (const auto& [low, high] : cavities) parts.push_back(flipped(divided_block(low, high)));
     return merged(parts);
   };
   const Mesh cubic = with({{{.3, .3, .3}, {.7, .7, .7}}});
@@ -188,15 +189,15 @@ TEST(SolidDistance, IsLargestInsideCavities) {
 }
 
 TEST(SolidDistance, OfConcaveAndDisconnectedSolids) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1});
-  expect_value(distance(block({0, 0, 0}, {3, 1, 1}),
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1});
+  expect_value(distance(divided_block({0, 0, 0}, {3, 1, 1}),
                         merged({cube, kaboum::test::translated(cube, {2, 0, 0})})),
                0.5);
   // A pocket, cut by an inverted box of which the rest, w = −1, is no part of the solid; a box.
-  const Mesh pocket = merged({cube, flipped(block({.5, .25, .25}, {1.5, .75, .75}))});
+  const Mesh pocket = merged({cube, flipped(divided_block({.5, .25, .25}, {1.5, .75, .75}))});
   expect_value(distance(cube, pocket), 0.25);
   expect_value(distance(pocket, cube), 0);
-  const Mesh nose = merged({cube, block({.5, .25, .25}, {1.5, .75, .75})});
+  const Mesh nose = merged({cube, divided_block({.5, .25, .25}, {1.5, .75, .75})});
   expect_value(distance(nose, cube), 0.5);
   expect_value(distance(cube, nose), 0);
   const Mesh ring = kaboum::test::torus(1, 0.25, 96, 48);
@@ -215,18 +216,18 @@ TEST(SolidDistance, OfConcaveAndDisconnectedSolids) {
 TEST(SolidDistance, OfATipThatSticksOut) {
   const Mesh tip{{{.3, .3, .2}, {.7, .3, .2}, {.5, .7, .2}, {.5, .5, 1.3}},
                  {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-  expect_value(distance(tip, block({0, 0, 0}, {1, 1, 1})), 0.3);
+  expect_value(distance(tip, divided_block({0, 0, 0}, {1, 1, 1})), 0.3);
 }
 
 TEST(SolidDistance, DoesNotSeeInteriorFolds) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1}, 3);
-  const Mesh folded = merged({cube, block({.25, .25, .25}, {.75, .75, .75}), cube});
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1}, 3);
+  const Mesh folded = merged({cube, divided_block({.25, .25, .25}, {.75, .75, .75}), cube});
   expect_value(distance(cube, folded), 0);
   expect_value(distance(folded, cube), 0);
-  const Mesh hollow = merged({cube, flipped(block({.25, .25, .25}, {.75, .75, .75}))});
+  const Mesh hollow = merged({cube, flipped(divided_block({.25, .25, .25}, {.75, .75, .75}))});
   expect_value(distance(folded, hollow), 0.25);
   // w = −1 all over a far box: no part of either solid.
-  const Mesh ghost = merged({cube, flipped(block({5, 5, 5}, {6, 6, 6}))});
+  const Mesh ghost = merged({cube, flipped(divided_block({5, 5, 5}, {6, 6, 6}))});
   expect_value(distance(ghost, cube), 0);
   expect_value(distance(cube, ghost), 0);
 }
@@ -234,7 +235,7 @@ TEST(SolidDistance, DoesNotSeeInteriorFolds) {
 // -- random solids against brute force ------------------------------------------------------------
 
 /// A solid for the oracle: membership by an independent winding number.
-struct Shape {
+struct GridShape {
   std::vector<Mesh> parts;  ///< a point is inside if some part winds round it
   [[nodiscard]] bool contains(const Vec3& p) const {
     return std::any_of(parts.begin(), parts.end(), [&](const Mesh& m) {
@@ -255,7 +256,7 @@ struct Shape {
 
 /// Bounds of the largest distance from points of a grid: sampled below; above, by the points of B
 /// that are on the grid.
-std::pair<double, double> by_grid(const Shape& a, const Shape& b) {
+std::pair<double, double> by_grid(const GridShape& a, const GridShape& b) {
   constexpr int kSteps = 12;
   constexpr double kStep = 2.6 / kSteps, kLow = -0.3;
   const double half = 0.5 * std::sqrt(3.0) * kStep;
@@ -341,7 +342,7 @@ TEST(SolidDistance, DoesNotDependOnThreads) {
 // -- margins -------------------------------------------------------------------------------------
 
 TEST(SolidDistance, TakesMarginsIntoAccount) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1});
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1});
   const Mesh far = kaboum::test::translated(cube, {3, 0, 0});
   const Solid a(set_of({cube}, 0.1)), b(set_of({far}, 0.25)), plain(cube);
   expect_value(distance(a, b), 3 + 0.1 - 0.25);
@@ -352,14 +353,14 @@ TEST(SolidDistance, TakesMarginsIntoAccount) {
   expect_value(distance(Solid(set_of({cube}, 0.25)), a), 0.15);
   // Between two bodies: the margin reaches into the middle of the gap, not beyond it.
   const Solid gap(set_of({cube, kaboum::test::translated(cube, {2, 0, 0})}, 0.125));
-  const Mesh plate = block({1.4, 0.25, 0.25}, {1.6, 0.75, 0.75});
+  const Mesh plate = divided_block({1.4, 0.25, 0.25}, {1.6, 0.75, 0.75});
   expect_value(distance(Solid(set_of({plate}, 0.2)), gap), 0.5 - 0.125);
   expect_value(distance(Solid(set_of({plate}, 0.2)),
                         Solid(merged({cube, kaboum::test::translated(cube, {2, 0, 0})}))),
                0.5);
   // Along an edge the farthest point is on the rounded part: from (1, 1, z) away from a cube at the
   // origin that is cut off by its own margin.
-  const Solid corner(set_of({block({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75})}));
+  const Solid corner(set_of({divided_block({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75})}));
   expect_value(distance(a, corner), std::sqrt(3.0) * 0.25 + 0.1);
   expect_value(distance(Solid(set_of({plate, cube}, 0.05)), Solid(set_of({plate, cube}))), 0.05);
 }
@@ -392,16 +393,16 @@ TEST(SolidDistance, WithMarginsBoundsSampledPoints) {
 }
 
 TEST(SolidMinimum, IsZeroWhereSolidsMeet) {
-  const Mesh cube = block({0, 0, 0}, {1, 1, 1});
+  const Mesh cube = divided_block({0, 0, 0}, {1, 1, 1});
   const auto minimum = [](const Mesh& a, const Mesh& b) {
     return solid_minimum(Solid(a), Solid(b));
   };
-  EXPECT_EQ(minimum(cube, block({.25, .25, .25}, {.5, .5, .5})).upper, 0);
-  EXPECT_EQ(minimum(block({.25, .25, .25}, {.5, .5, .5}), cube).upper, 0);
-  EXPECT_EQ(minimum(cube, block({1, 0, 0}, {2, 1, 1})).upper, 0);
+  EXPECT_EQ(minimum(cube, divided_block({.25, .25, .25}, {.5, .5, .5})).upper, 0);
+  EXPECT_EQ(minimum(divided_block({.25, .25, .25}, {.5, .5, .5}), cube).upper, 0);
+  EXPECT_EQ(minimum(cube, divided_block({1, 0, 0}, {2, 1, 1})).upper, 0);
   // In a cavity.
-  const Mesh hollow = merged({cube, flipped(block({.25, .25, .25}, {.75, .75, .75}))});
-  EXPECT_NEAR(minimum(hollow, block({.5, .5, .5}, {.625, .625, .625})).lower, 0.125, 1e-12);
+  const Mesh hollow = merged({cube, flipped(divided_block({.25, .25, .25}, {.75, .75, .75}))});
+  EXPECT_NEAR(minimum(hollow, divided_block({.5, .5, .5}, {.625, .625, .625})).lower, 0.125, 1e-12);
   const auto m = solid_minimum(Solid(set_of({cube}, 0.25)),
                                Solid(set_of({kaboum::test::translated(cube, {3, 0, 0})}, 0.5)));
   EXPECT_NEAR(m.lower, 1.25, 1e-12);
@@ -410,8 +411,9 @@ TEST(SolidMinimum, IsZeroWhereSolidsMeet) {
 
 // A corner on a fold inside the other solid has no winding number there; it is inside all the same.
 TEST(SolidMinimum, CornersOnFolds) {
-  const Solid b(kaboum::test::merged({block({0, 0, 0}, {4, 4, 4}), block({2, 0, 0}, {6, 4, 4})}));
-  const Solid a(block({2, 1, 1}, {2.5, 2, 2}));
+  const Solid b(kaboum::test::merged(
+      {divided_block({0, 0, 0}, {4, 4, 4}), divided_block({2, 0, 0}, {6, 4, 4})}));
+  const Solid a(divided_block({2, 1, 1}, {2.5, 2, 2}));
   for (const auto& m : {solid_minimum(a, b), solid_minimum(b, a)}) {
     EXPECT_EQ(m.lower, 0);
     EXPECT_EQ(m.upper, 0);
@@ -420,14 +422,14 @@ TEST(SolidMinimum, CornersOnFolds) {
 
 // A body's triangle without area has no plane; the body is what it is without it.
 TEST(UnionBoundary, TrianglesWithoutArea) {
-  const Mesh without = block({0, 0, 0}, {2, 1, 1});
+  const Mesh without = divided_block({0, 0, 0}, {2, 1, 1});
   Mesh with = without;
   const auto middle = static_cast<std::uint32_t>(with.vertices.size());
   const auto [i, j, k] = with.triangles[0];
   with.vertices.emplace_back(0.5 * with.vertices[i] + 0.5 * with.vertices[j]);
   with.triangles[0] = {middle, j, k};
   with.triangles.insert(with.triangles.begin(), {{i, j, middle}, {i, middle, k}});
-  const Mesh second = block({1, 0, 0.5}, {3, 1, 2});
+  const Mesh second = divided_block({1, 0, 0.5}, {3, 1, 2});
   const auto boundary = [&](const Mesh& mesh) {
     return kaboum::geom::area(kaboum::distance::union_boundary(set_of({mesh, second})).mesh);
   };
@@ -447,14 +449,15 @@ TEST(SolidDistance, OfBallsAndCapsules) {
     EXPECT_GE(upper, truth - 1e-14);
     EXPECT_LE(upper - lower, width);
   };
-  const Solid cube(block({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const Solid cube(divided_block({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Solid ball = set({{"ball", {{{0, 0, 0}}, {}}, 1}});
   const SolidDistance out = distance(ball, cube), back = distance(cube, ball);
   expect(out.max_lower, out.max_upper, 0.5, 0.006);
   expect(back.max_lower, back.max_upper, 0, 0.002);
-  const Solid far = set(
-      {{"capsule", {{{0, 0, 3}, {0, 1, 3}}, {}}, 0.25},
-       {"box", kaboum::geom::convex_hull(block({4, 4, 4}, {5, 5, 5}).vertices).value(), 0.125}});
+  const Solid far =
+      set({{"capsule", {{{0, 0, 3}, {0, 1, 3}}, {}}, 0.25},
+           {"box", kaboum::geom::convex_hull(divided_block({4, 4, 4}, {5, 5, 5}).vertices).value(),
+            0.125}});
   const kaboum::distance::Minimum least = solid_minimum(ball, far);
   expect(least.lower, least.upper, 1.75, 0.006);
   const SolidDistance reach = distance(far, ball);  // the box's corner, enlarged

@@ -16,7 +16,7 @@
 namespace kaboum::geom {
 namespace {
 
-struct Draw {
+struct Numbers {
   std::mt19937 random{9};
   std::uniform_real_distribution<double> unit{-1, 1};
   Vec3 point() { return {unit(random), unit(random), unit(random)}; }
@@ -24,7 +24,7 @@ struct Draw {
 
 // The sign of a height that exceeds the plane's error is the exact one.
 TEST(FacetPlane, ErrsByNoMoreThanItSays) {
-  Draw draw;
+  Numbers draw;
   int decided = 0, slivers = 0;
   for (int round = 0; round < 20000; ++round) {
     const Vec3 a = draw.point(), b = draw.point();
@@ -55,7 +55,7 @@ TEST(FacetPlane, NoneWithoutArea) {
 }
 
 TEST(ConvexPolytope, ContainsWhatTheOracleSays) {
-  Draw draw;
+  Numbers draw;
   for (const int n : {8, 20, 60}) {
     std::vector<Vec3> points;
     for (int i = 0; i < n; ++i) points.push_back(draw.point());
@@ -78,7 +78,7 @@ TEST(ConvexPolytope, ContainsWhatTheOracleSays) {
 }
 
 TEST(ClosestPoint, LiesWithinTheCertifiedBracket) {
-  Draw draw;
+  Numbers draw;
   for (int round = 0; round < 5000; ++round) {
     const Vec3 a = draw.point(), b = draw.point(), c = draw.point(), p = 2 * draw.point();
     const DistanceBounds d = point_triangle_distance(p, a, b, c);

@@ -13,7 +13,7 @@ const std::string kTriangle =
     " geometry IndexedFaceSet { solid FALSE creaseAngle 0.5\n"
     " coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 .5 ] } coordIndex [ 0, 1, 2, -1 ] } }\n";
 
-std::vector<Vec3> read(const std::string& body) {
+std::vector<Vec3> read_vrml(const std::string& body) {
   return soup(parse(kHeader + body, Format::Vrml).mesh);
 }
 
@@ -25,58 +25,60 @@ void expect_near(const std::vector<Vec3>& actual, const std::vector<Vec3>& expec
 
 TEST(Vrml, FaceSet) {
   const std::vector<Vec3> expected = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5)};
-  EXPECT_EQ(read(kTriangle), expected);
-  EXPECT_EQ(read("Group { children [ " + kTriangle + " ] }"), expected);
-  EXPECT_EQ(read("Group { bboxSize 1 1 1 children " + kTriangle + " }"), expected);
-  EXPECT_EQ(read("Shape { geometry IndexedFaceSet { ccw FALSE coordIndex [ 0 1 2 ]\n"
-                 "coord Coordinate { point [ 0 0 0 1 0 0 0 1 .5 ] } } }"),
+  EXPECT_EQ(read_vrml(kTriangle), expected);
+  EXPECT_EQ(read_vrml("Group { children [ " + kTriangle + " ] }"), expected);
+  EXPECT_EQ(read_vrml("Group { bboxSize 1 1 1 children " + kTriangle + " }"), expected);
+  EXPECT_EQ(read_vrml("Shape { geometry IndexedFaceSet { ccw FALSE coordIndex [ 0 1 2 ]\n"
+                      "coord Coordinate { point [ 0 0 0 1 0 0 0 1 .5 ] } } }"),
             (std::vector<Vec3>{Vec3(0, 1, 0.5), Vec3(1, 0, 0), Vec3(0, 0, 0)}));
 }
 
 TEST(Vrml, Transforms) {
   const std::string wrap = " children [ " + kTriangle + " ] }";
-  EXPECT_EQ(read("Transform { translation 1 2 3" + wrap),
+  EXPECT_EQ(read_vrml("Transform { translation 1 2 3" + wrap),
             (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(2, 2, 3), Vec3(1, 3, 3.5)}));
-  EXPECT_EQ(read("Transform { children [ " + kTriangle + " ] scale 2 2 2 }"),
+  EXPECT_EQ(read_vrml("Transform { children [ " + kTriangle + " ] scale 2 2 2 }"),
             (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 2, 1)}));
-  expect_near(read("Transform { rotation 0 0 2 1.5707963267948966 translation 1 0 0" + wrap),
+  expect_near(read_vrml("Transform { rotation 0 0 2 1.5707963267948966 translation 1 0 0" + wrap),
               {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 0, 0.5)});
-  expect_near(read("Transform { center 1 0 0 rotation 0 0 1 3.141592653589793" + wrap),
+  expect_near(read_vrml("Transform { center 1 0 0 rotation 0 0 1 3.141592653589793" + wrap),
               {Vec3(2, 0, 0), Vec3(1, 0, 0), Vec3(2, -1, 0.5)});
   // Scale by 2 along the diagonal x = y.
-  expect_near(read("Transform { scale 2 1 1 scaleOrientation 0 0 1 0.7853981633974483" + wrap),
+  expect_near(read_vrml("Transform { scale 2 1 1 scaleOrientation 0 0 1 0.7853981633974483" + wrap),
               {Vec3(0, 0, 0), Vec3(1.5, 0.5, 0), Vec3(0.5, 1.5, 0.5)});
-  expect_near(read("Transform { translation 0 0 1 children Transform { scale 1 1 2" + wrap + " }"),
-              {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 2)});
-  EXPECT_EQ(read("Transform { scale -1 1 1" + wrap),
+  expect_near(
+      read_vrml("Transform { translation 0 0 1 children Transform { scale 1 1 2" + wrap + " }"),
+      {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 2)});
+  EXPECT_EQ(read_vrml("Transform { scale -1 1 1" + wrap),
             (std::vector<Vec3>{Vec3(0, 1, 0.5), Vec3(-1, 0, 0), Vec3(0, 0, 0)}));
 }
 
 TEST(Vrml, RotationAndTranslationMoveWhatFollowsInTheirGroup) {
   const std::string turn = "Rotation { rotation 0 0 1 1.5707963267948966 } ";
   // The later move is the inner one, as in Coin.
-  expect_near(read(turn + "Translation { translation 1 0 0 } " + kTriangle),
+  expect_near(read_vrml(turn + "Translation { translation 1 0 0 } " + kTriangle),
               {Vec3(0, 1, 0), Vec3(0, 2, 0), Vec3(-1, 1, 0.5)});
-  expect_near(read("Translation { translation 1 0 0 } " + turn + kTriangle),
+  expect_near(read_vrml("Translation { translation 1 0 0 } " + turn + kTriangle),
               {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 0, 0.5)});
-  expect_near(read("Group { children [ " + turn + kTriangle + " ] } " + kTriangle),
+  expect_near(read_vrml("Group { children [ " + turn + kTriangle + " ] } " + kTriangle),
               {Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0.5), Vec3(0, 0, 0), Vec3(1, 0, 0),
                Vec3(0, 1, 0.5)});
-  expect_near(read(kTriangle + turn), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5)});
-  EXPECT_THROW(read("Rotation { rotation 0 0 1 1 angle 2 } " + kTriangle), Error);
-  EXPECT_THROW(read("Rotation { translation 0 0 1 } " + kTriangle), Error);
-  EXPECT_THROW(read("Translation { translation 0 0 } " + kTriangle), Error);
+  expect_near(read_vrml(kTriangle + turn), {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5)});
+  EXPECT_THROW(read_vrml("Rotation { rotation 0 0 1 1 angle 2 } " + kTriangle), Error);
+  EXPECT_THROW(read_vrml("Rotation { translation 0 0 1 } " + kTriangle), Error);
+  EXPECT_THROW(read_vrml("Translation { translation 0 0 } " + kTriangle), Error);
 }
 
 TEST(Vrml, FieldsGivenTwice) {
-  EXPECT_EQ(read("Shape { appearance Appearance { material Material { shininess 1 diffuseColor 1 0 "
-                 "0 diffuseColor 0 1 0 } }"
-                 " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 .5 ] } "
-                 "coordIndex [ 0 1 2 ] } }")
-                .size(),
-            3U);
+  EXPECT_EQ(
+      read_vrml("Shape { appearance Appearance { material Material { shininess 1 diffuseColor 1 0 "
+                "0 diffuseColor 0 1 0 } }"
+                " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 .5 ] } "
+                "coordIndex [ 0 1 2 ] } }")
+          .size(),
+      3U);
   EXPECT_THROW(
-      read("Transform { translation 1 0 0 translation 2 0 0 children [ " + kTriangle + " ] }"),
+      read_vrml("Transform { translation 1 0 0 translation 2 0 0 children [ " + kTriangle + " ] }"),
       Error);
 }
 
@@ -91,31 +93,34 @@ TEST(Vrml, Box) {
     six_volumes += corners[i].dot(corners[i + 1].cross(corners[i + 2]));
   EXPECT_DOUBLE_EQ(six_volumes, 6 * 8);
   EXPECT_EQ(corners.front().x(), 0.5);
-  EXPECT_EQ(read("Shape { geometry Box { } }").size(), 36U);
+  EXPECT_EQ(read_vrml("Shape { geometry Box { } }").size(), 36U);
   for (const std::string bad :
        {"size 0 1 1", "size -1 1 1", "size 1 1", "size 1 1 nan", "radius 1"})
-    EXPECT_THROW(read("Shape { geometry Box { " + bad + " } }"), Error) << bad;
+    EXPECT_THROW(read_vrml("Shape { geometry Box { " + bad + " } }"), Error) << bad;
 }
 
 TEST(Vrml, DefAndUse) {
-  EXPECT_EQ(read("DEF A " + kTriangle + "Transform { translation 5 0 0 children [ USE A ] }"),
+  EXPECT_EQ(read_vrml("DEF A " + kTriangle + "Transform { translation 5 0 0 children [ USE A ] }"),
             (std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0.5), Vec3(5, 0, 0),
                                Vec3(6, 0, 0), Vec3(5, 1, 0.5)}));
   // A coordinate node shared; a DEF inside of a node that is skipped.
-  EXPECT_EQ(read("Script { field SFNode c DEF C Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } }\n"
-                 "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 -1 ] } }\n"
-                 "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 2 1 0 ] } }")
+  EXPECT_EQ(read_vrml("Script { field SFNode c DEF C Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] } }\n"
+                      "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 -1 ] } }\n"
+                      "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 2 1 0 ] } }")
                 .size(),
             6U);
 }
 
 TEST(Vrml, OtherGroups) {
   const std::string other = "Shape { geometry Sphere { } }";
-  EXPECT_EQ(read("Switch { whichChoice 1 choice [ " + other + " " + kTriangle + " ] }").size(), 3U);
-  EXPECT_EQ(read("Switch { choice [ " + other + " ] whichChoice -1 } " + kTriangle).size(), 3U);
-  EXPECT_EQ(read("LOD { range [ 1 ] level [ " + kTriangle + " " + other + " ] }").size(), 3U);
-  EXPECT_EQ(read("Anchor { url \"x\" children " + kTriangle + " }").size(), 3U);
-  EXPECT_EQ(read("Collision { proxy " + other + " children [ " + kTriangle + " ] }").size(), 3U);
+  EXPECT_EQ(read_vrml("Switch { whichChoice 1 choice [ " + other + " " + kTriangle + " ] }").size(),
+            3U);
+  EXPECT_EQ(read_vrml("Switch { choice [ " + other + " ] whichChoice -1 } " + kTriangle).size(),
+            3U);
+  EXPECT_EQ(read_vrml("LOD { range [ 1 ] level [ " + kTriangle + " " + other + " ] }").size(), 3U);
+  EXPECT_EQ(read_vrml("Anchor { url \"x\" children " + kTriangle + " }").size(), 3U);
+  EXPECT_EQ(read_vrml("Collision { proxy " + other + " children [ " + kTriangle + " ] }").size(),
+            3U);
 }
 
 TEST(Vrml, SkipsWhatHasNoSurface) {

@@ -10,7 +10,7 @@ namespace kaboum::io::test {
 namespace {
 
 const std::string kPoints = R"(<Coordinate point="0 0 0, 1 0 0, 1 1 0.1, 0 1 0"/>)";
-const std::string kTriangle =
+const std::string kX3dTriangle =
     "<Shape><Appearance><Material diffuseColor='1 0 0'/></Appearance>"
     R"(<IndexedFaceSet solid="false" coordIndex="0 1 2 -1">)" +
     kPoints + "</IndexedFaceSet></Shape>";
@@ -23,10 +23,10 @@ std::string x3d(const std::string& scene, const std::string& head = "") {
          head + "<Scene>\n" + scene + "</Scene></X3D>";
 }
 
-ReadResult read(const std::string& scene) { return parse(x3d(scene), Format::X3d); }
-std::vector<Vec3> triangles(const std::string& scene) { return soup(read(scene).mesh); }
+ReadResult read_x3d(const std::string& scene) { return parse(x3d(scene), Format::X3d); }
+std::vector<Vec3> triangles(const std::string& scene) { return soup(read_x3d(scene).mesh); }
 
-void expect_refused(const std::string& scene, const std::vector<std::string>& parts) {
+void expect_x3d_refused(const std::string& scene, const std::vector<std::string>& parts) {
   expect_error(x3d(scene), Format::X3d, parts);
 }
 
@@ -55,7 +55,7 @@ std::string with_points(const std::string& type, const std::string& attributes) 
 }
 
 TEST(X3d, FaceSet) {
-  const ReadResult r = read(kTriangle);
+  const ReadResult r = read_x3d(kX3dTriangle);
   EXPECT_EQ(soup(r.mesh), kExpected);
   EXPECT_FALSE(r.single_precision);
   EXPECT_EQ(r.notes.size(), 1U);  // a vertex that is not used
@@ -85,7 +85,7 @@ TEST(X3d, OtherSurfaces) {
   EXPECT_EQ(triangles(with_points("TriangleStripSet", R"(stripCount="4")")),
             (Corners{a, b, c, c, b, d}));
   for (const char* type : {"QuadSet", "IndexedQuadSet"}) {
-    const ReadResult quad = read(with_points(type, type[0] == 'Q' ? "" : R"(index="0 1 2 3")"));
+    const ReadResult quad = read_x3d(with_points(type, type[0] == 'Q' ? "" : R"(index="0 1 2 3")"));
     EXPECT_EQ(quad.split_polygons, 1U);
     EXPECT_EQ(quad.mesh.triangles.size(), 2U);
   }
@@ -93,28 +93,29 @@ TEST(X3d, OtherSurfaces) {
       triangles(shape(R"(<TriangleSet><Coordinate point="0 0 0 1 0 0 1 1 0.1"/></TriangleSet>)")),
       kExpected);
   // What does not come out even is not guessed.
-  expect_refused(with_points("TriangleSet", ""), {"4 points"});
+  expect_x3d_refused(with_points("TriangleSet", ""), {"4 points"});
 }
 
 TEST(X3d, IncompleteSurfacesAreRefused) {
-  expect_refused(with_points("IndexedTriangleSet", R"(index="0 1 2 3")"), {"last face"});
-  expect_refused(with_points("IndexedQuadSet", R"(index="0 1 2")"), {"last face"});
-  expect_refused(with_points("TriangleStripSet", R"(stripCount="3")"), {"4 points", "faces of 3"});
-  expect_refused(with_points("TriangleFanSet", R"(fanCount="2 2")"), {"run of 2"});
-  expect_refused(with_points("TriangleFanSet", ""), {"faces of 0"});
-  expect_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 4")"),
-                 {"vertex 4", "there are 4"});
-  expect_refused(with_points("IndexedTriangleSet", R"(index="0 1 -1")"), {"vertex -1"});
-  expect_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 x")"), {"line 4", "'x'"});
-  expect_refused(with_points("IndexedFaceSet", R"(coordindex="0 1 2")"), {"'coordindex'"});
-  expect_refused(shape(R"(<TriangleSet><Coordinate point="0 0 0 1 0"/></TriangleSet>)"),
-                 {"too few"});
+  expect_x3d_refused(with_points("IndexedTriangleSet", R"(index="0 1 2 3")"), {"last face"});
+  expect_x3d_refused(with_points("IndexedQuadSet", R"(index="0 1 2")"), {"last face"});
+  expect_x3d_refused(with_points("TriangleStripSet", R"(stripCount="3")"),
+                     {"4 points", "faces of 3"});
+  expect_x3d_refused(with_points("TriangleFanSet", R"(fanCount="2 2")"), {"run of 2"});
+  expect_x3d_refused(with_points("TriangleFanSet", ""), {"faces of 0"});
+  expect_x3d_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 4")"),
+                     {"vertex 4", "there are 4"});
+  expect_x3d_refused(with_points("IndexedTriangleSet", R"(index="0 1 -1")"), {"vertex -1"});
+  expect_x3d_refused(with_points("IndexedFaceSet", R"(coordIndex="0 1 x")"), {"line 4", "'x'"});
+  expect_x3d_refused(with_points("IndexedFaceSet", R"(coordindex="0 1 2")"), {"'coordindex'"});
+  expect_x3d_refused(shape(R"(<TriangleSet><Coordinate point="0 0 0 1 0"/></TriangleSet>)"),
+                     {"too few"});
 }
 
 TEST(X3d, Groups) {
   for (const char* group : {"Group", "StaticGroup", "Anchor", "Collision", "PickableGroup",
                             "Transform", "CADAssembly", "CADLayer", "CADPart", "CADFace", "LOD"}) {
-    const std::string shown = element(group, "DEF='g'", kTriangle);
+    const std::string shown = element(group, "DEF='g'", kX3dTriangle);
     EXPECT_EQ(triangles(shown), kExpected);
     EXPECT_EQ(triangles(shown +
                         element("Transform", "translation='0 0 1'", element(group, "USE='g'", "")))
@@ -122,34 +123,36 @@ TEST(X3d, Groups) {
               6U);
   }
   EXPECT_EQ(
-      triangles("<CADFace><Shape containerField='shape'>" + kTriangle.substr(7) + "</CADFace>"),
+      triangles("<CADFace><Shape containerField='shape'>" + kX3dTriangle.substr(7) + "</CADFace>"),
       kExpected);
-  EXPECT_EQ(triangles("<CADPart translation='1 2 3'>" + kTriangle + "</CADPart>")[0],
+  EXPECT_EQ(triangles("<CADPart translation='1 2 3'>" + kX3dTriangle + "</CADPart>")[0],
             Vec3(1, 2, 3));
   const std::string other = shape("<Box/>");
-  EXPECT_EQ(triangles("<LOD range='1'>" + kTriangle + other + "</LOD>"), kExpected);
-  EXPECT_EQ(triangles("<Switch whichChoice='1'>" + other + kTriangle + "</Switch>"), kExpected);
-  const ReadResult proxy =
-      read("<Collision><Shape containerField='proxy'><Box/></Shape>" + kTriangle + "</Collision>");
+  EXPECT_EQ(triangles("<LOD range='1'>" + kX3dTriangle + other + "</LOD>"), kExpected);
+  EXPECT_EQ(triangles("<Switch whichChoice='1'>" + other + kX3dTriangle + "</Switch>"), kExpected);
+  const ReadResult proxy = read_x3d("<Collision><Shape containerField='proxy'><Box/></Shape>" +
+                                    kX3dTriangle + "</Collision>");
   EXPECT_EQ(soup(proxy.mesh), kExpected);
   EXPECT_TRUE(has_note(proxy, "proxies"));
-  const ReadResult hidden = read("<Switch>" + other + "</Switch>" + kTriangle);
+  const ReadResult hidden = read_x3d("<Switch>" + other + "</Switch>" + kX3dTriangle);
   EXPECT_TRUE(has_note(hidden, "Switch"));
 }
 
 TEST(X3d, Transforms) {
   EXPECT_EQ(
-      triangles("<Transform translation='0 0 2' scale='2 3 1'>" + kTriangle + "</Transform>")[2],
+      triangles("<Transform translation='0 0 2' scale='2 3 1'>" + kX3dTriangle + "</Transform>")[2],
       Vec3(2, 3, 2.1));
   const std::vector<Vec3> turned =
-      triangles("<Transform rotation='0 0 1 1.5707963267948966'>" + kTriangle + "</Transform>");
+      triangles("<Transform rotation='0 0 1 1.5707963267948966'>" + kX3dTriangle + "</Transform>");
   EXPECT_LT((turned[1] - Vec3(0, 1, 0)).norm(), 1e-15);
-  const ReadResult mirrored = read("<Transform scale='-1 1 1'>" + kTriangle + "</Transform>");
+  const ReadResult mirrored =
+      read_x3d("<Transform scale='-1 1 1'>" + kX3dTriangle + "</Transform>");
   EXPECT_EQ(soup(mirrored.mesh)[2], Vec3(0, 0, 0));
   EXPECT_TRUE(has_note(mirrored, "mirror"));
-  expect_refused("<Transform translation='0 0'>" + kTriangle + "</Transform>", {"too few"});
-  expect_refused("<Transform translation='0 0 0 0'>" + kTriangle + "</Transform>", {"too many"});
-  expect_refused("<Group translation='0 0 1'>" + kTriangle + "</Group>", {"'translation'"});
+  expect_x3d_refused("<Transform translation='0 0'>" + kX3dTriangle + "</Transform>", {"too few"});
+  expect_x3d_refused("<Transform translation='0 0 0 0'>" + kX3dTriangle + "</Transform>",
+                     {"too many"});
+  expect_x3d_refused("<Group translation='0 0 1'>" + kX3dTriangle + "</Group>", {"'translation'"});
 }
 
 TEST(X3d, WhatMayHoldASurfaceIsRefusedByName) {
@@ -157,31 +160,33 @@ TEST(X3d, WhatMayHoldASurfaceIsRefusedByName) {
        {"Sphere", "Cone", "Cylinder", "Text", "ElevationGrid", "Extrusion", "Disk2D", "Rectangle2D",
         "TriangleSet2D", "ArcClose2D", "NurbsPatchSurface", "NurbsTrimmedSurface",
         "GeoElevationGrid", "Mystery"})
-    expect_refused(kTriangle + shape(std::string("<") + geometry + "/>"), {"line 4", geometry});
+    expect_x3d_refused(kX3dTriangle + shape(std::string("<") + geometry + "/>"),
+                       {"line 4", geometry});
   for (const char* node :
        {"Billboard", "GeoTransform", "GeoLocation", "GeoLOD", "HAnimHumanoid", "ParticleSystem",
         "LayerSet", "LayoutGroup", "ScreenGroup", "EspduTransform", "VolumeData", "NurbsSet",
         "CollidableShape", "ClipPlane", "Rotation", "Translation", "Mystery"})
-    expect_refused(kTriangle + "<" + node + "/>", {node});
+    expect_x3d_refused(kX3dTriangle + "<" + node + "/>", {node});
   for (const char* node : {"ProtoInstance", "ProtoDeclare", "ExternProtoDeclare"})
-    expect_refused(kTriangle + "<" + node + " name='P'/>", {node, "prototypes"});
-  expect_refused(shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate containerField="coord"/>)"
-                       "</IndexedFaceSet>"),
-                 {"GeoCoordinate"});
-  expect_refused(shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate/></IndexedFaceSet>)"),
-                 {"GeoCoordinate"});
-  expect_refused(shape("<Box containerField='appearance'/>"), {"Box"});
-  expect_refused("<Group><Shape containerField='metadata'/></Group>", {"Shape"});
-  expect_refused("<Group visible='false'>" + kTriangle + "</Group>", {"visible"});
-  expect_refused(kTriangle + "text", {"'text"});
+    expect_x3d_refused(kX3dTriangle + "<" + node + " name='P'/>", {node, "prototypes"});
+  expect_x3d_refused(
+      shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate containerField="coord"/>)"
+            "</IndexedFaceSet>"),
+      {"GeoCoordinate"});
+  expect_x3d_refused(shape(R"(<IndexedFaceSet coordIndex="0"><GeoCoordinate/></IndexedFaceSet>)"),
+                     {"GeoCoordinate"});
+  expect_x3d_refused(shape("<Box containerField='appearance'/>"), {"Box"});
+  expect_x3d_refused("<Group><Shape containerField='metadata'/></Group>", {"Shape"});
+  expect_x3d_refused("<Group visible='false'>" + kX3dTriangle + "</Group>", {"visible"});
+  expect_x3d_refused(kX3dTriangle + "text", {"'text"});
 }
 
 TEST(X3d, IgnoresWhatHoldsNone) {
-  const ReadResult r = read(
+  const ReadResult r = read_x3d(
       "<WorldInfo title='x'/><Viewpoint DEF='V'/><DirectionalLight/><TimeSensor DEF='T'/>"
       "<Script><field name='a' type='SFNode' accessType='initializeOnly'/><![CDATA[code <> ]]>"
       "</Script><ROUTE fromNode='T' fromField='x' toNode='V' toField='y'/>" +
-      kTriangle + shape("<IndexedLineSet coordIndex='0 1'>" + kPoints + "</IndexedLineSet>"));
+      kX3dTriangle + shape("<IndexedLineSet coordIndex='0 1'>" + kPoints + "</IndexedLineSet>"));
   EXPECT_EQ(soup(r.mesh), kExpected);
   EXPECT_TRUE(has_note(r, "lines"));
   EXPECT_TRUE(has_note(r, "animations"));
@@ -189,7 +194,7 @@ TEST(X3d, IgnoresWhatHoldsNone) {
 
 TEST(X3d, Units) {
   const auto unit = [](const std::string& attributes) {
-    return x3d(kTriangle, "<head><meta name='a' content='b'/><unit " + attributes + "/></head>");
+    return x3d(kX3dTriangle, "<head><meta name='a' content='b'/><unit " + attributes + "/></head>");
   };
   const ReadResult r =
       parse(unit("category='length' name='mm' conversionFactor='0.001'"), Format::X3d);
@@ -203,7 +208,7 @@ TEST(X3d, Units) {
       parse(unit("category='length' name='m' conversionFactor='1'"), Format::X3d);
   EXPECT_EQ(metres.unit, "m");
   EXPECT_FALSE(has_note(metres, "metres"));
-  EXPECT_EQ(read(kTriangle).unit, "");
+  EXPECT_EQ(read_x3d(kX3dTriangle).unit, "");
   EXPECT_EQ(parse(unit("category='mass' name='g' conversionFactor='1'"), Format::X3d).unit, "");
   const ReadResult tiny =
       parse(unit("category='length' name='nm' conversionFactor='0.000000001'"), Format::X3d);
@@ -222,16 +227,16 @@ TEST(X3d, Damaged) {
   expect_error(std::string("\xE0\0\0\1xyz", 7), Format::X3d, {"binary"});
   expect_error("<html/>", Format::X3d, {"no X3D"});
   expect_error("<X3D/>", Format::X3d, {"no triangles"});
-  expect_error(x3d(kTriangle) + x3d(kTriangle), Format::X3d, {});
+  expect_error(x3d(kX3dTriangle) + x3d(kX3dTriangle), Format::X3d, {});
   expect_error("<X3D><Scene/><Scene/></X3D>", Format::X3d, {"second"});
-  expect_refused("<Group USE='x'/>", {"'x'", "DEF"});
-  expect_refused("<Group DEF='x'/><Shape USE='x'/>", {"'x'"});
-  expect_refused("<Shape>" + kTriangle.substr(7, kTriangle.size() - 15) +
-                     "<IndexedFaceSet coordIndex=''/></Shape>",
-                 {"several"});
+  expect_x3d_refused("<Group USE='x'/>", {"'x'", "DEF"});
+  expect_x3d_refused("<Group DEF='x'/><Shape USE='x'/>", {"'x'"});
+  expect_x3d_refused("<Shape>" + kX3dTriangle.substr(7, kX3dTriangle.size() - 15) +
+                         "<IndexedFaceSet coordIndex=''/></Shape>",
+                     {"several"});
   // Its own descendant.
-  expect_refused("<Group DEF='x'><Group USE='x'/></Group>", {"deep"});
-  expect_error(x3d(doubled(kTriangle)), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
+  expect_x3d_refused("<Group DEF='x'><Group USE='x'/></Group>", {"deep"});
+  expect_error(x3d(doubled(kX3dTriangle)), Format::X3d, {"repeat"}, ErrorCode::LimitReached);
 }
 
 TEST(X3d, CrowdedElementsEnd) {
@@ -242,15 +247,15 @@ TEST(X3d, CrowdedElementsEnd) {
   std::string fields = "<Group>";
   for (int i = 0; i < 100'000; ++i)
     fields += "<Group containerField='f" + std::to_string(i) + "'/>";
-  expect_refused(fields + "</Group>", {"too many fields"});
-  // Text that makes nothing, read again and again.
+  expect_x3d_refused(fields + "</Group>", {"too many fields"});
+  // Text that makes nothing, read_x3d again and again.
   const std::string blank = "coordIndex='" + std::string(100'000, ' ') + "'";
   expect_error(x3d(doubled(with_points("IndexedFaceSet", blank))), Format::X3d, {"repeat"},
                ErrorCode::LimitReached);
   // Quotation marks elsewhere are none.
   const std::string quotes(1000, '"');
   EXPECT_EQ(triangles("<!-- " + quotes + " --><Script><![CDATA[<a " + quotes + ">]]></Script>" +
-                      kTriangle),
+                      kX3dTriangle),
             kExpected);
 }
 
@@ -258,15 +263,15 @@ TEST(X3d, Inline) {
   const std::filesystem::path directory =
       std::filesystem::path(::testing::TempDir()) / ("kaboum-x3d-" + std::to_string(::getpid()));
   std::filesystem::create_directories(directory);
-  std::ofstream(directory / "a.x3d") << x3d(kTriangle);
+  std::ofstream(directory / "a.x3d") << x3d(kX3dTriangle);
   std::ofstream(directory / "b.wrl")
       << "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coordIndex [ 0 1 2 ]\n"
          "coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0.1 ] } } }";
   std::ofstream(directory / "mm.x3d")
-      << x3d(kTriangle, "<head><unit category='length' conversionFactor='0.001'/></head>");
+      << x3d(kX3dTriangle, "<head><unit category='length' conversionFactor='0.001'/></head>");
   std::ofstream(directory / "loop.x3d") << x3d("<Inline url='loop.x3d'/>");
   std::ofstream(directory / "m.x3d")
-      << x3d(kTriangle, "<head><unit category='length' conversionFactor='1'/></head>");
+      << x3d(kX3dTriangle, "<head><unit category='length' conversionFactor='1'/></head>");
   std::ofstream(directory / "turned.wrl")
       << "#VRML V2.0 utf8\nTranslation { translation 0 0 5 } Inline { url \"b.wrl\" }";
   const auto inlined = [&](const std::string& attributes, const std::string& head = "") {

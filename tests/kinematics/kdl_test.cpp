@@ -67,7 +67,7 @@ KDL::Frame pose_by_kdl(const KDL::Chain& chain, std::span<const double> q) {
   return frame;
 }
 
-PoseError difference(const KDL::Frame& a, const Transform& b) {
+PoseError kdl_difference(const KDL::Frame& a, const Transform& b) {
   Transform t;
   for (int r = 0; r < 3; ++r) {
     t.translation[r] = a.p(r);
@@ -90,10 +90,10 @@ void check_chain(const Robot& robot, const std::string& base, const std::string&
     const std::vector<double> q = random_joints(random, 6, std::numbers::pi);
     const KDL::Frame target = pose_by_kdl(chain, q);
     Transform pose = kinematics::forward(arm, q);
-    EXPECT_LT(difference(target, pose).position, 1e-13);
+    EXPECT_LT(kdl_difference(target, pose).position, 1e-13);
     double nearest = 100;
     for (const Solution& s : solve(*form, pose)) {
-      const PoseError error = difference(pose_by_kdl(chain, s.q), pose);
+      const PoseError error = kdl_difference(pose_by_kdl(chain, s.q), pose);
       EXPECT_LT(error.position + error.rotation, 1e-9) << robot.name;
       EXPECT_LE(error.position, s.position_error + 1e-14);
       nearest = std::min(nearest, turn_distance(s.q.data(), q));

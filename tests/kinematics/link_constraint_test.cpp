@@ -14,7 +14,7 @@ namespace kaboum::test {
 namespace {
 
 using Kind = FrameId::Kind;
-const FrameId kWorld;
+const FrameId kBase;
 
 /// Three joints, one that moves along and one with an offset, a bracket fixed to the second link,
 /// a finger that follows the last joint's variable, a branch of its own.
@@ -86,7 +86,7 @@ ConstraintProblem on_all_links() {
   const auto link = [](std::size_t k) { return FrameId{Kind::Link, 0, k}; };
   problem.constraints = {
       {Relation::Coincident, {link(0), Point{{0.1, 0.2, 0.3}}}, {object, Plane{}}},
-      {Relation::Distance, {link(1), Point{{0.1, 0, 0.3}}}, {kWorld, Line{}}, 0.4},
+      {Relation::Distance, {link(1), Point{{0.1, 0, 0.3}}}, {kBase, Line{}}, 0.4},
       {Relation::Parallel, {link(2), Line{{0.3, 0, 0}, {0.6, 0, 0.8}}}, {object, Line{}}},
       {Relation::Angle, {link(3), Plane{}}, {link(1), Plane{{1, 0, 0}, {0, 0.6, 0.8}}}, 0.7},
       {Relation::Coincident, {link(2), Point{{0, 1, 0}}}, {tool, Plane{{0, 0, 1}, {0, 1, 0}}}}};
@@ -135,8 +135,8 @@ ConstraintProblem elbow_at(double height, std::size_t axes) {
   problem.robots = {robot};
   problem.constraints = {{Relation::Coincident,
                           {{Kind::Link, 0, 0}, Point{}},
-                          {kWorld, Plane{{0, 0, height}, {0, 0, 1}}}},
-                         {Relation::Angle, {{Kind::Tool, 0}, Line{}}, {kWorld, Line{}}, 2.5}};
+                          {kBase, Plane{{0, 0, height}, {0, 0, 1}}}},
+                         {Relation::Angle, {{Kind::Tool, 0}, Line{}}, {kBase, Line{}}, 2.5}};
   return problem;
 }
 

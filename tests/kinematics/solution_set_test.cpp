@@ -21,7 +21,7 @@
 namespace kaboum::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kQuarter = kPi / 2;
+constexpr double kHalfTurn = std::numbers::pi, kQuarter = kHalfTurn / 2;
 
 struct NamedArm {
   const char* name;
@@ -47,7 +47,7 @@ std::vector<NamedArm> arms() {
                                     {-kQuarter, 0, -.041, -kQuarter},
                                     {0, -1, 0, kQuarter},
                                     {0, 0, 0, -kQuarter},
-                                    {0, -.215, 0, kPi}})});
+                                    {0, -.215, 0, kHalfTurn}})});
   out.push_back({"Puma 560", of_rows({{0, .67, 0, kQuarter},
                                       {0, 0, .4318, 0},
                                       {0, .15005, .0203, -kQuarter},
@@ -93,7 +93,7 @@ double angle_of(const ClosedForm& form, const std::vector<double>& q, std::size_
   return form.sign[joint] * q[joint] + form.offset[joint];
 }
 void set_angle(const ClosedForm& form, std::vector<double>& q, std::size_t joint, double angle) {
-  q[joint] = std::remainder(form.sign[joint] * (angle - form.offset[joint]), 2 * kPi);
+  q[joint] = std::remainder(form.sign[joint] * (angle - form.offset[joint]), 2 * kHalfTurn);
 }
 
 enum Kinds : unsigned { kAligned = 1, kStraight = 2, kFolded = 4, kOnAxis = 8 };
@@ -119,7 +119,7 @@ bool put_on_axis(const ClosedForm& form, std::vector<double>& q) {
 /// Turns joints 2 and 4 of five so that the wrist is on axis 1 and axis 5 along it.
 bool put_upright_on_axis(const ClosedForm& form, std::vector<double>& q, bool flip) {
   if (std::abs(form.lateral) > 1e-12) return false;
-  const double sum = flip ? kPi : 0, elbow = angle_of(form, q, 2);
+  const double sum = flip ? kHalfTurn : 0, elbow = angle_of(form, q, 2);
   const std::complex<double> end = form.a2 + std::polar(form.a3, elbow);
   const double cosine = (-form.a1 - form.a4 * std::cos(sum)) / std::abs(end);
   if (!(std::abs(cosine) <= 1)) return false;
@@ -136,14 +136,14 @@ bool make_singular(const ClosedForm& form, std::vector<double>& q, unsigned kind
   const bool five = form.family == Family::FiveAxes;
   if ((kinds & kAligned) != 0) {
     if (five && (kinds & kOnAxis) == 0) return false;
-    if (!five) set_angle(form, q, 4, (flip ? kPi : 0) + off());
+    if (!five) set_angle(form, q, 4, (flip ? kHalfTurn : 0) + off());
   }
   const double bend = form.family == Family::SphericalWrist ? form.bend : 0;
   const double second = form.family == Family::SphericalWrist ? form.forearm : form.a3;
   if ((kinds & kStraight) != 0) set_angle(form, q, 2, -bend + off());
   if ((kinds & kFolded) != 0) {
     if (std::abs(form.a2 - second) > 1e-12) return false;
-    set_angle(form, q, 2, kPi - bend + off());
+    set_angle(form, q, 2, kHalfTurn - bend + off());
   }
   if ((kinds & kOnAxis) != 0) {
     const bool upright = five && (kinds & kAligned) != 0;
@@ -161,8 +161,8 @@ void limit(Arm& arm, const std::vector<double>& q, std::mt19937_64& random) {
   };
   const double wide = unit(random);
   for (std::size_t i = 0; i < q.size(); ++i) {
-    arm.axes[i].lower = wide < 0.2 ? -2 * kPi : q[i] - room();
-    arm.axes[i].upper = wide < 0.2 ? 2 * kPi : q[i] + room();
+    arm.axes[i].lower = wide < 0.2 ? -2 * kHalfTurn : q[i] - room();
+    arm.axes[i].upper = wide < 0.2 ? 2 * kHalfTurn : q[i] + room();
   }
 }
 
@@ -189,7 +189,7 @@ bool holds(const SolutionSet& set, const std::vector<double>& q) {
         if (family.free.size() > 1 && r != k) continue;
         const JointRange& range = family.ranges[r];
         for (int turn = -2; turn <= 2; ++turn) {
-          const double value = q[family.free[k]] + turn * 2 * kPi;
+          const double value = q[family.free[k]] + turn * 2 * kHalfTurn;
           one |= value > range.lower - 1.2e-5 && value < range.upper + 1.2e-5;
         }
       }
@@ -254,7 +254,7 @@ void attack(const NamedArm& named, std::optional<double> off, int trials, std::u
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<unsigned> kinds(1, 15);
   for (int trial = 0; trial < trials; ++trial) {
-    std::vector<double> q = random_joints(random, n, kPi);
+    std::vector<double> q = random_joints(random, n, kHalfTurn);
     const unsigned kind = kinds(random);
     if ((kind & kStraight) != 0 && (kind & kFolded) != 0) continue;
     const double side = random() % 2 == 0 ? 1 : -1;
@@ -300,7 +300,7 @@ void attack(const NamedArm& named, std::optional<double> off, int trials, std::u
     const SolutionSet all = solve_set(limited, target, options);
     EXPECT_TRUE(holds(all, q) || !all.complete);
     // Other limits: what is said to have nothing within them has nothing.
-    limit(limited.arm, random_joints(random, n, kPi), random);
+    limit(limited.arm, random_joints(random, n, kHalfTurn), random);
     options = {};
     const SolutionSet other = solve_set(limited, target, options);
     if (!other.complete || has_any(limited.arm, other, n)) continue;

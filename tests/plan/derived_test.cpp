@@ -8,7 +8,9 @@
 namespace kaboum::plan::test {
 namespace {
 
-Model pddl(const std::string& text) { return load({"t.pddl", text, Language::Pddl}, nullptr); }
+Model pddl_model(const std::string& text) {
+  return load({"t.pddl", text, Language::Pddl}, nullptr);
+}
 
 std::uint64_t fewest(const Model& m) {
   const Solution s = solved(m, Algorithm::BreadthFirst);
@@ -38,21 +40,21 @@ std::string rooms(int count, const std::string& goal, const std::string& more = 
 }
 
 TEST(Derived, RecursiveRulesAreALeastFixedPoint) {
-  EXPECT_EQ(fewest(pddl(rooms(4, "(near r3)"))), 3U);
-  EXPECT_EQ(fewest(pddl(rooms(4, "(not (shut))"))), 3U);
-  EXPECT_EQ(fewest(pddl(rooms(4, "(and (near r2) (shut))"))), 2U);
+  EXPECT_EQ(fewest(pddl_model(rooms(4, "(near r3)"))), 3U);
+  EXPECT_EQ(fewest(pddl_model(rooms(4, "(not (shut))"))), 3U);
+  EXPECT_EQ(fewest(pddl_model(rooms(4, "(and (near r2) (shut))"))), 2U);
   // Two rooms that only reach one another are not near.
   const std::string island = rooms(2, "(near a)");
   std::string text = island;
   text.replace(text.find(" (start r0)"), 11, " (start r0) (open a b) (open b a)");
   text.replace(text.find("(:objects"), 9, "(:objects a b");
-  EXPECT_EQ(solved(pddl(text), Algorithm::BreadthFirst).outcome, Outcome::Unsolvable);
-  EXPECT_EQ(solved(pddl(text), Algorithm::Greedy).outcome, Outcome::Unsolvable);
+  EXPECT_EQ(solved(pddl_model(text), Algorithm::BreadthFirst).outcome, Outcome::Unsolvable);
+  EXPECT_EQ(solved(pddl_model(text), Algorithm::Greedy).outcome, Outcome::Unsolvable);
 }
 
 TEST(Derived, WhatWasLookedAtTooEarlyIsLookedAtAgain) {
   // b rests on a, and is first asked for while a is not decided yet.
-  const Model m = pddl(
+  const Model m = pddl_model(
       "(define (domain d) (:requirements :adl :derived-predicates) (:predicates (x) (c) (r) (a) "
       "(b))"
       " (:derived (r) (and (a) (b))) (:derived (a) (or (b) (c))) (:derived (b) (a))"
@@ -71,7 +73,7 @@ TEST(Derived, LongChainsOfRulesAreFollowed) {
     if (i + 1 < kRooms)
       facts += " (next r" + std::to_string(i) + " r" + std::to_string(i + 1) + ")";
   }
-  const Model m = pddl(
+  const Model m = pddl_model(
       "(define (domain d) (:requirements :adl :derived-predicates)"
       " (:predicates (next ?x ?y) (start ?x) (near ?x))"
       " (:derived (near ?x) (or (start ?x) (exists (?y) (and (next ?y ?x) (near ?y)))))"
@@ -96,11 +98,11 @@ TEST(Derived, DeepRulesAreFollowedOrRefused) {
     rules +=
         " (:derived (p" + n + ") " + nested + "(p" + std::to_string(i - 1) + ")" + closing + ")";
   }
-  const Model m =
-      pddl("(define (domain d) (:requirements :adl :derived-predicates) (:predicates (x) (p0)" +
-           predicates + ")" + rules +
-           " (:action f :parameters () :precondition (not (p0)) :effect (p0)))"
-           "(define (problem p) (:domain d) (:init (x)) (:goal (p579)))");
+  const Model m = pddl_model(
+      "(define (domain d) (:requirements :adl :derived-predicates) (:predicates (x) (p0)" +
+      predicates + ")" + rules +
+      " (:action f :parameters () :precondition (not (p0)) :effect (p0)))"
+      "(define (problem p) (:domain d) (:init (x)) (:goal (p579)))");
   const Solution s = solve(m, {});
   ASSERT_EQ(s.outcome, Outcome::Solved);
   try {
@@ -121,7 +123,7 @@ TEST(Derived, ManyAtomsOfAGoalAreWorkedOutTogether) {
       if (x + 1 < kSide) facts += " (next " + cell(x + 1, y) + " " + cell(x, y) + ")";
       if (y + 1 < kSide) facts += " (next " + cell(x, y + 1) + " " + cell(x, y) + ")";
     }
-  const Model m = pddl(
+  const Model m = pddl_model(
       "(define (domain d) (:requirements :adl :derived-predicates)"
       " (:predicates (next ?x ?y) (at ?x) (reach ?x))"
       " (:derived (reach ?x) (or (at ?x) (exists (?y) (and (next ?y ?x) (reach ?y))))))"
@@ -145,17 +147,18 @@ TEST(Derived, RulesOfOneAnotherAndOfASubtype) {
            " (:goal " +
            goal + "))";
   };
-  EXPECT_EQ(fewest(pddl(text("(odd d)"))), 1U);
-  EXPECT_EQ(fewest(pddl(text("(even d)"))), 2U);
-  EXPECT_EQ(fewest(pddl(text("(and (done) (odd c))"))), 2U) << "conditions read the state before";
-  EXPECT_EQ(solved(pddl(text("(odd b)")), Algorithm::Greedy).outcome, Outcome::Unsolvable);
+  EXPECT_EQ(fewest(pddl_model(text("(odd d)"))), 1U);
+  EXPECT_EQ(fewest(pddl_model(text("(even d)"))), 2U);
+  EXPECT_EQ(fewest(pddl_model(text("(and (done) (odd c))"))), 2U)
+      << "conditions read the state before";
+  EXPECT_EQ(solved(pddl_model(text("(odd b)")), Algorithm::Greedy).outcome, Outcome::Unsolvable);
 }
 
 TEST(Derived, LargeRulesHaveAtomsOfTheirOwn) {
   // All pairs are linked or equal: as a formula some thousand nodes, needed by another rule.
   std::string objects;
   for (int i = 0; i < 40; ++i) objects += " x" + std::to_string(i);
-  const Model m = pddl(
+  const Model m = pddl_model(
       "(define (domain d) (:requirements :adl :derived-predicates)"
       " (:predicates (on ?x) (every) (nothing) (mixed) (go))"
       " (:derived (every) (forall (?x ?y) (or (= ?x ?y) (and (on ?x) (on ?y)))))"
@@ -180,7 +183,7 @@ TEST(Derived, ConvertedToPddlAgainAndToNothingElse) {
   const Text domain{"rooms.pddl", text, Language::Pddl};
   const std::string again = convert(domain, nullptr, Language::Pddl);
   EXPECT_NE(again.find("(:derived (near ?x - object)"), std::string::npos);
-  EXPECT_EQ(fewest(pddl(again)), 2U);
+  EXPECT_EQ(fewest(pddl_model(again)), 2U);
   try {
     convert(domain, nullptr, Language::Kpl);
     ADD_FAILURE() << "no error";
@@ -256,7 +259,7 @@ TEST(Derived, RandomTasksAsAnExhaustiveSearchDecidesThem) {
     if (!truth) continue;
     const std::string text = task.pddl();
     SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + text);
-    const Model m = pddl(text);
+    const Model m = pddl_model(text);
     for (const Symbol& p : m.predicates) recursive += p.recursive ? 1 : 0;
     ++(*truth ? solvable : unsolvable);
     for (const Algorithm a : kAll) {

@@ -86,6 +86,10 @@ def test_previews_of_sets(bracket, tmp_path):
             run("bcd-decompose", bracket, *options, "--preview", tmp_path / name, *(["--explode", 0] if explode else []))
             made.write_preview(tmp_path / ("our-" + name), **explode)
             same(tmp_path / ("our-" + name), tmp_path / name)
+    kaboum.read_set(tmp_path / "set.glb").write_preview(tmp_path / "read.png", explode=0)
+    same(tmp_path / "read.png", tmp_path / "set.png")
+    with pytest.raises(kaboum.Error, match="ends with .png"):
+        kaboum.read_set(tmp_path / "set.glb").write_preview(tmp_path / "read.html")
     kaboum.decompose(cube(), epsilon="5%").write_preview(tmp_path / "cube.html")
     assert "Bodies of the mesh" in (tmp_path / "cube.html").read_text()
 
@@ -113,6 +117,15 @@ def test_previews_of_robots(arm, tmp_path):
         made.write_preview(tmp_path / f"ours.{extension}")
         same(tmp_path / f"ours.{extension}", tmp_path / f"theirs.{extension}")
     made.write_page(tmp_path / "page.html")
+    ours, theirs = ((tmp_path / name).read_text() for name in ("page.html", "report.html"))
+    assert ours[ours.index("<table>"):ours.index("</table>")] == theirs[theirs.index("<table>"):theirs.index("</table>")]
+    assert "bound-verify" in theirs and "bound-verify" not in ours and ours.endswith("</html>\n")
+
+
+def test_pages_of_enclosed_robots(arm, tmp_path):
+    kaboum.decimate_robot(arm, epsilon="5%")  # its meshes are in the cache, for both
+    run("bmesh-decimate", arm, "--epsilon", "5%", "-o", tmp_path / "folder", "--html-report", tmp_path / "report.html")
+    kaboum.decimate_robot(arm, epsilon="5%").write_page(tmp_path / "page.html")
     ours, theirs = ((tmp_path / name).read_text() for name in ("page.html", "report.html"))
     assert ours[ours.index("<table>"):ours.index("</table>")] == theirs[theirs.index("<table>"):theirs.index("</table>")]
     assert "bound-verify" in theirs and "bound-verify" not in ours and ours.endswith("</html>\n")

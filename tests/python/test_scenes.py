@@ -40,8 +40,9 @@ def test_scene_is_the_programs(parts, monkeypatch):
     (parts / "a").mkdir()
     (parts / "b").mkdir()
     program(parts, "make", "a/cell.json", "--robot", "arm=arm.urdf", "--object", "box=box.off", "--region", "room=box.off", "--at",
-            "box=1,0,0.5,0,0,0.3", "--at", "arm=0,0,0.1", "--scale", "room=2", "--inner", "--epsilon", "5%", "--effort", "fast")
-    made = kaboum.make_scene("b/cell.json", robots={"arm": "arm.urdf"}, objects={"box": "box.off"}, regions={"room": "box.off"},
+            "box=1,0,0.5,0,0,0.3", "--at", "arm=0,0,0.1", "--scale", "room=2", "--inner", "--epsilon", "5%", "--effort", "fast", "--primitive", "post=cylinder:0.1,0.5")
+    made = kaboum.make_scene("b/cell.json", robots={"arm": "arm.urdf"}, regions={"room": "box.off"},
+                             objects={"box": "box.off", "post": {"cylinder": {"radius": 0.1, "length": 0.5}}},
                              at={"box": [1, 0, 0.5, 0, 0, 0.3], "arm": (0, 0, 0.1)}, scale={"room": 2}, inner=True, epsilon="5%",
                              effort="fast")
     assert files_in(parts / "a") == files_in(parts / "b")
@@ -56,9 +57,10 @@ def test_scene_is_the_programs(parts, monkeypatch):
     assert files_in(parts / "a") == files_in(parts / "b")
     for wrong, says in (({"path": "b/cell.json"}, "exists"), ({"path": "c.json", "at": {"bax": (0, 0, 0)}}, "did you mean 'box'"),
                         ({"path": "c.json", "unit": "mm"}, "URDFs are in m"), ({"path": "c.txt"}, "ends in .json"),
-                        ({"path": "c.json", "at": {"box": (0, 0)}}, "x, y, z")):
+                        ({"path": "c.json", "at": {"box": (0, 0)}}, "x, y, z"),
+                        ({"path": "c.json", "objects": {"ball": {"sphere": {"size": 1}}}}, "object 'ball'.*size")):
         with pytest.raises(kaboum.Error, match=says):
-            kaboum.make_scene(robots={"arm": "arm.urdf"}, objects={"box": "box.off"}, **wrong)
+            kaboum.make_scene(**{"robots": {"arm": "arm.urdf"}, "objects": {"box": "box.off"}, **wrong})
     with pytest.raises(kaboum.Error, match="nothing is asked for"):
         kaboum.make_scene("c.json")
 

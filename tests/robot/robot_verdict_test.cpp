@@ -16,7 +16,7 @@ using verify::Answer;
 using verify::Claims;
 using verify::Solid;
 
-geom::Mesh block(const geom::Vec3& low, const geom::Vec3& high) {
+geom::Mesh block_between(const geom::Vec3& low, const geom::Vec3& high) {
   return translated(box(high - low, 1), low);
 }
 
@@ -82,9 +82,9 @@ struct Case {
   }
 };
 
-const geom::Mesh kBox = block({0, 0, 0}, {1, 1, 1});
-const geom::Mesh kRound = block({-0.1, -0.1, -0.1}, {1.1, 1.1, 1.1});
-const geom::Mesh kWide = block({-0.1, -0.1, -0.1}, {1.4, 1.1, 1.1});
+const geom::Mesh kBox = block_between({0, 0, 0}, {1, 1, 1});
+const geom::Mesh kRound = block_between({-0.1, -0.1, -0.1}, {1.1, 1.1, 1.1});
+const geom::Mesh kWide = block_between({-0.1, -0.1, -0.1}, {1.4, 1.1, 1.1});
 
 TEST(RobotVerdict, SheetsAreJudgedWhateverBoundsTheSolid) {
   for (const Solid solid : {Solid::AsFile, Solid::Prepared, Solid::Enclosed}) {
@@ -125,7 +125,7 @@ TEST(RobotVerdict, WhatIsWoundRoundBackwardsIsAskedForToo) {
       geom::Vec3 low = geom::Vec3::Constant(-0.1), high = geom::Vec3::Constant(1.1);
       low[axis] = at - 0.1;
       high[axis] = at + 0.1;
-      walls.push_back(block(low, high));
+      walls.push_back(block_between(low, high));
     }
   for (const Solid solid : {Solid::Prepared, Solid::Enclosed}) {
     EXPECT_EQ(Case(kBox, walls).decide(solid).answer, Answer::Refuted);
@@ -149,7 +149,8 @@ TEST(RobotVerdict, DistancesOfWhatBoundsNoSolid) {
 }
 
 TEST(RobotVerdict, OneMeshThatIsNotConvexRefutes) {
-  const geom::Mesh ring = merged({kWide, flipped(block({1.15, 0.1, 0.4}, {1.35, 0.9, 0.6}))});
+  const geom::Mesh ring =
+      merged({kWide, flipped(block_between({1.15, 0.1, 0.4}, {1.35, 0.9, 0.6}))});
   EXPECT_EQ(Case(merged({kBox, sheet(0.3)}), {ring}).decide(Solid::Prepared).answer,
             Answer::Refuted);
   EXPECT_EQ(Case(merged({kBox, sheet(0.3)}), {ring, kRound}).decide(Solid::Prepared).answer,

@@ -26,9 +26,9 @@ using namespace kaboum::verify;  // NOLINT: a test
 using geom::Mesh;
 using Parts = std::vector<verify::Tetrahedron>;
 
-class Random {
+class Directions {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  explicit Directions(std::uint64_t seed) : engine_(seed) {}
   /// Of [0, 1).
   double part() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
   /// Of [−1, 1).
@@ -103,7 +103,7 @@ class Bodies {
   }
 
   geom::ConvexSet set_;
-  MeshPair meshes_;
+  verify::MeshPair meshes_;
   ComplementOfUnion uncovered_;
   double rounding_;
 };
@@ -133,10 +133,10 @@ double volume(const Parts& parts) {
   return sum;
 }
 
-/// Corners of a block, turned about the origin and moved.
-std::vector<Vec3> block(const Vec3& low, const Vec3& high,
-                        const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity(),
-                        const Vec3& by = Vec3::Zero()) {
+/// Corners of a turned_block, turned about the origin and moved.
+std::vector<Vec3> turned_block(const Vec3& low, const Vec3& high,
+                               const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity(),
+                               const Vec3& by = Vec3::Zero()) {
   std::vector<Vec3> points;
   for (unsigned i = 0; i < 8; ++i) {
     const Vec3 corner((i & 1U) != 0 ? high.x() : low.x(), (i & 2U) != 0 ? high.y() : low.y(),
@@ -147,13 +147,13 @@ std::vector<Vec3> block(const Vec3& low, const Vec3& high,
 }
 
 TEST(ComplementOfUnion, TwoSidesOfAPlaneMakeTheBox) {
-  Random random(1);
+  Directions random(1);
   const Bounds box = bounds({-0.5, -0.4, -0.3}, {0.5, 0.6, 0.7});
   for (int i = 0; i < 200; ++i) {
     const Eigen::Quaterniond turn = random.rotation();
     const Vec3 at = 0.4 * random.vector();
-    const auto below = Bodies({block({-9, -9, -9}, {9, 9, 0}, turn, at)}).left_of(box);
-    const auto above = Bodies({block({-9, -9, 0}, {9, 9, 9}, turn, at)}).left_of(box);
+    const auto below = Bodies({turned_block({-9, -9, -9}, {9, 9, 0}, turn, at)}).left_of(box);
+    const auto above = Bodies({turned_block({-9, -9, 0}, {9, 9, 9}, turn, at)}).left_of(box);
     ASSERT_TRUE(below.has_value() && above.has_value()) << i;
     EXPECT_NEAR(volume(*below) + volume(*above), 1, 1e-10) << i;
   }
@@ -162,7 +162,8 @@ TEST(ComplementOfUnion, TwoSidesOfAPlaneMakeTheBox) {
 TEST(ComplementOfUnion, BlocksThatOverlapLeaveNothing) {
   const Bounds box = bounds({0.3, 0.3, 0.3}, {0.7, 0.7, 0.7});
   const auto blocks = [](double overlap) {
-    return Bodies({block({0, 0, 0}, {0.5, 1, 1}), block({0.5 - overlap, 0, 0}, {1, 1, 1})});
+    return Bodies(
+        {turned_block({0, 0, 0}, {0.5, 1, 1}), turned_block({0.5 - overlap, 0, 0}, {1, 1, 1})});
   };
   for (const double overlap : {0.1, 1e-7, 1e-12}) {
     const auto parts = blocks(overlap).left_of(box);
@@ -182,7 +183,7 @@ TEST(ComplementOfUnion, BlocksThatOverlapLeaveNothing) {
 TEST(ComplementOfUnion, FacetsOfAboutOneDirection) {
   for (const double slope : {0.04, 0.01, 1e-4}) {
     // A roof: z ≤ −slope · |x|.
-    std::vector<Vec3> points = block({-9, -9, -9}, {9, 9, -9 * slope});
+    std::vector<Vec3> points = turned_block({-9, -9, -9}, {9, 9, -9 * slope});
     points.insert(points.end(), {{0, -9, 0}, {0, 9, 0}});
     const Bodies roof({points});
     const Bounds box = bounds({-1, -1, -2 * slope}, {1, 1, slope});
@@ -197,11 +198,11 @@ TEST(ComplementOfUnion, FacetsOfAboutOneDirection) {
 }
 
 TEST(ComplementOfUnion, CornersOfABoxWithinRoundingOfAFacet) {
-  Random random(2);
+  Directions random(2);
   for (int i = 0; i < 100; ++i) {
     const Vec3 normal = Vec3(0.3, 0.3, 0.3) + 0.7 * Vec3(random.vector().cwiseAbs());
     const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal);
-    const Bodies body({block({-1, -1, -1}, {1, 1, 0}, turn)});
+    const Bodies body({turned_block({-1, -1, -1}, {1, 1, 0}, turn)});
     const Vec3 up = normal.normalized();
     // The box's other corners are deep in the body.
     const auto left_at = [&](double depth) {
@@ -224,7 +225,7 @@ TEST(ComplementOfUnion, NeedleFacetsDoNotCount) {
   // along the needle, and planes so wrong need not meet beyond the needle's tip.
   const Vec3 axis = Vec3(0.48, 0.6, 0.64), tip(0.1, 0.2, 0.15);
   for (const double h : {1e-9, 1e-11, 1e-13}) {
-    Random random(3);
+    Directions random(3);
     int tips = 0;
     for (int i = 0; i < 100; ++i) {
       std::vector<Vec3> points{tip};
@@ -249,10 +250,10 @@ TEST(ComplementOfUnion, NeedleFacetsDoNotCount) {
 /// Clouds of points, the hulls of which are bodies.
 struct Family {
   const char* name;
-  std::vector<std::vector<Vec3>> (*clouds)(Random&);
+  std::vector<std::vector<Vec3>> (*clouds)(Directions&);
 };
 
-std::vector<std::vector<Vec3>> cuboids(Random& random, bool thin) {
+std::vector<std::vector<Vec3>> cuboids(Directions& random, bool thin) {
   std::vector<std::vector<Vec3>> clouds(1 + random.below(10));
   const Eigen::Quaterniond turn = random.rotation();
   for (auto& points : clouds) {
@@ -266,20 +267,20 @@ std::vector<std::vector<Vec3>> cuboids(Random& random, bool thin) {
 }
 
 /// Side by side; they overlap by as little as 1e-15.
-std::vector<std::vector<Vec3>> slabs(Random& random) {
+std::vector<std::vector<Vec3>> slabs(Directions& random) {
   std::vector<std::vector<Vec3>> clouds(1 + random.below(10));
   const Eigen::Quaterniond turn = random.rotation();
   const double width = 2.0 / static_cast<double>(clouds.size());
   const double overlap = std::pow(10, -1 - 14 * random.part());
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     const double x = -1 + width * static_cast<double>(i);
-    clouds[i] = block({x - overlap, -1, -1}, {x + width, 1, 1}, turn);
+    clouds[i] = turned_block({x - overlap, -1, -1}, {x + width, 1, 1}, turn);
   }
   return clouds;
 }
 
 /// Drums, with facets of about one direction and fans of slivers on both ends.
-std::vector<std::vector<Vec3>> drums(Random& random) {
+std::vector<std::vector<Vec3>> drums(Directions& random) {
   std::vector<std::vector<Vec3>> clouds(1 + random.below(10));
   const Eigen::Quaterniond turn = random.rotation();
   for (auto& points : clouds) {
@@ -297,8 +298,8 @@ std::vector<std::vector<Vec3>> drums(Random& random) {
 
 /// Blocks with more points on their edges, as rounding places them: facets as thin as that.
 std::vector<Vec3> edged_block(const Vec3& low, const Vec3& high, const Eigen::Quaterniond& turn,
-                              Random& random) {
-  std::vector<Vec3> points = block(low, high, turn);
+                              Directions& random) {
+  std::vector<Vec3> points = turned_block(low, high, turn);
   for (unsigned i = 0; i < 8; ++i) {
     for (unsigned k = 0; k < 3; ++k) {
       if ((i >> k & 1U) != 0) continue;
@@ -312,7 +313,7 @@ std::vector<Vec3> edged_block(const Vec3& low, const Vec3& high, const Eigen::Qu
   return points;
 }
 
-std::vector<std::vector<Vec3>> edged_blocks(Random& random) {
+std::vector<std::vector<Vec3>> edged_blocks(Directions& random) {
   std::vector<std::vector<Vec3>> clouds(1 + random.below(6));
   const Eigen::Quaterniond turn = random.rotation();
   const double width = 2.0 / static_cast<double>(clouds.size());
@@ -323,14 +324,14 @@ std::vector<std::vector<Vec3>> edged_blocks(Random& random) {
   return clouds;
 }
 
-const std::array<Family, 5> kFamilies{{{"cuboids", [](Random& r) { return cuboids(r, false); }},
-                                       {"needles", [](Random& r) { return cuboids(r, true); }},
+const std::array<Family, 5> kFamilies{{{"cuboids", [](Directions& r) { return cuboids(r, false); }},
+                                       {"needles", [](Directions& r) { return cuboids(r, true); }},
                                        {"slabs", slabs},
                                        {"drums", drums},
                                        {"edged blocks", edged_blocks}}};
 
 TEST(ComplementOfUnion, SliversCount) {
-  Random random(4);
+  Directions random(4);
   std::size_t slivers = 0;
   for (int i = 0; i < 100; ++i) {
     const Eigen::Quaterniond turn = random.rotation();
@@ -356,7 +357,7 @@ TEST(ComplementOfUnion, SliversCount) {
 }
 
 /// A box about a point of a facet, of any size down to 1e-8.
-Bounds box_at_a_facet(const Bodies& bodies, Random& random) {
+Bounds box_at_a_facet(const Bodies& bodies, Directions& random) {
   const Mesh& hull = bodies.bodies()[random.below(bodies.bodies().size())].core;
   const geom::Triangle& t = hull.triangles[random.below(hull.triangles.size())];
   const double u = random.part(), v = random.part() * (1 - u);
@@ -370,7 +371,7 @@ Bounds box_at_a_facet(const Bodies& bodies, Random& random) {
 }
 
 /// A point of the box; every second one as near to some facet's plane as the box lets it be.
-Vec3 point_of(const Bounds& box, const Bodies& bodies, Random& random) {
+Vec3 point_of(const Bounds& box, const Bodies& bodies, Directions& random) {
   const Vec3 low(box.low.data()), high(box.high.data());
   const Vec3 p = low + random.vector().cwiseAbs().cwiseProduct(high - low);
   if (random.below(2) == 0) return p;
@@ -386,7 +387,7 @@ TEST(ComplementOfUnion, HoldsWhatIsOutside) {
   std::size_t boxes = 0, answers = 0, empty = 0, points = 0;
   for (const Family& family : kFamilies) {
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
-      Random random(seed);
+      Directions random(seed);
       auto clouds = family.clouds(random);
       // Every fourth about the origin, the others away from it, by 1e-3 to 1e3.
       const double away = seed % 4 == 0 ? 0 : std::pow(10, 3 * random.sign());

@@ -25,7 +25,7 @@ ConvexSet set_of(const std::vector<Mesh>& bodies) {
   return set;
 }
 
-Mesh block(const Vec3& low, const Vec3& high) { return translated(box(high - low, 1), low); }
+Mesh whole_block(const Vec3& low, const Vec3& high) { return translated(box(high - low, 1), low); }
 
 /// The boundary of an L, 2 × 2 × 1 without the upper right cube, by its cubes' outer faces.
 Mesh ell() { return block_chain({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}); }
@@ -47,35 +47,36 @@ void expect_cover(const Mesh& original, const ConvexSet& set, Answer expected,
 }
 
 TEST(Cover, LInTwoBlocksTouchingOrOverlapping) {
-  const Mesh left = block({0, 0, 0}, {1, 2, 1}), right = block({1, 0, 0}, {2, 1, 1});
+  const Mesh left = whole_block({0, 0, 0}, {1, 2, 1}), right = whole_block({1, 0, 0}, {2, 1, 1});
   expect_cover(ell(), set_of({left, right}), Answer::Verified, "touching");
-  expect_cover(ell(), set_of({left, block({0, 0, 0}, {2, 1, 1})}), Answer::Verified, "overlapping");
+  expect_cover(ell(), set_of({left, whole_block({0, 0, 0}, {2, 1, 1})}), Answer::Verified,
+               "overlapping");
   expect_cover(ell(), set_of({left}), Answer::Refuted, "one missing");
-  expect_cover(ell(), set_of({block({0, 0, 0}, {2, 2, 1})}), Answer::Verified, "hull");
+  expect_cover(ell(), set_of({whole_block({0, 0, 0}, {2, 2, 1})}), Answer::Verified, "hull");
   expect_cover(ell(), set_of({}), Answer::Refuted, "nothing");
   for (const double gap : {1e-3, 1e-10, 1e-15}) {
     expect_cover(ell(), set_of({left, translated(right, {gap, 0, 0})}), Answer::Refuted, "gap");
     expect_cover(ell(), set_of({left, translated(right, {-gap, 0, 0})}), Answer::Refuted, "short");
     expect_cover(ell(), set_of({left, translated(right, {0, 0, gap})}), Answer::Refuted, "lifted");
-    expect_cover(ell(), set_of({left, block({1 - gap, 0, 0}, {2 + gap, 1, 1})}), Answer::Verified,
-                 "wider");
+    expect_cover(ell(), set_of({left, whole_block({1 - gap, 0, 0}, {2 + gap, 1, 1})}),
+                 Answer::Verified, "wider");
   }
 }
 
-/// All cubes of a 3 × 3 × 3 block but some.
+/// All cubes of a 3 × 3 × 3 whole_block but some.
 std::vector<Mesh> cubes_but(const std::vector<int>& missing) {
   std::vector<Mesh> bodies;
   for (int i = 0; i < 27; ++i) {
     if (std::find(missing.begin(), missing.end(), i) != missing.end()) continue;
     const Vec3 low(i % 3, i / 3 % 3, i / 9);
-    bodies.push_back(block(low, low + Vec3::Ones()));
+    bodies.push_back(whole_block(low, low + Vec3::Ones()));
   }
   return bodies;
 }
 
 TEST(Cover, VoidInTheMiddle) {
   const Mesh solid = box({3, 3, 3}, 2);
-  const Mesh hollow = merged({solid, flipped(block({1, 1, 1}, {2, 2, 2}))});
+  const Mesh hollow = merged({solid, flipped(whole_block({1, 1, 1}, {2, 2, 2}))});
   expect_cover(solid, set_of(cubes_but({})), Answer::Verified, "all cubes");
   // Every triangle is covered, but not the solid.
   const auto cover = verify::verify_cover(solid, set_of(cubes_but({13})));
@@ -85,9 +86,9 @@ TEST(Cover, VoidInTheMiddle) {
   expect_cover(solid, set_of(cubes_but({4})), Answer::Refuted, "one of the surface missing");
   for (const double d : {1e-3, 1e-10}) {
     std::vector<Mesh> bodies = cubes_but({13});
-    bodies.push_back(block(Vec3::Constant(1 + d), Vec3::Constant(2)));
+    bodies.push_back(whole_block(Vec3::Constant(1 + d), Vec3::Constant(2)));
     expect_cover(solid, set_of(bodies), Answer::Refuted, "thin void");
-    bodies.back() = block(Vec3::Constant(1 - d), Vec3::Constant(2));
+    bodies.back() = whole_block(Vec3::Constant(1 - d), Vec3::Constant(2));
     expect_cover(solid, set_of(bodies), Answer::Verified, "void filled");
   }
   // The cubes share all their faces with one another; one moved by an ulp opens a gap.
@@ -100,19 +101,20 @@ TEST(Cover, VoidInTheMiddle) {
 
 // Four blocks leave one small hole: a cell whose sides are short parts of long cuts.
 TEST(Cover, HoleAmongLongCuts) {
-  const Mesh original = block({0, 0, 0}, {3, 3, 1});
+  const Mesh original = whole_block({0, 0, 0}, {3, 3, 1});
   for (const double x : {0.25, 1.5, 2.5}) {
     for (const double y : {0.125, 1.0, 2.25}) {
       for (const double width : {0.125, 0x1p-20}) {
         for (const double above : {0.0, 1.0}) {  // coplanar lids, or blocks that reach through
           const double low = -above, high = 1 + above;
-          std::vector<Mesh> blocks{
-              block({0, 0, low}, {x, 3, high}), block({x + width, 0, low}, {3, 3, high}),
-              block({0, 0, low}, {3, y, high}), block({0, y + width, low}, {3, 3, high})};
+          std::vector<Mesh> blocks{whole_block({0, 0, low}, {x, 3, high}),
+                                   whole_block({x + width, 0, low}, {3, 3, high}),
+                                   whole_block({0, 0, low}, {3, y, high}),
+                                   whole_block({0, y + width, low}, {3, 3, high})};
           auto cover = verify::verify_cover(original, set_of(blocks));
           EXPECT_EQ(cover.inclusion.solid.answer, Answer::Refuted) << x << ' ' << y;
           EXPECT_EQ(cover.inclusion.surface.answer, Answer::Refuted) << x << ' ' << y;
-          blocks.push_back(block({x, y, low}, {x + width, y + width, high}));
+          blocks.push_back(whole_block({x, y, low}, {x + width, y + width, high}));
           cover = verify::verify_cover(original, set_of(blocks));
           EXPECT_EQ(cover.inclusion.solid.answer, Answer::Verified) << x << ' ' << y;
           EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified) << x << ' ' << y;
@@ -125,16 +127,17 @@ TEST(Cover, HoleAmongLongCuts) {
 TEST(Cover, OpenOriginalsAreCoveredByTheirTriangles) {
   Mesh open = ell();
   open.triangles.pop_back();
-  const ConvexSet set = set_of({block({0, 0, 0}, {1, 2, 1}), block({1, 0, 0}, {2, 1, 1})});
+  const ConvexSet set =
+      set_of({whole_block({0, 0, 0}, {1, 2, 1}), whole_block({1, 0, 0}, {2, 1, 1})});
   auto cover = verify::verify_cover(open, set);
   EXPECT_EQ(cover.inclusion.solid.answer, Answer::Undefined);
   EXPECT_EQ(cover.inclusion.surface.answer, Answer::Verified);
-  cover = verify::verify_cover(open, set_of({block({0, 0, 0}, {1, 2, 1})}));
+  cover = verify::verify_cover(open, set_of({whole_block({0, 0, 0}, {1, 2, 1})}));
   EXPECT_EQ(cover.inclusion.surface.answer, Answer::Refuted);
 }
 
 TEST(Cover, BodiesMustBeConvex) {
-  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
+  const Mesh unit = whole_block({0, 0, 0}, {1, 1, 1});
   const auto fault = [&](const Mesh& body) {
     const auto cover = verify::verify_cover(unit, set_of({unit, body}));
     if (cover.convexity.convex.answer == Answer::Verified) return std::string("none");
@@ -151,7 +154,7 @@ TEST(Cover, BodiesMustBeConvex) {
   EXPECT_NE(fault(ell()), "none");
   EXPECT_NE(fault(flipped(unit)), "none");
   EXPECT_NE(fault(Mesh{}), "none");
-  EXPECT_NE(fault(merged({unit, block({2, 0, 0}, {3, 1, 1})})), "none");
+  EXPECT_NE(fault(merged({unit, whole_block({2, 0, 0}, {3, 1, 1})})), "none");
   EXPECT_NE(fault(Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}), "none");
   Mesh open = unit;
   open.triangles.pop_back();
@@ -181,7 +184,7 @@ void expect_margin(const Mesh& original, ConvexSet set, double margin, Answer ex
 }
 
 TEST(Cover, AMarginClosesGapsUpToHalfTheirWidth) {
-  const Mesh left = block({0, 0, 0}, {1, 2, 1}), right = block({1, 0, 0}, {2, 1, 1});
+  const Mesh left = whole_block({0, 0, 0}, {1, 2, 1}), right = whole_block({1, 0, 0}, {2, 1, 1});
   const ConvexSet set = set_of({left, translated(right, {0.25, 0, 0})});
   for (const double margin : {1e-9, 1e-3, 0.1, 0.1249}) {
     expect_margin(ell(), set, margin, Answer::Refuted, 0.125 - margin, "gap");
@@ -212,7 +215,7 @@ TEST(Cover, ThinLayersWithinAMargin) {
   few.max_cells = 3000;
   for (const double out : {1e-3, 1e-6, 1e-9}) {
     const Mesh grown = translated(box(Vec3::Constant(2 + 2 * out), 3), Vec3::Constant(-out));
-    ConvexSet set = set_of({block({0, 0, 0}, {2, 2, 2})});
+    ConvexSet set = set_of({whole_block({0, 0, 0}, {2, 2, 2})});
     set_margin(set, 2 * out);  // more than at the corners, √3
     EXPECT_EQ(verify::verify_cover(grown, set, few).inclusion.solid.answer, Answer::Verified)
         << out;
@@ -232,7 +235,7 @@ TEST(Cover, AMarginFillsVoidsUpToTheirInnerRadius) {
     expect_margin(solid, set, margin, Answer::Verified, 0, "void");
   }
   // A void where the original has one too counts for nothing; nor does what is outside.
-  const Mesh hollow = merged({solid, flipped(block({1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}))});
+  const Mesh hollow = merged({solid, flipped(whole_block({1.1, 1.1, 1.1}, {1.9, 1.9, 1.9}))});
   expect_margin(hollow, set, 0.11, Answer::Verified, 0, "hollow");
   expect_margin(hollow, set, 0.09, Answer::Refuted, 0.01, "hollow");
   // Turned, so that no side of a cell is parallel to a face.
@@ -267,7 +270,7 @@ TEST(Cover, MarginsAgainstSamples) {
         b.low[k] = 1.6 * uniform() - 0.6;
         b.high[k] = b.low[k] + 0.6 + 2 * uniform();
       }
-      bodies.push_back(block(b.low, b.high));
+      bodies.push_back(whole_block(b.low, b.high));
     }
     ConvexSet set = set_of(bodies);
     set_margin(set, 0.05 + 0.8 * uniform());
@@ -308,19 +311,19 @@ TEST(Depth, OfBlocksInACube) {
   const auto depth = [&](const std::vector<Mesh>& bodies, double epsilon) {
     return verify::verify_depth(unit, set_of(bodies), epsilon).answer;
   };
-  const Mesh inset = block(Vec3::Constant(0.125), Vec3::Constant(0.875));
+  const Mesh inset = whole_block(Vec3::Constant(0.125), Vec3::Constant(0.875));
   EXPECT_EQ(depth({unit}, 1e-6), Answer::Verified);
   EXPECT_EQ(depth({inset}, 0.126), Answer::Verified);
   EXPECT_EQ(depth({inset}, 0.124), Answer::Refuted);
   EXPECT_EQ(depth({}, 0.499), Answer::Refuted);
   EXPECT_EQ(depth({}, 0.501), Answer::Verified);
   // A gap between two bodies is as deep as it is far from the surface, however thin.
-  const std::vector<Mesh> halves{block(Vec3::Zero(), {0.5, 1, 1}),
-                                 block({0.5 + 0x1p-10, 0, 0}, {1, 1, 1})};
+  const std::vector<Mesh> halves{whole_block(Vec3::Zero(), {0.5, 1, 1}),
+                                 whole_block({0.5 + 0x1p-10, 0, 0}, {1, 1, 1})};
   EXPECT_EQ(depth(halves, 0.4), Answer::Refuted);
   verify::InclusionOptions few;  // boxes at the common face do not tell, the exact claim does
   few.max_cells = 3000;
-  const ConvexSet both = set_of({halves[0], block({0.5, 0, 0}, {1, 1, 1})});
+  const ConvexSet both = set_of({halves[0], whole_block({0.5, 0, 0}, {1, 1, 1})});
   EXPECT_EQ(verify::verify_depth(unit, both, 1e-3, few).answer, Answer::Verified);
   const auto claim = verify::verify_depth(unit, set_of({inset}), 0.1);
   ASSERT_TRUE(claim.witness.has_value());
@@ -371,7 +374,7 @@ TEST(Depth, AgainstSamples) {
       return *geom::convex_hull(mesh.vertices);
     };
     const Eigen::Matrix3d frame = turn();
-    const Mesh original = turned(block(Vec3::Constant(-1), Vec3::Constant(1)), frame);
+    const Mesh original = turned(whole_block(Vec3::Constant(-1), Vec3::Constant(1)), frame);
     // Slabs side by side, overlapping by next to nothing, in a direction of their own.
     const Eigen::Matrix3d slabs = turn();
     std::vector<Block> blocks;
@@ -383,7 +386,7 @@ TEST(Depth, AgainstSamples) {
       x = next + (seed % 5 == 0 && blocks.size() == 2 ? 2 * overlap : 0);
     }
     std::vector<Mesh> bodies;
-    for (const Block& b : blocks) bodies.push_back(turned(block(b.low, b.high), slabs));
+    for (const Block& b : blocks) bodies.push_back(turned(whole_block(b.low, b.high), slabs));
     const double epsilon = 0.05 + 0.2 * uniform();
     verify::InclusionOptions soon;
     soon.max_cells = 50'000;
@@ -496,11 +499,11 @@ TEST(Depth, OfOriginalsThatCutThemselves) {
         high[k] = std::min<double>(kSide, low[k] + 2 + static_cast<double>(random() % 3));
       }
       const Vec3 grown = Vec3::Constant(seed % 2 == 0 ? 0 : 1e-3 * (i + 1));
-      blocks.push_back(block(low - grown, high + grown));
+      blocks.push_back(whole_block(low - grown, high + grown));
       of_original.push_back({low, high});
       const Vec3 by = Vec3::Constant(inset);
       if (((high - low).array() <= 2 * inset).any() || seed % 3 == 0) continue;
-      bodies.push_back(block(low + by, high - by));
+      bodies.push_back(whole_block(low + by, high - by));
       of_bodies.push_back({low + by, high - by});
     }
     std::vector<Block> empty;
@@ -554,8 +557,8 @@ TEST(Depth, OfBlocksThatTouchByAFace) {
   const double deepest = 2 - std::sqrt(2);
   for (const double angle : {0.0, 0.7}) {
     // Turned, they overlap instead, as rounding would part them.
-    const Mesh lying = block({2, 0, 3}, {angle == 0 ? 3 : 3.01, 4, 4});
-    const Mesh standing = block({3, 0, 1}, {4, 4, 4});
+    const Mesh lying = whole_block({2, 0, 3}, {angle == 0 ? 3 : 3.01, 4, 4});
+    const Mesh standing = whole_block({3, 0, 1}, {4, 4, 4});
     const auto depth = [&](const std::vector<Mesh>& bodies, double epsilon) {
       std::vector<Mesh> turned;
       for (const Mesh& b : bodies) turned.push_back(*geom::convex_hull(rotated(b, angle).vertices));
@@ -566,12 +569,13 @@ TEST(Depth, OfBlocksThatTouchByAFace) {
     EXPECT_EQ(depth({}, deepest * 0.999), Answer::Refuted) << angle;
     EXPECT_EQ(depth({}, 0.525), Answer::Refuted) << angle;
     // Bodies that hold all but a shell; one that is missing, or too small, is not forgiven.
-    const Mesh long_one = block({2.2, 0.2, 3.2}, {3.8, 3.8, 3.8});
-    const Mesh high_one = block({3.2, 0.2, 1.2}, {3.8, 3.8, 3.8});
+    const Mesh long_one = whole_block({2.2, 0.2, 3.2}, {3.8, 3.8, 3.8});
+    const Mesh high_one = whole_block({3.2, 0.2, 1.2}, {3.8, 3.8, 3.8});
     EXPECT_EQ(depth({long_one, high_one}, 0.3), Answer::Verified) << angle;
     EXPECT_EQ(depth({long_one}, 0.3), Answer::Refuted) << angle;
     EXPECT_EQ(depth({high_one}, 0.3), Answer::Refuted) << angle;
-    EXPECT_EQ(depth({long_one, block({3.2, 0.6, 1.2}, {3.8, 3.8, 3.8})}, 0.3), Answer::Refuted)
+    EXPECT_EQ(depth({long_one, whole_block({3.2, 0.6, 1.2}, {3.8, 3.8, 3.8})}, 0.3),
+              Answer::Refuted)
         << angle;
   }
 }
@@ -580,7 +584,7 @@ TEST(Depth, OfBlocksThatTouchByAFace) {
 // near them only is deep all the same.
 TEST(Depth, FoldsAreNoBoundary) {
   const Mesh unit = box({1, 1, 1}, 3);
-  const Mesh within = block(Vec3::Constant(0.25), Vec3::Constant(0.75));
+  const Mesh within = whole_block(Vec3::Constant(0.25), Vec3::Constant(0.75));
   const auto depth = [&](const Mesh& original, double epsilon) {
     verify::InclusionOptions soon;
     soon.max_cells = 30'000;
@@ -596,8 +600,8 @@ TEST(Depth, FoldsAreNoBoundary) {
 
 TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
   // [0,10]³ without [3,7]³, closed and with a narrow neck: the deepest point is in the middle.
-  const Mesh cube = block(Vec3::Zero(), Vec3::Constant(10));
-  const Mesh hollow = merged({cube, flipped(block(Vec3::Constant(3), Vec3::Constant(7)))});
+  const Mesh cube = whole_block(Vec3::Zero(), Vec3::Constant(10));
+  const Mesh hollow = merged({cube, flipped(whole_block(Vec3::Constant(3), Vec3::Constant(7)))});
   const ConvexSet set = set_of({cube});
   EXPECT_EQ(verify::verify_excess(set, hollow, 2.01, true).answer, Answer::Verified);
   const auto beyond = verify::verify_excess(set, hollow, 1.99, true);
@@ -610,7 +614,7 @@ TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
     if (i != 13 && i != 22) cells.push_back({i % 3, i / 3 % 3, i / 9});
   }
   const Mesh bottle = block_chain(cells);
-  const ConvexSet all = set_of({block(Vec3::Zero(), Vec3::Constant(3))});
+  const ConvexSet all = set_of({whole_block(Vec3::Zero(), Vec3::Constant(3))});
   EXPECT_EQ(verify::verify_excess(all, bottle, 0.6, true).answer, Answer::Verified);
   EXPECT_EQ(verify::verify_excess(all, bottle, 0.45, true).answer, Answer::Refuted);
 }
@@ -618,11 +622,11 @@ TEST(Cover, ReachInsideCavitiesThatTheBodiesFill) {
 // Walls about which nothing winds, and sheets, are to be covered like all triangles: so what covers
 // them is not far away. The depth inside what is inside out counts from its walls.
 TEST(Cover, ReachFromTrianglesThatBoundNoSolid) {
-  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
+  const Mesh unit = whole_block({0, 0, 0}, {1, 1, 1});
   const auto grown = [](const Vec3& low, const Vec3& high) {
-    return block(low - Vec3::Constant(0.1), high + Vec3::Constant(0.1));
+    return whole_block(low - Vec3::Constant(0.1), high + Vec3::Constant(0.1));
   };
-  const Mesh plate = block({5, 0, 0}, {6, 1, 0.25});
+  const Mesh plate = whole_block({5, 0, 0}, {6, 1, 0.25});
   const Mesh turned = merged({unit, flipped(plate)});
   const ConvexSet set = set_of({grown({0, 0, 0}, {1, 1, 1}), grown({5, 0, 0}, {6, 1, 0.25})});
   EXPECT_EQ(verify::verify_excess(set, turned, 0.18, true).answer, Answer::Verified);
@@ -664,8 +668,8 @@ TEST(Cover, ReachAlongASlantedSeam) {
 }
 
 TEST(Cover, ReachWithAMargin) {
-  const Mesh unit = block({0, 0, 0}, {1, 1, 1});
-  ConvexSet set = set_of({block({0, 0, 0}, {1.25, 1, 1})});
+  const Mesh unit = whole_block({0, 0, 0}, {1, 1, 1});
+  ConvexSet set = set_of({whole_block({0, 0, 0}, {1.25, 1, 1})});
   set_margin(set, 0.125);
   EXPECT_EQ(verify::verify_excess(set, unit, 0.376, true).answer, Answer::Verified);
   const auto beyond = verify::verify_excess(set, unit, 0.374, true);
@@ -674,11 +678,11 @@ TEST(Cover, ReachWithAMargin) {
   EXPECT_LE(beyond.largest, 0.375);
   EXPECT_EQ(verify::verify_excess(set, unit, 0.2, true).answer, Answer::Refuted);
   // Between two blocks: the margin leads from one to the other.
-  const Mesh two = merged({unit, block({1.25, 0, 0}, {2, 1, 1})});
+  const Mesh two = merged({unit, whole_block({1.25, 0, 0}, {2, 1, 1})});
   const auto between =
-      verify::verify_excess(set_of({block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
+      verify::verify_excess(set_of({whole_block({0, 0, 0}, {1.125, 1, 1})}), two, 0.2, true);
   EXPECT_EQ(between.answer, Answer::Verified);
-  set = set_of({block({0, 0, 0}, {1.125, 1, 1})});
+  set = set_of({whole_block({0, 0, 0}, {1.125, 1, 1})});
   set_margin(set, 0.125);
   EXPECT_EQ(verify::verify_excess(set, two, 0.2, true).answer, Answer::Undecided);
 }
@@ -701,7 +705,7 @@ TEST(Cover, RandomBoxesOverRandomCubes) {
         high[k] = low[k] + 1 + static_cast<double>(random() % 2);
       }
       if (random() % 4 == 0) high.x() += std::ldexp(1, -40);
-      bodies.push_back(block(low, high));
+      bodies.push_back(whole_block(low, high));
     }
     const ConvexSet set = set_of(bodies);
     const auto answer = verify::verify_cover(original, set).inclusion.solid.answer;

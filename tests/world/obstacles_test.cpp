@@ -14,7 +14,7 @@ namespace {
 
 using test::SceneFiles;
 
-World arm_among_boxes(const SceneFiles& files) {
+World boxes_scene(const SceneFiles& files) {
   std::string text = "\"objects\": [";
   const std::vector<std::string> positions{"[2, 1.2, 0]", "[-1.5, 0.9, 0.3]", "[0.5, -2.2, 0]",
                                            "[0.3, 2.1, 0]", "[9, 9, 9]"};
@@ -54,7 +54,7 @@ std::vector<Item> met_at_samples(const Checker& checker, WorldState state,
 
 TEST(FindObstacles, AreWhatSamplesMeetEachByItself) {
   const SceneFiles files;
-  const World world = arm_among_boxes(files);
+  const World world = boxes_scene(files);
   const Checker checker(world);
   std::mt19937_64 random(5);
   std::size_t found = 0, free = 0, beyond = 0;
@@ -146,7 +146,7 @@ TEST(Absent, RobotsAndWhatTheyCarryAreNotLookedAt) {
 // Things that are put somewhere else while they are not looked at are found there afterwards.
 TEST(Absent, ScratchFollowsWhatComesBack) {
   const SceneFiles files;
-  const World world = arm_among_boxes(files);
+  const World world = boxes_scene(files);
   const Checker checker(world);
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> turn(-3, 3), place(-3, 3);

@@ -31,7 +31,7 @@ std::string object(const std::string& name, const std::string& shape, const std:
 }
 
 /// Contacts of two things at rest.
-std::vector<Contact> contacts(const World& world) {
+std::vector<Contact> contacts_of(const World& world) {
   const Checker checker(world);
   Scratch scratch;
   const WorldState state = initial_state(world);
@@ -83,8 +83,9 @@ TEST(Primitive, MeshesLieInTheirShapes) {
 TEST(PrimitivesOfScenes, TouchExactlyWhereTheirShapesDo) {
   const std::string ball = R"({"sphere": {"radius": 0.25}})";
   EXPECT_TRUE(
-      contacts(scene_of(object("a", ball, "0") + "," + object("b", ball, "0.5000001"))).empty());
-  const auto found = contacts(scene_of(object("a", ball, "0") + "," + object("b", ball, "0.375")));
+      contacts_of(scene_of(object("a", ball, "0") + "," + object("b", ball, "0.5000001"))).empty());
+  const auto found =
+      contacts_of(scene_of(object("a", ball, "0") + "," + object("b", ball, "0.375")));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_TRUE(found[0].certain);
   EXPECT_EQ(found[0].epsilon, 0);
@@ -99,12 +100,12 @@ TEST(PrimitivesOfScenes, APlaneIsAPlateBelow) {
   const World world =
       scene_of(R"({"name": "floor", "shape": )" + plane + R"(}, {"name": "box", "shape": )" + box +
                R"(, "pose": {"position": [0, 0, 0.2500001]}})");
-  EXPECT_TRUE(contacts(world).empty());
+  EXPECT_TRUE(contacts_of(world).empty());
   const World deep =
       scene_of(R"({"name": "floor", "shape": )" + plane + R"(}, {"name": "box", "shape": )" + box +
                R"(, "pose": {"position": [0, 0, 0.125]}})");
-  ASSERT_EQ(contacts(deep).size(), 1U);
-  EXPECT_NEAR(contacts(deep)[0].depth->upper, 0.125, 1e-9);
+  ASSERT_EQ(contacts_of(deep).size(), 1U);
+  EXPECT_NEAR(contacts_of(deep)[0].depth->upper, 0.125, 1e-9);
 }
 
 TEST(PrimitivesOfScenes, RegionsHoldWhatLiesInThem) {

@@ -11,7 +11,7 @@ namespace {
 
 using geom::Vec3;
 
-std::string urdf() {
+std::string arm_urdf() {
   std::string out =
       "<robot name=\"arm\"><link name=\"base\"><collision><geometry><box size=\"0.2 "
       "0.2 0.1\"/></geometry></collision></link>";
@@ -53,7 +53,7 @@ geom::ConvexSet set_of(const std::vector<geom::Mesh>& hulls, const std::string& 
 }
 
 SceneFiles::SceneFiles() {
-  const std::string text = urdf();
+  const std::string text = arm_urdf();
   files["arm.urdf"] = {text.begin(), text.end()};
   put("base.glb",
       set_of({box_mesh({-0.125, -0.125, -0.0625}, {0.125, 0.125, 0.0625})}, "outer", 0.05, "base"));

@@ -101,35 +101,11 @@ RobotCheck check_of(const Run& run, const RobotWriter& output) {
                          run.o.mesh.preparation, epsilon, run.verdicts);
 }
 
-/// The shapes of each link that has some.
-std::vector<std::vector<robot::LinkShape>> shapes_by_link(const Run& run) {
-  std::vector<std::vector<robot::LinkShape>> out;
-  for (const robot::LinkShape& shape : run.made.shapes) {
-    if (out.empty() || out.back().front().link != shape.link) out.emplace_back();
-    out.back().push_back(shape);
-  }
-  return out;
-}
-
-/// Meshes are counted once, however many links have them.
-page::RobotCounts counts_of(const Run& run) {
-  page::RobotCounts counts{.links = shapes_by_link(run).size(), .meshes = run.made.meshes.size()};
-  for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
-    if (!mesh.flaw.empty()) {
-      ++counts.kept;
-      continue;
-    }
-    ++counts.bodies;
-    counts.vertices += mesh.made.enclosure.certificate().vertices;
-  }
-  return counts;
-}
-
 Json decimated_report(const Run& run, const RobotWriter& output) {
   Json report = report_of(output), links = Json::array();
-  const page::RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = page::counts_of(run.made);
   std::size_t before = 0, at = 0;
-  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run)) {
+  for (const std::vector<robot::LinkShape>& shapes : run.made.shapes_by_link()) {
     Json link{{"link", run.robot.robot.links[shapes.front().link].name},
               {"shapes", shapes.size()},
               {"meshes", Json::array()}};
@@ -167,49 +143,19 @@ Json decimated_report(const Run& run, const RobotWriter& output) {
   return report;
 }
 
-page::PageLink page_link(const Run& run, const std::vector<robot::LinkShape>& shapes,
-                         const certify::LinkVerdict& verdict) {
-  const robot::Link& link = run.robot.robot.links[shapes.front().link];
-  page::PageLink out;
-  out.name = link.name;
-  out.shapes = shapes.size();
-  out.verdict = verdict;
-  for (const robot::LinkShape& shape : shapes) {
-    if (!shape.mesh) continue;
-    const certify::EnclosedLinkMesh& mesh = run.made.meshes[*shape.mesh];
-    if (!mesh.flaw.empty()) {
-      out.meshes.push_back(mesh.mesh.file.filename().string());
-      continue;
-    }
-    const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
-    const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
-    out.meshes.push_back(mesh.mesh.file.filename().string());
-    ++out.bodies;
-    out.vertices += c.vertices;
-    out.reach = std::max(out.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
-    if (!mesh.made.cached) out.seconds = out.seconds.value_or(0) + mesh.seconds;
-    page::append_placed(out.result, mesh.made.enclosure.artefact(), place);
-  }
-  out.epsilon = page::epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
-  out.original = page::drawn_shapes(run.robot, run.request.shapes, shapes.front().link);
-  return out;
-}
-
 void write_page(const Run& run, const RobotWriter& output) {
   const RobotCheck check = check_of(run, output);
-  page::RobotPage page{.robot = run.robot.robot.name,
-                       .source = run.o.input,
-                       .tool = std::string("bmesh-decimate ") + version(),
-                       .command = check.command,
-                       .passes = check.passes,
-                       .unit = "the robot's unit",
-                       .files = output.documents(),
-                       .notes = run.notes.lines(),
-                       .counts = counts_of(run),
-                       .made = "meshes"};
-  std::size_t at = 0;
-  for (const std::vector<robot::LinkShape>& shapes : shapes_by_link(run))
-    page.links.push_back(page_link(run, shapes, run.verdicts[at++]));
+  const page::RobotPage page{.robot = run.robot.robot.name,
+                             .source = run.o.input,
+                             .tool = std::string("bmesh-decimate ") + version(),
+                             .command = check.command,
+                             .passes = check.passes,
+                             .unit = "the robot's unit",
+                             .files = output.documents(),
+                             .notes = run.notes.lines(),
+                             .links = page::page_links(run.robot, run.made, run.request),
+                             .counts = page::counts_of(run.made),
+                             .made = "meshes"};
   io::write_file(run.o.robot.html, to_html(page));
 }
 
@@ -265,7 +211,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   std::optional<certify::CacheFolder> written;
   if (!o.no_cache) written.emplace(certify::CacheFolder::default_folder());
   robot_folder::write_enclosed(output, run.made, written ? &*written : nullptr, note_in(run.notes));
-  const page::RobotCounts counts = counts_of(run);
+  const page::RobotCounts counts = page::counts_of(run.made);
   log(o.common.quiet, output.folder().urdf().string() + ": " +
                           counted(counts.bodies, "mesh", "meshes") + " of " +
                           counted(counts.links, "link", "links") +

@@ -234,4 +234,47 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::C
   return links;
 }
 
+RobotCounts counts_of(const certify::LinkEnclosures& made) {
+  RobotCounts counts{.links = made.shapes_by_link().size(), .meshes = made.meshes.size()};
+  for (const certify::EnclosedLinkMesh& mesh : made.meshes) {
+    if (!mesh.flaw.empty()) {
+      ++counts.kept;
+      continue;
+    }
+    ++counts.bodies;
+    counts.vertices += mesh.made.enclosure.certificate().vertices;
+  }
+  return counts;
+}
+
+std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::LinkEnclosures& made,
+                                 const certify::LinkEnclosuresRequest& request) {
+  const std::vector<certify::LinkVerdict> links = verdicts(made);
+  std::vector<PageLink> out;
+  for (const std::vector<robot::LinkShape>& shapes : made.shapes_by_link()) {
+    const std::uint32_t at = shapes.front().link;
+    const robot::Link& link = robot.robot.links[at];
+    PageLink& row = out.emplace_back();
+    row.name = link.name;
+    row.shapes = shapes.size();
+    row.verdict = links[out.size() - 1];
+    for (const robot::LinkShape& shape : shapes) {
+      if (!shape.mesh) continue;
+      const certify::EnclosedLinkMesh& mesh = made.meshes[*shape.mesh];
+      row.meshes.push_back(mesh.mesh.file.filename().string());
+      if (!mesh.flaw.empty()) continue;
+      const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
+      const Geometry& place = request.shapes.shapes_of(link)[shape.index];
+      ++row.bodies;
+      row.vertices += c.vertices;
+      row.reach = std::max(row.reach, c.distance_upper * place.size.cwiseAbs().maxCoeff());
+      if (!mesh.made.cached) row.seconds = row.seconds.value_or(0) + mesh.seconds;
+      append_placed(row.result, mesh.made.enclosure.artefact(), place);
+    }
+    row.epsilon = epsilon_of(link.name, request.epsilons, request.mesh.mesh.epsilon);
+    row.original = drawn_shapes(robot, request.shapes, at);
+  }
+  return out;
+}
+
 }  // namespace kaboum::page

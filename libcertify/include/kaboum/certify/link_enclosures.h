@@ -29,11 +29,15 @@ struct EnclosedLinkMesh {
   std::string flaw = {};  ///< why `made` holds nothing (LinkEnclosuresRequest::partial); else empty
 };
 
+/// Enclosing meshes of a robot's links.
 struct LinkEnclosures {
   std::vector<EnclosedLinkMesh> meshes;
   std::vector<robot::LinkShape> shapes;  ///< `mesh` is an index in `meshes`
   std::vector<std::filesystem::path>
       files;  ///< meshes and what they refer to; some are there twice
+
+  /// The shapes of each link that has some, in the order of `verdicts`.
+  [[nodiscard]] std::vector<std::vector<robot::LinkShape>> shapes_by_link() const;
 };
 
 /// Enclosing meshes of all meshes of a robot's links, several at once; other shapes need none.

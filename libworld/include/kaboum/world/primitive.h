@@ -36,4 +36,9 @@ geom::Mesh mesh_of(const Primitive& primitive);
 /// As in scene files (docs/scene.md): {"box": {"size": [x, y, z]}}, …
 std::string to_json(const Primitive& primitive);
 
+/// Primitive that `text` describes, as `to_json` writes it.
+/// @param name  of what has it, for messages
+/// @throws Error{InvalidInput} naming the place in the text
+Primitive parse_primitive(const std::string& text, const std::string& name);
+
 }  // namespace kaboum::world

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
+#include <kaboum/certify/link_enclosures.h>
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/wanted_meshes.h>
@@ -74,5 +75,13 @@ RobotCounts counts_of(const certify::CertifiedRobot& made);
 std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::CertifiedRobot& made,
                                  const certify::RobotRequest& request,
                                  const std::vector<double>& seconds);
+
+/// What meshes round a robot's links consist of. A mesh counts once, however many links have it.
+RobotCounts counts_of(const certify::LinkEnclosures& made);
+
+/// A row for each link that has shapes.
+/// @param request  that the meshes were made as
+std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::LinkEnclosures& made,
+                                 const certify::LinkEnclosuresRequest& request);
 
 }  // namespace kaboum::page
