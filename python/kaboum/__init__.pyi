@@ -951,6 +951,30 @@ def update_scene(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> dict[str, list[str]]: ...
+def add_grasps(
+    path: _Path,
+    objects: str | Sequence[str] | None = None,
+    *,
+    # options of add_grasps
+    robot: str = "",
+    tool: str = "",
+    hold: Literal["sides", "face"] = "sides",
+    closing: Literal["x", "y"] = "y",
+    opening: float | None = None,
+    directions: int = 8,
+    most: int = 24,
+    gap: float = 0.001,
+    # end of options
+) -> dict[str, Any]: ...
+def add_places(
+    path: _Path,
+    objects: str | Sequence[str] | None = None,
+    *,
+    # options of add_places
+    most: int = 8,
+    force: bool = False,
+    # end of options
+) -> dict[str, Any]: ...
 def run_batch(
     inputs: _Path | Sequence[_Path],
     folder: _Path,

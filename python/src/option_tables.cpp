@@ -11,6 +11,7 @@
 #include <kaboum/picture/panels.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/shape_options.h>
+#include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
@@ -53,6 +54,8 @@ void bind_option_tables(py::module_& module) {
         out["plan_page"] = table_of(keywords_of(execution::page_options()));
         out["run_plan"] = table_of(keywords_of(execution::run_options()));
         out["update_scene"] = table_of(keywords_of(scene::update_options()));
+        out["add_grasps"] = table_of(keywords_of(scene::grasp_options()));
+        out["add_places"] = table_of(keywords_of(scene::place_options()));
         out["make_scene"] = table_of(keywords_of(scene::scene_options()));
         return out;
       },

@@ -4,6 +4,7 @@
 
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/base_pose.h>
+#include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_draft.h>
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/scene/scene_update.h>
@@ -254,6 +255,78 @@ py::dict update_scene(const py::object& path, const py::kwargs& given) {
   }));
 }
 
+std::vector<std::string> names_of(const py::object& objects) {
+  if (objects.is_none()) return {};
+  if (py::isinstance<py::str>(objects)) return {objects.cast<std::string>()};
+  std::vector<std::string> out;
+  for (const py::handle name : objects) out.push_back(name.cast<std::string>());
+  return out;
+}
+
+py::dict dict_of_added(const scene::AddedFeatures& added) {
+  py::dict names, without;
+  for (const scene::AddedFeatures::OfObject& object : added.objects) {
+    names[py::str(object.object)] = object.names;
+    if (!object.shortfall.empty()) without[py::str(object.object)] = object.shortfall;
+  }
+  py::dict out;
+  out["names"] = names;
+  out["without"] = without;
+  out["notes"] = spelled(added.notes);
+  return out;
+}
+
+py::dict add_grasps(const py::object& path, const py::object& objects, const py::kwargs& given) {
+  scene::GraspRequest request;
+  take_keywords("add_grasps", scene::grasp_options(), given, request, Runs::Briefly);
+  const std::string file = path_text(path, "path");
+  const std::vector<std::string> names = names_of(objects);
+  return dict_of_added(run(0, [&] { return scene::add_grasps(file, names, request); }));
+}
+
+py::dict add_places(const py::object& path, const py::object& objects, const py::kwargs& given) {
+  scene::PlaceRequest request;
+  take_keywords("add_places", scene::place_options(), given, request, Runs::Briefly);
+  const std::string file = path_text(path, "path");
+  const std::vector<std::string> names = names_of(objects);
+  return dict_of_added(run(0, [&] { return scene::add_places(file, names, request); }));
+}
+
+constexpr const char* kGraspsDoc =
+    R"(Derives grasps of objects from the faces of their sets, free of contact with the hand, and writes
+them into the scene: `kaboum-scene grasps`.
+
+Grasps of the tool that were derived so before are replaced. Whether an arm gets there is not looked
+at.
+
+Parameters
+----------
+path : str or path
+objects : str or sequence of str, optional
+    By default all.
+{keywords}
+
+Returns
+-------
+dict
+    'names': by object, those of its grasps. 'without': by object, why it has none. 'notes'.)";
+
+constexpr const char* kPlacesDoc =
+    R"(Derives points on which objects stand ('bottom') and on which others are put ('top', 'top2', …)
+from level faces of their sets, and writes them into the scene: `kaboum-scene places`.
+
+Parameters
+----------
+path : str or path
+objects : str or sequence of str, optional
+    By default all.
+{keywords}
+
+Returns
+-------
+dict
+    'names': by object, those of its points. 'without': by object, what it has not. 'notes'.)";
+
 constexpr const char* kSceneDoc =
     R"(Robots, objects and regions with certified sets, put together in process (docs/scene.md).
 
@@ -426,6 +499,16 @@ void bind_scenes(py::module_& module) {
       document("update_scene", "path: object", keywords_of(scene::update_options()), "dict",
                kUpdateDoc, Runs::Cached);
   module.def("update_scene", &update_scene, py::arg("path"), update_text.c_str());
+  const std::string grasps_text =
+      document("add_grasps", "path: object, objects: object = None",
+               keywords_of(scene::grasp_options()), "dict", kGraspsDoc, Runs::Briefly);
+  module.def("add_grasps", &add_grasps, py::arg("path"), py::arg("objects") = py::none(),
+             grasps_text.c_str());
+  const std::string places_text =
+      document("add_places", "path: object, objects: object = None",
+               keywords_of(scene::place_options()), "dict", kPlacesDoc, Runs::Briefly);
+  module.def("add_places", &add_places, py::arg("path"), py::arg("objects") = py::none(),
+             places_text.c_str());
   const std::string text = document(
       "make_scene",
       "path: object, *, robots: object = None, objects: object = None, regions: object = None, "

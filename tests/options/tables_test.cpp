@@ -13,6 +13,7 @@
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/robot/shape_options.h>
+#include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_options.h>
 #include <kaboum/verify/robot_options.h>
 #include <kaboum/world/check_options.h>
@@ -115,6 +116,8 @@ TEST(OptionTables, AreSound) {
   check("motions", world::motion_options());
   check("pairs of links", world::pair_options());
   check("scenes", scene::scene_options());
+  check("grasps", scene::grasp_options());
+  check("places", scene::place_options());
   check("plans", plan::solve_options());
   check("planning tasks", execution::task_options());
   check("executions", execution::run_options());

@@ -34,6 +34,29 @@ def parts(arm):
     return arm.parent
 
 
+def test_grasps_and_places_are_the_programs(parts, monkeypatch):
+    """add_grasps and add_places write the same bytes as kaboum-scene, and say the same."""
+    monkeypatch.chdir(parts)
+    kaboum.make_scene("a.json", robots={"arm": "arm.urdf"}, at={"post": (5, 5, 0.1)}, epsilon="5%", effort="fast",
+                      objects={"post": {"box": {"size": [0.04, 0.06, 0.2]}}, "ball": {"sphere": {"radius": 0.1}}})
+    scene = json.loads((parts / "a.json").read_text())
+    with pytest.raises(kaboum.Error, match="no tools"):
+        kaboum.add_grasps("a.json")
+    scene["robots"][0]["tools"] = [{"name": "tip", "link": scene["robots"][0]["links"][-1]["link"], "position": [0, 0, 3]}]
+    for name in ("a.json", "b.json"):
+        (parts / name).write_text(json.dumps(scene))
+    said = program(parts, "places", "a.json", code=1)  # nobody stands on a ball
+    places = kaboum.add_places("b.json")
+    assert places["names"]["post"] == ["bottom", "top"] and "stands on no face" in places["without"]["ball"]
+    assert "ball: none; it stands on no face" in said
+    program(parts, "grasps", "a.json", "--object", "post", "--closing", "x", "--opening", "0.05", "--directions", 3)
+    grasps = kaboum.add_grasps("b.json", "post", closing="x", opening=0.05, directions=3)
+    assert grasps["names"] == {"post": ["tip/side-1", "tip/side-2", "tip/side-3"]} and grasps["without"] == {}
+    assert (parts / "a.json").read_bytes() == (parts / "b.json").read_bytes()
+    with pytest.raises(kaboum.Error, match="did you mean 'post'"):
+        kaboum.add_grasps("b.json", ["posts"])
+
+
 def test_scene_is_the_programs(parts, monkeypatch):
     """make_scene and kaboum-scene make write the same bytes; so does update after a mesh has changed."""
     monkeypatch.chdir(parts)

@@ -95,6 +95,8 @@ FRONT_ENDS = {
     "World.nearest": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.draw": (["check"], {"robot"}, "kaboum-check"),
     "update_scene": (["update_scene"], {"no_cache"} | RUNS, "kaboum-scene update"),
+    "add_grasps": (["add_grasps"], set(), "kaboum-scene grasps"),
+    "add_places": (["add_places"], set(), "kaboum-scene places"),
     "World.find_path": (["find_path"], {"robot", "progress"}, "kaboum-move"),
     "Path.trajectory": (["trajectory"], {"progress"}, "kaboum-move"),
     "make_scene": (["make_scene"], {"robots", "objects", "regions", "at", "scale", "no_cache"} | RUNS, "kaboum-scene make"),

@@ -1,7 +1,8 @@
-// The program kaboum-scene: makes scenes, brings them up to date, and finds pairs that never
-// touch.
+// The program kaboum-scene: makes scenes, brings them up to date, finds pairs that never touch, and
+// derives grasps and places.
 
 #include <kaboum/base/error.h>
+#include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_update.h>
 
 #include <CLI/CLI.hpp>
@@ -92,22 +93,65 @@ int update_scene(const tools::SceneOptions& o) {
       "update");
 }
 
+/// @return the exit code
+int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
+              const char* command) {
+  bool all = true;
+  tools::Json objects = tools::Json::array();
+  for (const std::string& note : added.notes) tools::log(o.common.quiet, remedy_of_program(note));
+  for (const scene::AddedFeatures::OfObject& object : added.objects) {
+    all = all && object.shortfall.empty();
+    std::string line = object.object + ": " + std::to_string(object.names.size()) + " " +
+                       (object.names.empty() ? "" : "(" + object.names.front() + " …)");
+    if (object.names.empty()) line = object.object + ": none";
+    if (!object.shortfall.empty()) line += "; " + object.shortfall;
+    tools::log(o.common.quiet && object.shortfall.empty(), line);
+    objects.push_back(
+        {{"object", object.object}, {"names", object.names}, {"shortfall", object.shortfall}});
+  }
+  tools::write_report(o.common, "kaboum-scene",
+                      {{"command", command},
+                       {"scene", o.scene},
+                       {"objects", std::move(objects)},
+                       {"notes", added.notes}});
+  return all ? tools::kDone : tools::kNo;
+}
+
+int add_grasps(const tools::SceneOptions& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  return say_added(o, scene::add_grasps(o.scene, o.objects, o.grasps), "grasps");
+}
+
+int add_places(const tools::SceneOptions& o) {
+  const tools::ThreadLimit threads(o.common.threads);
+  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  return say_added(o, scene::add_places(o.scene, o.objects, o.places_on), "places");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes scenes for kaboum-check and planners, and examines their robots.",
-               "kaboum-scene"};
+  CLI::App app{
+      "Makes scenes for kaboum-check and planners, examines their robots, and derives grasps and "
+      "places.",
+      "kaboum-scene"};
   tools::SceneOptions options;
   CLI::App* make = tools::describe_make(app, options);
   CLI::App* update = tools::describe_update(app, options);
   tools::describe_pairs(app, options);
+  CLI::App* grasps = tools::describe_grasps(app, options);
+  CLI::App* places = tools::describe_places(app, options);
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done; 1 a link of a robot is not held as asked for (the rest is written); 2 "
-      "usage; 3 bad input; 4 output failed; 5 not built; 6 internal error; "
+      "Exit codes: 0 done; 1 a link of a robot is not held as asked for, or an object has no such "
+      "grasp or point (the rest is written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 "
+      "internal error; "
       "7 limit.");
   return tools::run(app, argc, argv, [&] {
     if (make->parsed()) return make_scene(options);
+    if (grasps->parsed()) return add_grasps(options);
+    if (places->parsed()) return add_places(options);
     return update->parsed() ? update_scene(options) : tools::find_pairs(options);
   });
 }

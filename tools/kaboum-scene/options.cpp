@@ -21,6 +21,16 @@ void add_sources_of_sets(CLI::App& command, SceneOptions& o) {
   command.add_flag("--no-cache", o.no_cache, "Decompose anew and store nothing");
 }
 
+/// A subcommand that writes what it derives of objects into their scene.
+CLI::App* describe_derived(CLI::App& app, SceneOptions& o, const char* name, const char* text,
+                           const char* of_object) {
+  CLI::App* command = app.add_subcommand(name, text);
+  command->add_option("SCENE", o.scene, "Scene file; all else in it stays, but comments of YAML")
+      ->required();
+  command->add_option("--object", o.objects, of_object)->type_name("NAME");
+  return command;
+}
+
 }  // namespace
 
 CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
@@ -77,6 +87,28 @@ CLI::App* describe_pairs(CLI::App& app, SceneOptions& o) {
   add_request_options(*pairs, world::pair_options(), o.pairs, o.stated);
   add_common_options(*pairs, o.common);
   return pairs;
+}
+
+CLI::App* describe_grasps(CLI::App& app, SceneOptions& o) {
+  CLI::App* grasps =
+      describe_derived(app, o, "grasps",
+                       "Derive grasps of objects from the faces of their sets, free of contact "
+                       "with the hand, and write them into the scene",
+                       "An object that gets grasps; may be repeated [all]");
+  add_request_options(*grasps, scene::grasp_options(), o.grasps, o.stated);
+  add_common_options(*grasps, o.common);
+  return grasps;
+}
+
+CLI::App* describe_places(CLI::App& app, SceneOptions& o) {
+  CLI::App* places = describe_derived(
+      app, o, "places",
+      "Derive points on which objects stand (bottom), and on which others are "
+      "put (top, top2, …), from level faces of their sets, and write them into the scene",
+      "An object that gets points; may be repeated [all]");
+  add_request_options(*places, scene::place_options(), o.places_on, o.stated);
+  add_common_options(*places, o.common);
+  return places;
 }
 
 }  // namespace kaboum::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_maker.h>
 #include <kaboum/world/allowed_pairs.h>
 
@@ -22,6 +23,8 @@ struct SceneOptions {
   scene::SceneMaker make;  ///< but for what these name; of update, its packages
   bool no_cache = false;
   world::PairOptions pairs;
+  scene::GraspRequest grasps;
+  scene::PlaceRequest places_on;
   std::set<std::string> stated;  ///< names of options of requests that were stated
   CommonOptions common;
 };
@@ -29,5 +32,7 @@ struct SceneOptions {
 CLI::App* describe_make(CLI::App& app, SceneOptions& o);
 CLI::App* describe_update(CLI::App& app, SceneOptions& o);
 CLI::App* describe_pairs(CLI::App& app, SceneOptions& o);
+CLI::App* describe_grasps(CLI::App& app, SceneOptions& o);
+CLI::App* describe_places(CLI::App& app, SceneOptions& o);
 
 }  // namespace kaboum::tools

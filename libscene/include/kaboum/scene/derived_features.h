@@ -1,0 +1,94 @@
+#pragma once
+
+#include <kaboum/base/option.h>
+#include <kaboum/world/world.h>
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+/// Grasps and places of objects, derived from their convex sets: what a scene's author would
+/// otherwise write by hand. docs/scene.md.
+namespace kaboum::scene {
+
+/// Request for grasps of an object by a tool.
+///
+/// A tool approaches along its z axis. Its fingers close along another axis of it, and their tips
+/// are at its origin when they hold something.
+struct GraspRequest {
+  enum class Hold {
+    Sides,  ///< two parallel faces, by two fingers
+    Face,   ///< one face, by suction
+  };
+  enum class Axis { X, Y };
+
+  std::string robot = {};  ///< empty: the only one
+  std::string tool = {};   ///< empty: the only one of the robot
+  Hold hold = Hold::Sides;
+  Axis closing = Axis::Y;  ///< of the tool: the fingers close along it
+  /// Largest distance between two faces: how far the fingers open. [length]
+  double opening = std::numeric_limits<double>::infinity();
+  std::size_t directions = 8;  ///< of approach, evenly round the axis of closing or of suction
+  std::size_t most = 24;       ///< grasps
+  double gap = 0.001;          ///< from the tool to a face, beyond both sets' ε [length]
+};
+
+/// Grasps that were derived, and those that were left out.
+struct DerivedGrasps {
+  std::vector<world::Grasp> grasps;  ///< the largest faces first; called "TOOL/side-1", …
+  std::size_t faces = 0;             ///< pairs of faces, or faces, that fit
+  std::size_t in_contact = 0;        ///< grasps in contact with the hand, wherever the tool was put
+  std::string contact;               ///< one of those contacts: "arm/palm"; empty: there was none
+};
+
+/// Grasps of an object: at faces of its outer set that no other body of it covers. Of two fingers,
+/// the tool is in the middle of where the faces face each other or, where the hand would be in
+/// contact, nearer to where it comes from. Each grasp is free of contact between the object and the
+/// hand (what moves with the tool), with the robot's joints at home, by bounded predicates.
+/// Whether an arm gets there is not looked at.
+/// @throws Error{InvalidArgument} for names that the world does not have
+DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
+                            const GraspRequest& request);
+
+/// Request for places where objects stand.
+struct PlaceRequest {
+  std::size_t most = 8;  ///< points on top of an object
+  bool replace = false;  ///< points of these names that the scene has already
+};
+
+/// Points of an object as placing reads them, in its frame: "bottom", the middle of the faces on
+/// which it stands as the scene has it, and "top", "top2", … in the middle of faces that look up,
+/// the largest first, which no other body of it covers. Faces are level within 0.001 rad.
+std::vector<world::Feature> derive_places(const world::World& world, std::size_t object,
+                                          const PlaceRequest& request);
+
+/// What was written into a scene.
+struct AddedFeatures {
+  struct OfObject {
+    std::string object;
+    std::vector<std::string> names;  ///< of grasps or points
+    std::string shortfall;           ///< why there are none; empty: there are some
+  };
+  std::vector<OfObject> objects;
+  std::vector<std::string> notes;
+};
+
+/// Derives grasps of objects and writes them into the scene. Grasps of the tool that were derived
+/// so before are replaced, all else stays (of YAML, but for comments).
+/// @param objects  by name; empty: all
+/// @throws Error as derive_grasps, world::read_scene; Error{OutputFailed}
+AddedFeatures add_grasps(const std::filesystem::path& scene,
+                         const std::vector<std::string>& objects, const GraspRequest& request);
+
+/// Likewise points on which objects are placed, and on which they stand.
+AddedFeatures add_places(const std::filesystem::path& scene,
+                         const std::vector<std::string>& objects, const PlaceRequest& request);
+
+/// The options of deriving grasps.
+const std::vector<Option<GraspRequest>>& grasp_options();
+
+/// The options of deriving places.
+const std::vector<Option<PlaceRequest>>& place_options();
+
+}  // namespace kaboum::scene

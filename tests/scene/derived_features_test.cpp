@@ -1,0 +1,255 @@
+// Derived grasps and places, against what boxes say: where rays along the fingers leave the object,
+// and points of the object in the hand.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/scene/derived_features.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace kaboum::scene {
+namespace {
+
+using geom::Transform;
+using geom::Vec3;
+
+/// A box in a frame of its own.
+struct Block {
+  Vec3 low, high;
+  [[nodiscard]] bool holds(const Vec3& p) const {
+    return (p.array() > low.array()).all() && (p.array() < high.array()).all();
+  }
+};
+
+geom::Mesh hull_of(const Block& b, const Transform& pose) {
+  std::vector<Vec3> corners;
+  for (const double x : {b.low.x(), b.high.x()})
+    for (const double y : {b.low.y(), b.high.y()})
+      for (const double z : {b.low.z(), b.high.z()}) corners.emplace_back(pose * Vec3(x, y, z));
+  return *geom::convex_hull(corners);
+}
+
+collide::BoundingSet set_of(const std::vector<Block>& blocks, const Transform& pose = {},
+                            double epsilon = 0) {
+  std::vector<geom::ConvexBody> bodies;
+  for (const Block& b : blocks) bodies.push_back({"body", hull_of(b, pose)});
+  return {std::move(bodies), collide::Direction::Outer, epsilon};
+}
+
+const Block kPalm{{-0.3, -0.3, -0.2}, {0.3, 0.3, -0.1}};
+
+/// A hand that turns on an arm; its tool is `ahead` of the hand's frame, whose palm ends 0.1
+/// behind.
+world::World world_with(const std::vector<Block>& blocks, double ahead, const Transform& frame = {},
+                        double epsilon = 0) {
+  world::World out;
+  world::RobotModel& arm = out.robots.emplace_back();
+  arm.name = "arm";
+  arm.kinematics.name = "arm";
+  arm.kinematics.links = {{"base", {}, {}}, {"wrist", {}, {}}, {"palm", {}, {}}};
+  arm.kinematics.joints = {
+      {.name = "j1", .type = robot::JointType::Revolute, .parent = 0, .origin = {}},
+      {.name = "fixed", .type = robot::JointType::Fixed, .parent = 1, .origin = {}}};
+  arm.kinematics.variables = {{"j1", -1.0, 1.0}};
+  arm.home = {0.4};
+  // The base is where the object will be: it is no part of the hand.
+  arm.shapes.push_back({0, set_of({{{-9, -9, -9}, {9, 9, 9}}}), {}});
+  arm.shapes.push_back({2, set_of({kPalm}), {}});
+  world::ToolFrame tool{"tip", 2, {}};
+  tool.pose.translation = {0, 0, ahead};
+  arm.tools.push_back(tool);
+  out.objects.push_back({"thing", {}, set_of(blocks, frame, epsilon), {}, {}, {}, {}});
+  out.attachments.resize(1);
+  return out;
+}
+
+/// The frame of the tool in the object's.
+Transform tool_in_object(const world::Grasp& grasp) {
+  return {grasp.pose.linear.transpose(), -(grasp.pose.linear.transpose() * grasp.pose.translation)};
+}
+
+/// How far it is from a point within some blocks along a direction to where they end.
+double way_out(const std::vector<Block>& blocks, const Vec3& from, const Vec3& along) {
+  constexpr double kStep = 1e-4;
+  double t = 0;
+  const auto inside = [&](double at) {
+    const Vec3 p = from + at * along;
+    return std::ranges::any_of(blocks, [&](const Block& b) { return b.holds(p); });
+  };
+  // Two blocks that touch leave no gap that counts.
+  while (inside(t) || inside(t + kStep)) t += kStep;
+  return t;
+}
+
+Transform random_pose(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  const Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  return {q.normalized().toRotationMatrix(), {normal(random), normal(random), normal(random)}};
+}
+
+TEST(Grasps, OfBoxesAreInTheMiddleOfParallelFaces) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> size(0.02, 0.2);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 half(size(random), size(random), size(random));
+    const Transform frame = random_pose(random);
+    const world::World world = world_with({{-half, half}}, 9, frame);
+    for (const auto axis : {GraspRequest::Axis::X, GraspRequest::Axis::Y}) {
+      GraspRequest request{.closing = axis, .opening = 0.2, .directions = 4, .most = 100};
+      const DerivedGrasps found = derive_grasps(world, 0, request);
+      EXPECT_EQ(found.grasps.size(), 4 * (half.array() <= 0.1).count());
+      for (const world::Grasp& grasp : found.grasps) {
+        const Transform tool = tool_in_object(grasp);
+        EXPECT_LT((tool.linear.transpose() * tool.linear - Eigen::Matrix3d::Identity()).norm(),
+                  1e-9);
+        EXPECT_GT(tool.linear.determinant(), 0);
+        // In the box's own frame, whose axes are its normals.
+        const Vec3 closing =
+            frame.linear.transpose() * tool.linear.col(axis == GraspRequest::Axis::X ? 0 : 1);
+        const Vec3 at = frame.linear.transpose() * (tool.translation - frame.translation);
+        int along = 0;
+        closing.cwiseAbs().maxCoeff(&along);
+        EXPECT_NEAR(std::abs(closing[along]), 1, 1e-9);
+        EXPECT_LE(half[along], 0.1);
+        EXPECT_LT(at.norm(), 1e-9);  // no palm is near: the very middle
+      }
+    }
+  }
+}
+
+TEST(Grasps, HaveAsMuchOfTheObjectOnEitherSideAndNoneAtCoveredFaces) {
+  // An L of two boxes: where they touch no finger goes.
+  const std::vector<Block> ell{{{0, 0, 0}, {0.25, 0.1, 0.1}}, {{0, 0.1, 0}, {0.1, 0.3, 0.1}}};
+  const world::World world = world_with(ell, 9);
+  GraspRequest request{.directions = 1, .most = 100};
+  const DerivedGrasps found = derive_grasps(world, 0, request);
+  std::size_t across = 0;
+  for (const world::Grasp& grasp : found.grasps) {
+    const Transform tool = tool_in_object(grasp);
+    const Vec3 closing = tool.linear.col(1);
+    const double one = way_out(ell, tool.translation, closing),
+                 other = way_out(ell, tool.translation, -closing);
+    EXPECT_NEAR(one, other, 3e-4) << grasp.name << " " << tool.translation.transpose();
+    EXPECT_GT(one, 0.01);
+    if (std::abs(closing.y()) > 0.9) ++across;
+  }
+  EXPECT_GE(across, 2U);  // of the foot, and of both
+  EXPECT_GE(found.grasps.size(), 5U);
+  // Largest distances are kept.
+  request.opening = 0.15;
+  for (const world::Grasp& grasp : derive_grasps(world, 0, request).grasps) {
+    const Transform tool = tool_in_object(grasp);
+    EXPECT_LE(2 * way_out(ell, tool.translation, tool.linear.col(1)), 0.1502);
+  }
+}
+
+TEST(Grasps, KeepTheHandFree) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> size(0.02, 0.4);
+  std::size_t moved = 0, refused = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 half(size(random), size(random), size(random));
+    const Block box{-half, half};
+    const double ahead = i % 2 == 0 ? 0.05 : -0.095;  // 0.15 and 0.005 before the palm
+    world::World world = world_with({box}, ahead);
+    // The wrist is fixed to the palm, and so part of the hand.
+    const bool of_wrist = i % 4 < 2;
+    if (of_wrist) world.robots[0].shapes[1].link = 1;
+    const DerivedGrasps found = derive_grasps(world, 0, {.directions = 4, .most = 100});
+    refused += found.in_contact;
+    EXPECT_EQ(found.grasps.size() + found.in_contact, 12U);
+    if (found.in_contact > 0) {
+      EXPECT_EQ(found.contact, of_wrist ? "arm/wrist" : "arm/palm");
+    }
+    for (const world::Grasp& grasp : found.grasps) {
+      moved += grasp.pose.translation.norm() > 1e-9 ? 1 : 0;
+      EXPECT_TRUE(box.holds((1 - 1e-9) * tool_in_object(grasp).translation));
+      for (int k = 0; k < 2000; ++k) {
+        const Vec3 p =
+            half.cwiseProduct(Vec3(size(random), size(random), size(random)) / 0.2 - Vec3::Ones());
+        const Vec3 in_hand = grasp.pose * p.cwiseMin(half).cwiseMax(-half) + Vec3(0, 0, ahead);
+        EXPECT_FALSE(kPalm.holds(in_hand)) << grasp.name;
+      }
+    }
+  }
+  EXPECT_GT(moved, 20U);
+  EXPECT_GT(refused, 20U);
+}
+
+TEST(Grasps, BySuctionAreAGapAwayFromTheFace) {
+  const Vec3 half(0.1, 0.2, 0.3);
+  const world::World world = world_with({{-half, half}}, 9, {}, 0.004);
+  GraspRequest request{.hold = GraspRequest::Hold::Face, .directions = 1, .gap = 0.002};
+  const DerivedGrasps found = derive_grasps(world, 0, request);
+  ASSERT_EQ(found.grasps.size(), 6U);
+  double before = 1;
+  for (const world::Grasp& grasp : found.grasps) {
+    const Transform tool = tool_in_object(grasp);
+    const Vec3 normal = -tool.linear.col(2);
+    int along = 0;
+    normal.cwiseAbs().maxCoeff(&along);
+    EXPECT_LT((tool.translation - (half[along] + 0.006) * normal).norm(), 1e-12);
+    const double area = half.prod() / half[along];
+    EXPECT_LE(area, before * (1 + 1e-9));  // the largest first
+    before = area;
+  }
+  EXPECT_EQ(found.grasps.front().name, "tip/face-1");
+  request.most = 2;
+  EXPECT_EQ(derive_grasps(world, 0, request).grasps.size(), 2U);
+}
+
+TEST(Grasps, OfWhatHasNoParallelFacesAreNone) {
+  world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  world.objects[0].outer = {{{"body", *geom::convex_hull(corners)}}, collide::Direction::Outer, 0};
+  EXPECT_EQ(derive_grasps(world, 0, {}).faces, 0U);
+  EXPECT_EQ(derive_grasps(world, 0, {.hold = GraspRequest::Hold::Face}).faces, 4U);
+}
+
+TEST(Grasps, NameWhatIsNotThere) {
+  world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
+  const auto refused = [&](const GraspRequest& request) -> std::string {
+    try {
+      derive_grasps(world, 0, request);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_NE(refused({.tool = "tipp"}).find("no tool 'tipp'; did you mean 'tip'"),
+            std::string::npos);
+  EXPECT_NE(refused({.robot = "harm"}).find("harm"), std::string::npos);
+  world.robots[0].tools.push_back({"other", 2, {}});
+  EXPECT_NE(refused({}).find("several tools: tip, other"), std::string::npos);
+  world.robots[0].tools.clear();
+  EXPECT_NE(refused({}).find("no tools"), std::string::npos);
+}
+
+TEST(Places, AreWhereTheObjectStandsAndWhatLooksUp) {
+  // An L that stands on its side: its y is up.
+  const std::vector<Block> ell{{{0, 0, 0}, {0.25, 0.1, 0.1}}, {{0, 0.1, 0}, {0.1, 0.3, 0.1}}};
+  world::World world = world_with(ell, 9);
+  world.objects[0].pose.linear =
+      Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitX()).toRotationMatrix();
+  const std::vector<world::Feature> found = derive_places(world, 0, {});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].name, "bottom");
+  EXPECT_LT((found[0].point - Vec3(0.125, 0, 0.05)).norm(), 1e-9);
+  EXPECT_EQ(found[1].name, "top");
+  EXPECT_LT((found[1].point - Vec3(0.125, 0.1, 0.05)).norm(), 1e-9);
+  EXPECT_EQ(found[2].name, "top2");
+  EXPECT_LT((found[2].point - Vec3(0.05, 0.3, 0.05)).norm(), 1e-9);
+  EXPECT_EQ(derive_places(world, 0, {.most = 1}).size(), 2U);
+  // On its edge it has neither.
+  world.objects[0].pose.linear =
+      Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+  EXPECT_TRUE(derive_places(world, 0, {}).empty());
+}
+
+}  // namespace
+}  // namespace kaboum::scene
