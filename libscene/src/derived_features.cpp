@@ -126,7 +126,8 @@ Polygon hull_of(Polygon points) {
 /// The common part of two convex polygons, counterclockwise (Sutherland and Hodgman 1974).
 Polygon common_part(Polygon a, const Polygon& b) {
   for (std::size_t i = 0; i < b.size() && !a.empty(); ++i) {
-    const Vec2 from = b[i], along = b[(i + 1) % b.size()] - b[i];
+    const Vec2& from = b[i];
+    const Vec2 along = b[(i + 1) % b.size()] - b[i];
     Polygon kept;
     for (std::size_t k = 0; k < a.size(); ++k) {
       const Vec2 &p = a[k], &q = a[(k + 1) % a.size()];
