@@ -28,7 +28,7 @@ using Vec2 = Eigen::Vector2d;
 constexpr double kParallel = 1e-3;
 /// Between normals of triangles of one face. [rad]
 constexpr double kSameFace = 1e-6;
-/// Of sizes: what counts as nothing.
+/// Share of a size that counts as nothing.
 constexpr double kNothing = 1e-9;
 /// Shares of the way from the middle of two faces to their edge at which a tool is put.
 constexpr std::array kShares{0.0, 0.25, 0.5, 0.75, 0.95};
@@ -56,7 +56,7 @@ class Faces {
   [[nodiscard]] const std::vector<Face>& all() const { return all_; }
   [[nodiscard]] double size() const { return size_; }
 
-  /// Whether a point just outside of a face is in another body.
+  /// True if the point just outside of a face is in another body.
   [[nodiscard]] bool is_covered(const Face& face, const Vec3& point) const {
     const Vec3 outside = point + 1e-6 * size_ * face.normal;
     for (std::size_t body = 0; body + 1 < first_of_.size(); ++body) {
@@ -121,6 +121,13 @@ Polygon hull_of(Polygon points) {
     std::ranges::reverse(points);
   }
   return hull;
+}
+
+/// A face in a plane's coordinates.
+Polygon flattened(const Face& face, const Axes& axes) {
+  Polygon points;
+  for (const Vec3& corner : face.corners) points.push_back(axes(corner));
+  return hull_of(std::move(points));
 }
 
 /// The common part of two convex polygons, counterclockwise (Sutherland and Hodgman 1974).
@@ -197,12 +204,7 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Face& first = all[i];
     const Axes axes(first.normal);
-    const auto flattened = [&](const Face& face) {
-      Polygon points;
-      for (const Vec3& corner : face.corners) points.push_back(axes(corner));
-      return hull_of(std::move(points));
-    };
-    const Polygon own = flattened(first);
+    const Polygon own = flattened(first, axes);
     const auto add = [&](const Polygon& where, double level, const Face* second) {
       const Middle middle = middle_of(where);
       if (!(middle.area > kNothing * faces.size() * faces.size())) return;
@@ -223,7 +225,7 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
         continue;
       const double thickness = first.offset + second.offset;
       if (!(thickness > kNothing * faces.size() && thickness <= request.opening)) continue;
-      add(common_part(own, flattened(second)), 0.5 * (first.offset - second.offset), &second);
+      add(common_part(own, flattened(second, axes)), 0.5 * (first.offset - second.offset), &second);
     }
   }
   std::ranges::stable_sort(
@@ -286,34 +288,20 @@ class Hand {
   Transform tool_;
 };
 
-const world::ToolFrame& tool_named(const world::RobotModel& robot, const std::string& name) {
-  if (name.empty() && robot.tools.size() == 1) return robot.tools.front();
-  std::vector<std::string> names;
-  for (const world::ToolFrame& tool : robot.tools) {
-    if (tool.name == name) return tool;
-    names.push_back(tool.name);
-  }
-  if (names.empty())
-    throw Error(ErrorCode::InvalidArgument,
-                "robot '" + robot.name + "' of the scene has no tools, which grasps are of");
-  std::string all;
-  for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
-  throw Error(
-      ErrorCode::InvalidArgument,
-      name.empty()
-          ? "robot '" + robot.name + "' has several tools: " + all + "; name one «tool»"
-          : "robot '" + robot.name + "' has no tool '" + name + "'" + did_you_mean(name, names));
-}
-
-/// The k-th of n directions evenly round a circle, such that the first ones are far apart.
-double angle_of(std::size_t k, std::size_t n) {
-  std::vector<std::size_t> order{0};
-  for (std::size_t step = n; order.size() < n;) {
+/// The angles of n directions evenly round a circle, such that the first ones are far apart. [rad]
+std::vector<double> angles_round(std::size_t n) {
+  std::vector<double> out{0};
+  std::vector<bool> taken(n, false);
+  taken[0] = true;
+  for (std::size_t step = n; out.size() < n;) {
     step = std::max<std::size_t>(1, (step + 1) / 2);
-    for (std::size_t i = 0; i < n; i += step)
-      if (std::ranges::find(order, i) == order.end()) order.push_back(i);
+    for (std::size_t i = 0; i < n; i += step) {
+      if (!taken[i])
+        out.push_back(2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+      taken[i] = true;
+    }
   }
-  return 2 * std::numbers::pi * static_cast<double>(order[k]) / static_cast<double>(n);
+  return out;
 }
 
 /// The pose of the object in the tool's frame, where the tool's axes and origin are given in the
@@ -347,17 +335,6 @@ std::vector<std::size_t> objects_named(const world::World& world,
   return out;
 }
 
-Json read_json(const std::filesystem::path& scene) {
-  const std::vector<char> bytes = io::read_file(scene);
-  return Json::parse(world::scene_as_json({bytes.data(), bytes.size()}, scene.string()));
-}
-
-Json& entry_of(Json& scene, const std::string& object) {
-  for (Json& entry : scene["objects"])
-    if (entry.at("name") == object) return entry;
-  throw Error(ErrorCode::Internal, "an object that was read is in the scene");
-}
-
 /// As people read it: what is only rounding is 0.
 double plain(double x, double size) { return std::abs(x) < 1e-15 * size ? 0 : x; }
 
@@ -365,14 +342,59 @@ Json numbers(const Vec3& v, double size) {
   return {plain(v.x(), size), plain(v.y(), size), plain(v.z(), size)};
 }
 
-/// Takes entries that are to be replaced out of a list.
+/// A scene that gets entries in a list of its objects.
+class SceneEdit {
+ public:
+  explicit SceneEdit(const std::filesystem::path& scene)
+      : scene_(scene), file_(world::read_scene(scene.string())) {
+    const std::vector<char> bytes = io::read_file(scene);
+    json_ = Json::parse(world::scene_as_json({bytes.data(), bytes.size()}, scene.string()));
+  }
+
+  [[nodiscard]] const world::World& world() const { return file_.world; }
+
+  /// Calls derive(object, entries, added) for each object that is named: it changes the entries of
+  /// the list, and says what was added. Writes the scene where something has changed.
+  template <typename Derive>
+  AddedFeatures run(const std::vector<std::string>& objects, const char* list,
+                    const Derive& derive) {
+    AddedFeatures out;
+    out.notes = file_.notes;
+    bool changed = false;
+    for (const std::size_t object : objects_named(world(), objects)) {
+      AddedFeatures::OfObject& added = out.objects.emplace_back();
+      added.object = world().objects[object].name;
+      Json& entry = entry_of(added.object);
+      const Json before = entry.value(list, Json::array());
+      Json after = before;
+      derive(object, after, added);
+      if (after == before) continue;
+      changed = true;
+      entry[list] = std::move(after);
+    }
+    if (changed) SetMaker(scene_).write(json_);
+    return out;
+  }
+
+ private:
+  Json& entry_of(const std::string& object) {
+    for (Json& entry : json_["objects"])
+      if (entry.at("name") == object) return entry;
+    throw Error(ErrorCode::Internal, "an object that was read is in the scene");
+  }
+
+  std::filesystem::path scene_;
+  world::SceneFile file_;
+  Json json_;
+};
+
+/// Takes entries out of a list.
 template <typename Old>
-Json& without(Json& entry, const char* list, const Old& old) {
+void erase_entries(Json& list, const Old& old) {
   Json kept = Json::array();
-  if (entry.contains(list))
-    for (const Json& one : entry.at(list))
-      if (!old(one)) kept.push_back(one);
-  return entry[list] = std::move(kept);
+  for (const Json& one : list)
+    if (!old(one)) kept.push_back(one);
+  list = std::move(kept);
 }
 
 const char* word_of(GraspRequest::Hold hold) {
@@ -415,10 +437,9 @@ DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
   DerivedGrasps out;
   out.faces = holds.size();
   // The first direction of each hold, then the second …: the first grasps differ most.
-  for (std::size_t k = 0; k < request.directions; ++k) {
+  for (const double angle : angles_round(request.directions)) {
     for (const Hold& hold : holds) {
       if (out.grasps.size() >= request.most) return out;
-      const double angle = angle_of(k, request.directions);
       const Vec2 edge = longest_edge(hold.where);
       // Across the longest edge first.
       const Vec2 across(-edge.y(), edge.x());
@@ -471,9 +492,7 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
   for (const Face& face : faces.all()) {
     if (face.normal.cross(up).norm() > kParallel) continue;
     const Axes axes(face.normal);
-    Polygon points;
-    for (const Vec3& corner : face.corners) points.push_back(axes(corner));
-    const Middle middle = middle_of(hull_of(std::move(points)));
+    const Middle middle = middle_of(flattened(face, axes));
     if (!(middle.area > kNothing * faces.size() * faces.size())) continue;
     const Vec3 place =
         middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
@@ -501,87 +520,66 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
 
 AddedFeatures add_grasps(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const GraspRequest& request) {
-  const world::SceneFile file = world::read_scene(scene.string());
-  const world::World& world = file.world;
+  SceneEdit edit(scene);
+  const world::World& world = edit.world();
   const world::ToolFrame& tool =
       tool_named(world.robots[robot_named(world, request.robot)], request.tool);
-  Json json = read_json(scene);
-  AddedFeatures out;
-  out.notes = file.notes;
-  bool changed = false;
-  for (const std::size_t object : objects_named(world, objects)) {
-    const std::string& name = world.objects[object].name;
-    const DerivedGrasps found = derive_grasps(world, object, request);
-    AddedFeatures::OfObject& added = out.objects.emplace_back();
-    added.object = name;
-    if (found.grasps.empty()) added.shortfall = why_none(found, request);
-    Json& entry = entry_of(json, name);
-    const std::string prefix = tool.name + "/" + word_of(request.hold) + "-";
-    const Json before = entry.value("grasps", Json::array());
-    Json& list = without(entry, "grasps", [&](const Json& one) {
-      const std::string of = one.value("name", "");
-      return of.starts_with(prefix) && is_number(std::string_view(of).substr(prefix.size()));
-    });
-    const double size = world.objects[object].outer.box().diagonal();
-    for (const world::Grasp& grasp : found.grasps) {
-      const Eigen::Quaterniond q(grasp.pose.linear);
-      list.push_back(
-          {{"name", grasp.name},
-           {"position", numbers(grasp.pose.translation, size)},
-           {"quaternion", {plain(q.x(), 1), plain(q.y(), 1), plain(q.z(), 1), plain(q.w(), 1)}}});
-      added.names.push_back(grasp.name);
-    }
-    changed = changed || list != before;
-    if (list.empty()) entry.erase("grasps");
-  }
-  if (changed) SetMaker(scene).write(json);
-  return out;
+  const std::string prefix = tool.name + "/" + word_of(request.hold) + "-";
+  return edit.run(
+      objects, "grasps", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
+        const DerivedGrasps found = derive_grasps(world, object, request);
+        if (found.grasps.empty()) added.shortfall = why_none(found, request);
+        erase_entries(list, [&](const Json& one) {
+          const std::string of = one.value("name", "");
+          return of.starts_with(prefix) && is_number(std::string_view(of).substr(prefix.size()));
+        });
+        const double size = world.objects[object].outer.box().diagonal();
+        for (const world::Grasp& grasp : found.grasps) {
+          const Eigen::Quaterniond q(grasp.pose.linear);
+          list.push_back({{"name", grasp.name},
+                          {"position", numbers(grasp.pose.translation, size)},
+                          {"quaternion",
+                           {plain(q.x(), 1), plain(q.y(), 1), plain(q.z(), 1), plain(q.w(), 1)}}});
+          added.names.push_back(grasp.name);
+        }
+      });
 }
 
 AddedFeatures add_places(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const PlaceRequest& request) {
-  const world::SceneFile file = world::read_scene(scene.string());
-  const world::World& world = file.world;
-  Json json = read_json(scene);
-  AddedFeatures out;
-  out.notes = file.notes;
-  bool changed = false;
-  for (const std::size_t object : objects_named(world, objects)) {
-    const std::string& name = world.objects[object].name;
-    AddedFeatures::OfObject& added = out.objects.emplace_back();
-    added.object = name;
-    const std::vector<world::Feature> found = derive_places(world, object, request);
-    const auto has = [&](const char* feature) {
-      return std::ranges::any_of(found, [&](const auto& f) { return f.name == feature; });
-    };
-    if (!has("bottom")) added.shortfall = "it stands on no face, so that it has no bottom";
-    if (!has("top"))
-      added.shortfall += std::string(added.shortfall.empty() ? "" : "; ") + "no face looks up";
-    Json& entry = entry_of(json, name);
-    const auto is_ours = [](const Json& one) {
-      const std::string of = one.value("name", "");
-      return one.contains("point") && (of == "bottom" || is_top(of));
-    };
-    const Json before = entry.value("features", Json::array());
-    std::set<std::string> there;
-    for (const Json& one : before)
-      if (is_ours(one) && !request.replace) there.insert(one.value("name", "").substr(0, 3));
-    Json& list = without(entry, "features",
-                         [&](const Json& one) { return request.replace && is_ours(one); });
-    for (const world::Feature& feature : found) {
-      if (there.contains(feature.name.substr(0, 3))) continue;  // "bot…", "top…"
-      list.push_back(
-          {{"name", feature.name},
-           {"point", numbers(feature.point, world.objects[object].outer.box().diagonal())}});
-      added.names.push_back(feature.name);
-    }
-    if (!there.empty())
-      out.notes.push_back("object '" + name +
-                          "': the points that it has are kept; «force» replaces them");
-    changed = changed || list != before;
-    if (list.empty()) entry.erase("features");
-  }
-  if (changed) SetMaker(scene).write(json);
+  SceneEdit edit(scene);
+  const world::World& world = edit.world();
+  std::vector<std::string> kept;
+  AddedFeatures out = edit.run(
+      objects, "features", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
+        const auto is_point = [](const Json& one, bool top) {
+          const std::string of = one.value("name", "");
+          return one.contains("point") && (top ? is_top(of) : of == "bottom");
+        };
+        const std::vector<world::Feature> found = derive_places(world, object, request);
+        const double size = world.objects[object].outer.box().diagonal();
+        for (const bool top : {false, true}) {
+          const auto same = [&](const Json& one) { return is_point(one, top); };
+          if (request.replace) erase_entries(list, same);
+          const bool has = std::any_of(list.begin(), list.end(), same);
+          if (has && (kept.empty() || kept.back() != added.object)) kept.push_back(added.object);
+          bool any = has;
+          for (const world::Feature& feature : found) {
+            if (is_top(feature.name) != top) continue;
+            any = true;
+            if (has) continue;
+            list.push_back({{"name", feature.name}, {"point", numbers(feature.point, size)}});
+            added.names.push_back(feature.name);
+          }
+          if (!any)
+            added.shortfall +=
+                std::string(added.shortfall.empty() ? "" : "; ") +
+                (top ? "no face looks up" : "it stands on no face, so that it has no bottom");
+        }
+      });
+  for (const std::string& object : kept)
+    out.notes.push_back("object '" + object +
+                        "': the points that it has are kept; «force» replaces them");
   return out;
 }
 

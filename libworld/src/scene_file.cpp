@@ -41,4 +41,21 @@ std::size_t robot_named(const World& world, const std::string& name) {
               "robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
 }
 
+const ToolFrame& tool_named(const RobotModel& robot, const std::string& name) {
+  if (robot.tools.empty())
+    throw Error(ErrorCode::InvalidArgument, "tool: robot '" + robot.name + "' has no tools");
+  if (name.empty() && robot.tools.size() == 1) return robot.tools.front();
+  std::vector<std::string> names;
+  std::string all;
+  for (const ToolFrame& tool : robot.tools) {
+    if (tool.name == name) return tool;
+    names.push_back(tool.name);
+    all += (all.empty() ? "" : ", ") + tool.name;
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              "tool: robot '" + robot.name +
+                  (name.empty() ? "' has several tools: name one of " + all
+                                : "' has no tool '" + name + "'" + did_you_mean(name, names)));
+}
+
 }  // namespace kaboum::world

@@ -106,7 +106,7 @@ radii : float or array (n,)
       .def(
           "write_preview",
           [](const SetValue& s, const py::object& file, double explode) {
-            if (file.is_none()) throw Error(ErrorCode::InvalidArgument, "file: a name is expected");
+            required_path(file, "file");
             png_bytes(file,
                       [&] { return picture::encode_png(picture::draw_bodies(*s.set, explode)); });
           },

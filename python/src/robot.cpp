@@ -337,10 +337,10 @@ RobotValue robot_of(const py::object& value, const char* argument) {
       0, [&] { return RobotValue{std::make_shared<robot::RobotFile>(robot::read_robot(*path))}; });
 }
 
-std::vector<std::string> links_of(const py::object& links) {
-  if (links.is_none()) return {};
-  if (py::isinstance<py::str>(links)) return {links.cast<std::string>()};
-  return links.cast<std::vector<std::string>>();
+std::vector<std::string> names_given(const py::object& names) {
+  if (names.is_none()) return {};
+  if (py::isinstance<py::str>(names)) return {names.cast<std::string>()};
+  return names.cast<std::vector<std::string>>();
 }
 
 certify::LinkEpsilons epsilons_of(const py::object& given) {
@@ -365,7 +365,7 @@ robot_folder::FolderOptions folder_options_of(const std::string& folder, const p
                                               const std::optional<std::string>& loader,
                                               const std::optional<std::string>& mesh_prefix) {
   robot_folder::FolderOptions options;
-  for (const std::string& format : links_of(formats)) {
+  for (const std::string& format : names_given(formats)) {
     if (format == "mjcf")
       options.mjcf = true;
     else if (format == "sdf")

@@ -33,7 +33,7 @@ RobotValue robot_of(const py::object& value, const char* argument);
 std::vector<Option<certify::SetOptions>> link_options();
 
 /// Names, or None for all.
-std::vector<std::string> links_of(const py::object& links);
+std::vector<std::string> names_given(const py::object& names);
 /// A dict of links' names and lengths.
 certify::LinkEpsilons epsilons_of(const py::object& given);
 /// What a robot's folder is to hold.

@@ -255,14 +255,6 @@ py::dict update_scene(const py::object& path, const py::kwargs& given) {
   }));
 }
 
-std::vector<std::string> names_of(const py::object& objects) {
-  if (objects.is_none()) return {};
-  if (py::isinstance<py::str>(objects)) return {objects.cast<std::string>()};
-  std::vector<std::string> out;
-  for (const py::handle name : objects) out.push_back(name.cast<std::string>());
-  return out;
-}
-
 py::dict dict_of_added(const scene::AddedFeatures& added) {
   py::dict names, without;
   for (const scene::AddedFeatures::OfObject& object : added.objects) {
@@ -276,20 +268,25 @@ py::dict dict_of_added(const scene::AddedFeatures& added) {
   return out;
 }
 
-py::dict add_grasps(const py::object& path, const py::object& objects, const py::kwargs& given) {
-  scene::GraspRequest request;
-  take_keywords("add_grasps", scene::grasp_options(), given, request, Runs::Briefly);
+/// Has what a table's request derives written into a scene.
+template <typename Request>
+py::dict add_derived(const char* function, const std::vector<Option<Request>>& table,
+                     scene::AddedFeatures (*add)(const std::filesystem::path&,
+                                                 const std::vector<std::string>&, const Request&),
+                     const py::object& path, const py::object& objects, const py::kwargs& given) {
+  Request request;
+  take_keywords(function, table, given, request, Runs::Briefly);
   const std::string file = path_text(path, "path");
-  const std::vector<std::string> names = names_of(objects);
-  return dict_of_added(run(0, [&] { return scene::add_grasps(file, names, request); }));
+  const std::vector<std::string> names = names_given(objects);
+  return dict_of_added(run(0, [&] { return add(file, names, request); }));
+}
+
+py::dict add_grasps(const py::object& path, const py::object& objects, const py::kwargs& given) {
+  return add_derived("add_grasps", scene::grasp_options(), scene::add_grasps, path, objects, given);
 }
 
 py::dict add_places(const py::object& path, const py::object& objects, const py::kwargs& given) {
-  scene::PlaceRequest request;
-  take_keywords("add_places", scene::place_options(), given, request, Runs::Briefly);
-  const std::string file = path_text(path, "path");
-  const std::vector<std::string> names = names_of(objects);
-  return dict_of_added(run(0, [&] { return scene::add_places(file, names, request); }));
+  return add_derived("add_places", scene::place_options(), scene::add_places, path, objects, given);
 }
 
 constexpr const char* kGraspsDoc =

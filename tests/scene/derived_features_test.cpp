@@ -225,7 +225,7 @@ TEST(Grasps, NameWhatIsNotThere) {
             std::string::npos);
   EXPECT_NE(refused({.robot = "harm"}).find("harm"), std::string::npos);
   world.robots[0].tools.push_back({"other", 2, {}});
-  EXPECT_NE(refused({}).find("several tools: tip, other"), std::string::npos);
+  EXPECT_NE(refused({}).find("several tools: name one of tip, other"), std::string::npos);
   world.robots[0].tools.clear();
   EXPECT_NE(refused({}).find("no tools"), std::string::npos);
 }

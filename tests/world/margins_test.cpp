@@ -135,7 +135,9 @@ TEST(Margins, AreNumbers) {
     world.margins = {.all = wrong};
     EXPECT_THROW(Checker{world}, Error) << wrong;
     world.margins = {.of = {{Item{Item::kObject, 0}, wrong}}};
-    if (!(wrong < 0)) EXPECT_THROW(Checker{world}, Error) << wrong;
+    if (!(wrong < 0)) {
+      EXPECT_THROW(Checker{world}, Error) << wrong;
+    }
   }
 }
 

@@ -97,13 +97,18 @@ int update_scene(const tools::SceneOptions& o) {
 int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
               const char* command) {
   bool all = true;
-  tools::Json objects = tools::Json::array();
-  for (const std::string& note : added.notes) tools::log(o.common.quiet, remedy_of_program(note));
+  tools::Json objects = tools::Json::array(), notes = tools::Json::array();
+  for (const std::string& note : added.notes) {
+    notes.push_back(remedy_of_program(note));
+    tools::log(o.common.quiet, notes.back());
+  }
   for (const scene::AddedFeatures::OfObject& object : added.objects) {
     all = all && object.shortfall.empty();
-    std::string line = object.object + ": " + std::to_string(object.names.size()) + " " +
-                       (object.names.empty() ? "" : "(" + object.names.front() + " …)");
-    if (object.names.empty()) line = object.object + ": none";
+    std::string line = object.object + ": ";
+    if (object.names.empty())
+      line += "none";
+    else
+      line += std::to_string(object.names.size()) + " (" + object.names.front() + " …)";
     if (!object.shortfall.empty()) line += "; " + object.shortfall;
     tools::log(o.common.quiet && object.shortfall.empty(), line);
     objects.push_back(
@@ -113,20 +118,20 @@ int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
                       {{"command", command},
                        {"scene", o.scene},
                        {"objects", std::move(objects)},
-                       {"notes", added.notes}});
+                       {"notes", std::move(notes)}});
   return all ? tools::kDone : tools::kNo;
 }
 
 int add_grasps(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
   tools::require_apart({{"--report", o.common.report}}, {o.scene});
-  return say_added(o, scene::add_grasps(o.scene, o.objects, o.grasps), "grasps");
+  return say_added(o, scene::add_grasps(o.scene, o.objects, o.derived_grasps), "grasps");
 }
 
 int add_places(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
   tools::require_apart({{"--report", o.common.report}}, {o.scene});
-  return say_added(o, scene::add_places(o.scene, o.objects, o.places_on), "places");
+  return say_added(o, scene::add_places(o.scene, o.objects, o.derived_places), "places");
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ CLI::App* describe_grasps(CLI::App& app, SceneOptions& o) {
                        "Derive grasps of objects from the faces of their sets, free of contact "
                        "with the hand, and write them into the scene",
                        "An object that gets grasps; may be repeated [all]");
-  add_request_options(*grasps, scene::grasp_options(), o.grasps, o.stated);
+  add_request_options(*grasps, scene::grasp_options(), o.derived_grasps, o.stated);
   add_common_options(*grasps, o.common);
   return grasps;
 }
@@ -106,7 +106,7 @@ CLI::App* describe_places(CLI::App& app, SceneOptions& o) {
       "Derive points on which objects stand (bottom), and on which others are "
       "put (top, top2, …), from level faces of their sets, and write them into the scene",
       "An object that gets points; may be repeated [all]");
-  add_request_options(*places, scene::place_options(), o.places_on, o.stated);
+  add_request_options(*places, scene::place_options(), o.derived_places, o.stated);
   add_common_options(*places, o.common);
   return places;
 }

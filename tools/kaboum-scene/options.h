@@ -23,8 +23,8 @@ struct SceneOptions {
   scene::SceneMaker make;  ///< but for what these name; of update, its packages
   bool no_cache = false;
   world::PairOptions pairs;
-  scene::GraspRequest grasps;
-  scene::PlaceRequest places_on;
+  scene::GraspRequest derived_grasps;
+  scene::PlaceRequest derived_places;
   std::set<std::string> stated;  ///< names of options of requests that were stated
   CommonOptions common;
 };

@@ -42,11 +42,11 @@ struct DerivedGrasps {
   std::string contact;               ///< one of those contacts: "arm/palm"; empty: there was none
 };
 
-/// Grasps of an object: at faces of its outer set that no other body of it covers. Of two fingers,
-/// the tool is in the middle of where the faces face each other or, where the hand would be in
-/// contact, nearer to where it comes from. Each grasp is free of contact between the object and the
-/// hand (what moves with the tool), with the robot's joints at home, by bounded predicates.
-/// Whether an arm gets there is not looked at.
+/// Grasps of an object: at faces of its outer set whose middle no other body covers. Of two
+/// fingers, the tool is in the middle of where the faces face each other or, where the hand would
+/// be in contact, nearer to where it comes from. Each grasp is free of contact between the object
+/// and the hand (what moves with the tool), with the robot's joints at home, by bounded predicates.
+/// Reachability by an arm is not decided.
 /// @throws Error{InvalidArgument} for names that the world does not have
 DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
                             const GraspRequest& request);
@@ -59,11 +59,11 @@ struct PlaceRequest {
 
 /// Points of an object as placing reads them, in its frame: "bottom", the middle of the faces on
 /// which it stands as the scene has it, and "top", "top2", … in the middle of faces that look up,
-/// the largest first, which no other body of it covers. Faces are level within 0.001 rad.
+/// the largest first, whose middle no other body covers. Faces are level within 0.001 rad.
 std::vector<world::Feature> derive_places(const world::World& world, std::size_t object,
                                           const PlaceRequest& request);
 
-/// What was written into a scene.
+/// Entries that were written into a scene.
 struct AddedFeatures {
   struct OfObject {
     std::string object;

@@ -44,6 +44,10 @@ SceneFile read_scene(const std::string& path);
 /// @throws Error{InvalidArgument} when there is none, or there are several without a name.
 std::size_t robot_named(const World& world, const std::string& name);
 
+/// The tool of a name; of no name the only one.
+/// @throws Error{InvalidArgument} when there is none, or there are several without a name.
+const ToolFrame& tool_named(const RobotModel& robot, const std::string& name);
+
 /// A scene file as JSON: what it is, or what its YAML says (without comments).
 /// @throws Error{InvalidInput}, Error{NotBuilt} as parse_scene.
 std::string scene_as_json(std::string_view text, const std::string& name);

@@ -76,7 +76,7 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::C
                                  const certify::RobotRequest& request,
                                  const std::vector<double>& seconds);
 
-/// What meshes round a robot's links consist of. A mesh counts once, however many links have it.
+/// Counts of the meshes round a robot's links. A mesh counts once, however many links have it.
 RobotCounts counts_of(const certify::LinkEnclosures& made);
 
 /// A row for each link that has shapes.
