@@ -11,7 +11,7 @@
 // (gap 1 %), means come from samples spread evenly over the area. Only closed meshes are measured.
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 

@@ -19,7 +19,7 @@
 #include <kaboum/distance/minimum.h>
 #include <kaboum/distance/sampling.h>
 #include <kaboum/distance/search.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>
 #include <tbb/global_control.h>

@@ -8,7 +8,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/self_intersection.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>

@@ -16,8 +16,6 @@
 #include <optional>
 #include <random>
 
-#include "common/scene_file.h"
-
 /// Bounded predicates judged by exact meshes: configurations, half of them near contact, and
 /// motions said to be free. Every pair of things that is looked at is judged by itself.
 /// judged-benchmark SCENE CONFIGURATIONS SEGMENTS SEED NAME=FILE...: the URDF of each robot and the
@@ -269,7 +267,7 @@ class Trial {
 };
 
 int run(int argc, char** argv) {
-  const tools::SceneFile scene = tools::read_scene(argv[1]);
+  const world::SceneFile scene = world::read_scene(argv[1]);
   const std::size_t count = std::stoull(argv[2]), segments = std::stoull(argv[3]);
   std::map<std::string, std::string> files;
   for (int i = 5; i < argc; ++i) {

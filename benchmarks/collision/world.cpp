@@ -12,7 +12,6 @@
 #include <map>
 #include <random>
 
-#include "common/scene_file.h"
 #include "engine.h"
 #include "random_cell.h"
 #include "timing.h"
@@ -180,7 +179,7 @@ int main(int argc, char** argv) {
   if (argc < 4) return 2;
   const std::size_t count = argc > 4 ? std::strtoull(argv[4], nullptr, 10) : 2000;
   const std::size_t segments = argc > 5 ? std::strtoull(argv[5], nullptr, 10) : 500;
-  tools::SceneFile scene = tools::read_scene(argv[1]);
+  world::SceneFile scene = world::read_scene(argv[1]);
   world::World& world = scene.world;
   const robot::RobotFile file = robot::read_robot(argv[2]);
   const geom::Mesh object = io::read_mesh(argv[3]).mesh;

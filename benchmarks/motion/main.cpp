@@ -3,6 +3,7 @@
 #include <kaboum/motion/find_path.h>
 #include <kaboum/motion/trajectory.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/scene.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -16,7 +17,6 @@
 #include <random>
 
 #include "collision/random_cell.h"
-#include "common/scene_file.h"
 #include "engine.h"
 
 /// Paths for a robot of a scene among random objects: find_path, and RRT-Connect of OMPL with
@@ -145,7 +145,7 @@ void run_ompl(const world::Checker& checker, const std::vector<Query>& queries) 
 int main(int argc, char** argv) try {
   if (argc < 4) return 2;
   const std::size_t count = argc > 4 ? std::strtoull(argv[4], nullptr, 10) : 100;
-  tools::SceneFile scene = tools::read_scene(argv[1]);
+  world::SceneFile scene = world::read_scene(argv[1]);
   world::World& world = scene.world;
   const robot::RobotFile file = robot::read_robot(argv[2]);
   const geom::Mesh object = io::read_mesh(argv[3]).mesh;

@@ -10,6 +10,7 @@
 #include <kaboum/plan/load.h>
 #include <kaboum/plan/solve.h>
 #include <kaboum/sweep/motion.h>
+#include <kaboum/world/scene.h>
 
 #include <cmath>
 #include <cstdio>
@@ -17,7 +18,6 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "common/scene_file.h"
 #include "other_world.h"
 
 namespace {
@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
       {"bfs", plan::Algorithm::BreadthFirst},
       {"ids", plan::Algorithm::IterativeDeepening},
       {"greedy", plan::Algorithm::Greedy}};
-  tools::SceneFile scene = tools::read_scene(argv[3]);
+  world::SceneFile scene = world::read_scene(argv[3]);
   const world::World world = scene.world;
   const auto recorder = std::make_shared<Recorder>();
   manipulation::ExternalOptions options;

@@ -5,8 +5,8 @@
 #include "inscribe.h"
 
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/distance.h>
 #include <kaboum/geom/float32.h>
+#include <kaboum/geom/point_triangle.h>
 
 #include <Eigen/Dense>
 #include <algorithm>

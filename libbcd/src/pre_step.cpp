@@ -4,7 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <algorithm>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <kaboum/base/work.h>
-#include <kaboum/geom/distance.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
 #include <atomic>

@@ -3,7 +3,7 @@
 
 #include "decimate_twice.h"
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <algorithm>
 #include <utility>

@@ -3,6 +3,8 @@
 
 #include "error_bound_certificate.h"
 
+#include <kaboum/geom/point_triangle.h>
+
 #include <algorithm>
 #include <limits>
 

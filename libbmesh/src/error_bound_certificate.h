@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/clip.h>
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>

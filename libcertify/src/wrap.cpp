@@ -1,6 +1,6 @@
 // Wraps: made, measured, and decided by libverify.
 #include <kaboum/certify/wrap.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/moderate.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/wrap/wrap.h>

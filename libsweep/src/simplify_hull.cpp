@@ -3,7 +3,7 @@
 
 #include "simplify_hull.h"
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/point_triangle.h>
 
 #include <algorithm>
 

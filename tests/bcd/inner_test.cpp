@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/bcd/inner.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/verify/cover.h>
 
 #include <Eigen/Geometry>

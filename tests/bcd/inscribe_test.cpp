@@ -2,7 +2,7 @@
 #include "inscribe.h"
 
 #include <gtest/gtest.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/verify/inclusion.h>
 
 #include <random>

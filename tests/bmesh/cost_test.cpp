@@ -1,7 +1,7 @@
 // What can be asked for: the largest distance, or the mean one.
 
 #include <kaboum/bmesh/decimate.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/mesh_io.h>

@@ -2,7 +2,7 @@
 // that encloses as ever.
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/verify/replay.h>
 #include <tbb/global_control.h>
 

@@ -76,7 +76,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/base/random.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/verify/exact_points.h>

@@ -55,7 +55,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/io/mesh_io.h>
 

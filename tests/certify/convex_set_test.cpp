@@ -7,7 +7,7 @@
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/certify/sweep.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 

@@ -2,7 +2,7 @@
 #include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/convex_polytope.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/point_triangle.h>
 #include <kaboum/geom/predicates.h>
 
 #include <gtest/gtest.h>

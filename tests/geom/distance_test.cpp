@@ -1,4 +1,4 @@
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

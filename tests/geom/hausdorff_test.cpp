@@ -1,6 +1,6 @@
 // The one-sided Hausdorff distance's bracket against truths known by construction and against an
 // independent search in long double.
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <gtest/gtest.h>
 

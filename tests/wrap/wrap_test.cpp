@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/random.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/self_intersection.h>
 #include <kaboum/geom/topology.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/topology.h>
 
 #include <nlohmann/json.hpp>

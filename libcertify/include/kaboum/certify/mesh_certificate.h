@@ -3,7 +3,7 @@
 #include <kaboum/bmesh/decimate.h>
 #include <kaboum/certify/certificate.h>
 #include <kaboum/certify/subject.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/inclusion.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 
 #include <kaboum/distance/boundary.h>
 #include <kaboum/distance/minimum.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <memory>
 

@@ -3,8 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 // Points of triangles, in rounded arithmetic: for costs and fields, never for certificates, which
-// take the brackets of kaboum/geom/distance.h. In a header, as they are asked for millions of
-// times.
+// take the brackets of point_triangle.h. In a header, as they are asked for millions of times.
 namespace kaboum::geom {
 
 /// Point of the triangle (a, b, c) closest to p, in rounded arithmetic: for costs, never for

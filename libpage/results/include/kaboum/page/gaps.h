@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 
 #include <functional>
 #include <span>

@@ -1,8 +1,8 @@
 // Closest point on a triangle: [ericson2005], 5.1.5; the bounds
 // around it are derived in docs/algorithms/distances.md.
 #include <kaboum/base/error.h>
-#include <kaboum/geom/distance.h>
 #include <kaboum/geom/rounding.h>
+#include <kaboum/geom/triangle_search.h>
 
 #include <algorithm>
 #include <cmath>

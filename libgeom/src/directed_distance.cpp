@@ -2,7 +2,7 @@
 // parts. docs/algorithms/distances.md.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/directed_distance.h>
 
 #include <algorithm>
 #include <cmath>
