@@ -209,6 +209,28 @@ bool is_unit(const Feature& feature) {
 
 }  // namespace
 
+const char* name_of(Relation relation) {
+  switch (relation) {
+    case Relation::Coincident:
+      return "coincident";
+    case Relation::Parallel:
+      return "parallel";
+    case Relation::Perpendicular:
+      return "perpendicular";
+    case Relation::Distance:
+      return "distance";
+    default:
+      return "angle";
+  }
+}
+
+Measures measures_of(const Constraint& c) {
+  if (c.relation == Relation::Distance) return {true, false};
+  if (c.relation != Relation::Coincident) return {false, true};
+  const bool points = c.first.feature.index() == 0 || c.second.feature.index() == 0;
+  return {true, !points};
+}
+
 Cost cost(const Constraint& c, const Transform& first, const Transform& second, double length) {
   const std::size_t i = c.first.feature.index(), k = c.second.feature.index();
   if (i > k) {
@@ -249,9 +271,8 @@ void require_valid(const Constraint& c) {
   const std::size_t i = c.first.feature.index(), k = c.second.feature.index();
   const std::size_t pair = kinds(std::min(i, k), std::max(i, k));
   if (!supported(c.relation, pair)) {
-    const char* const names[] = {"coincident", "parallel", "perpendicular", "distance", "angle"};
-    fail(std::string(names[static_cast<int>(c.relation)]) + " of a " + name_of(c.first.feature) +
-         " and a " + name_of(c.second.feature) + " is not defined");
+    fail(std::string(name_of(c.relation)) + " of a " + name_of(c.first.feature) + " and a " +
+         name_of(c.second.feature) + " is not defined");
   }
   if (c.first.frame == c.second.frame) fail("both features are fixed to the same frame");
   if (c.relation == Relation::Distance && !(c.value >= 0 && std::isfinite(c.value)))

@@ -23,7 +23,7 @@ class PathSearch {
  public:
   PathSearch(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
              const Values& start, std::span<const Values> goals, const PathOptions& options)
-      : space_(checker, state, robot, options),
+      : space_(checker, state, robot, start, options),
         start_(start),
         goals_(goals),
         options_(options),
@@ -53,19 +53,27 @@ class PathSearch {
       return false;
     }
     answer_.contact = space_.find_contact(start_);
-    if (answer_.contact) end(Outcome::StartInContact);
-    return !answer_.contact;
+    if (answer_.contact) {
+      end(Outcome::StartInContact);
+      return false;
+    }
+    answer_.broken = space_.find_broken({start_});
+    if (answer_.broken) end(Outcome::StartBreaksConstraint);
+    return !answer_.broken;
   }
 
   /// Keeps the goals that can be reached, the nearest first.
   bool look_at_goals() {
     std::optional<std::uint32_t> variable;
     std::optional<world::Contact> contact;
+    std::optional<ConstraintAnswer> broken;
     for (std::size_t g = 0; g < goals_.size(); ++g) {
       if (const auto outside = find_out_of_limits(space_.kinematics(), goals_[g])) {
         if (!variable) variable = outside;
       } else if (auto met = space_.find_contact(goals_[g])) {
         if (!contact) contact = std::move(met);
+      } else if (auto not_kept = space_.find_broken({goals_[g]})) {
+        if (!broken) broken = std::move(not_kept);
       } else {
         order_.push_back(g);
       }
@@ -74,7 +82,10 @@ class PathSearch {
       return space_.distance(start_, goals_[a]) < space_.distance(start_, goals_[b]);
     });
     if (!order_.empty()) return true;
-    if (contact) {
+    if (broken) {
+      answer_.broken = std::move(broken);
+      end(Outcome::GoalBreaksConstraint);
+    } else if (contact) {
       answer_.contact = std::move(contact);
       end(Outcome::GoalInContact);
     } else {
@@ -86,7 +97,8 @@ class PathSearch {
 
   /// The only way to an answer with a path: what is returned has been decided as it is.
   bool accept(const robot::Path& path, std::size_t goal) {
-    if (space_.check(path).outcome != Certain::Free) return false;
+    if (space_.check(path).outcome != Certain::Free || space_.find_broken(path)) return false;
+    answer_.deviations = space_.deviations();
     answer_.path = path;
     answer_.goal = goal;
     end(Outcome::Found);
@@ -94,11 +106,16 @@ class PathSearch {
   }
 
   bool go_straight() {
-    for (const std::size_t g : order_)
-      if (space_.looks_free(start_, goals_[g]) && accept({start_, goals_[g]}, g)) {
-        answer_.straight = true;
-        return true;
-      }
+    for (const std::size_t g : order_) {
+      const auto way = space_.way(start_, goals_[g]);
+      if (!way) continue;
+      robot::Path path{start_};
+      path.insert(path.end(), way->begin(), way->end());
+      if (path.size() > 2) path = without_detours(path, space_);
+      if (!accept(path, g)) continue;
+      answer_.straight = path.size() == 2;
+      return true;
+    }
     return false;
   }
 
@@ -111,7 +128,8 @@ class PathSearch {
       if (const auto outcome = space_.ended()) return end(*outcome);
       const std::size_t node = extend(trees[near], space_.sample(random_), nullptr);
       if (node != Tree::kNone) {
-        const std::size_t other = connect(trees[1 - near], trees[near][node].q);
+        const Values q = trees[near][node].q;
+        const std::size_t other = connect(trees[1 - near], q);
         if (other != Tree::kNone &&
             (near == 0 ? join(trees, node, other) : join(trees, other, node)))
           return;
@@ -128,18 +146,41 @@ class PathSearch {
   std::size_t step(Tree& tree, std::size_t from, const Values& q, bool* reached) {
     const double distance = space_.distance(tree[from].q, q);
     const bool whole = distance <= space_.range();
-    const Values to = whole ? q : between(tree[from].q, q, space_.range() / distance);
+    Values to = whole ? q : between(tree[from].q, q, space_.range() / distance);
     if (reached != nullptr) *reached = whole;
-    if (!space_.looks_free(tree[from].q, to)) return Tree::kNone;
-    ++space_.spent().nodes;
-    return tree.add(to, from);
+    // A node of the other tree is on the constraints, a sample is not.
+    const bool is_node = whole && reached != nullptr;
+    if (space_.has_constraints() && !is_node &&
+        (!space_.project(to) || !is_progress(tree[from].q, to, q)))
+      return Tree::kNone;
+    const auto way = space_.way(tree[from].q, to);
+    if (!way) return Tree::kNone;
+    for (const Values& waypoint : *way) {
+      ++space_.spent().nodes;
+      from = tree.add(waypoint, from);
+    }
+    return from;
+  }
+
+  /// Whether a step, projected onto the constraints, still leads on.
+  bool is_progress(const Values& from, const Values& to, const Values& towards) const {
+    constexpr double kLeastStep = 0.05, kLongestStep = 2;  // in parts of a whole one
+    const double length = space_.distance(from, to);
+    return length >= kLeastStep * std::min(space_.range(), space_.distance(from, towards)) &&
+           length <= kLongestStep * space_.range();
   }
 
   /// Steps towards q until it is reached. @return the node at q; kNone: something is in the way.
   std::size_t connect(Tree& tree, const Values& q) {
     bool reached = false;
     std::size_t node = extend(tree, q, &reached);
-    while (node != Tree::kNone && !reached && !space_.ended()) node = step(tree, node, q, &reached);
+    while (node != Tree::kNone && !reached && !space_.ended()) {
+      const double before = space_.distance(tree[node].q, q);
+      node = step(tree, node, q, &reached);
+      // On constraints, steps may lead round in circles.
+      if (node != Tree::kNone && !reached && space_.distance(tree[node].q, q) >= before)
+        return Tree::kNone;
+    }
     return reached ? node : Tree::kNone;
   }
 
@@ -182,9 +223,16 @@ class PathSearch {
 }  // namespace
 
 const char* name_of(Outcome outcome) {
-  static constexpr std::array<const char*, 8> kNames{
-      "found",           "start outside limits", "goal outside limits", "start in contact",
-      "goal in contact", "work ended",           "nodes ended",         "time ended"};
+  static constexpr std::array<const char*, 10> kNames{"found",
+                                                      "start outside limits",
+                                                      "goal outside limits",
+                                                      "start in contact",
+                                                      "goal in contact",
+                                                      "start breaks a constraint",
+                                                      "goal breaks a constraint",
+                                                      "work ended",
+                                                      "nodes ended",
+                                                      "time ended"};
   return kNames.at(static_cast<std::size_t>(outcome));
 }
 
@@ -196,6 +244,8 @@ PathAnswer find_path(const world::Checker& checker, const world::WorldState& sta
     throw Error(ErrorCode::InvalidArgument, "limits of a search must be above 0");
   require_fits(checker, state, robot, start);
   for (const Values& goal : goals) require_fits(checker, state, robot, goal);
+  for (const PathConstraint& constraint : options.constraints)
+    require_keepable(constraint, checker.world().robots[robot].kinematics);
   return PathSearch(checker, state, robot, start, goals, options).run();
 }
 

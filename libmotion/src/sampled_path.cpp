@@ -34,7 +34,14 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
   options.progress = progress;
   const world::MotionAnswer motion =
       check_motion(moving.checker, moving.state, moving.robot, path, options);
-  if (motion.outcome == world::MotionAnswer::Outcome::Free) return;
+  if (motion.outcome == world::MotionAnswer::Outcome::Free) {
+    const ConstraintAnswer kept =
+        check_constraints(moving.checker.world().robots[moving.robot], path, moving.constraints);
+    if (kept.outcome == ConstraintAnswer::Outcome::Kept) return;
+    throw Error(ErrorCode::LimitReached,
+                what + ", rounded, do not keep a constraint for certain: " +
+                    describe(kept, moving.constraints) + "; allow a little more");
+  }
   const world::World& world = moving.checker.world();
   const std::string pair = motion.contact ? ": " + world.name_of(motion.contact->items[0]) +
                                                 " and " + world.name_of(motion.contact->items[1])

@@ -16,7 +16,16 @@ namespace {
 using Outcome = PathAnswer::Outcome;
 
 // Steps in about seconds of one core; only their ratio matters to what is found.
-constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9;
+constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9,
+                 kInstant = 0.3e-6, kProjection = 20e-6;
+
+/// A configuration is on the constraints where no deviation is more than this part of what is
+/// allowed: the rest is for the lines between such configurations.
+constexpr double kOnConstraint = 0.1;
+/// A way is halved so often, until its stretches keep the constraints.
+constexpr int kMostHalvings = 10;
+/// A point between, projected, is not farther from either end than this part of their distance.
+constexpr double kLongestHalf = 0.8;
 
 constexpr std::size_t kMostBlockers = 5;
 constexpr std::size_t kToldEvery = 64;  // configurations
@@ -47,12 +56,15 @@ Values between(const Values& a, const Values& b, double share) {
 }
 
 SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
-                         const PathOptions& options)
+                         const Values& start, const PathOptions& options)
     : checker_(checker),
       state_(std::move(state)),
       robot_(robot),
       options_(options),
-      scratch_(options.check.scratch != nullptr ? *options.check.scratch : own_.emplace()) {
+      scratch_(options.check.scratch != nullptr ? *options.check.scratch : own_.emplace()),
+      bands_(bands_of(options.constraints, checker.world().robots[robot], start)),
+      projection_(checker.world().robots[robot], options.constraints, bands_) {
+  kept_.parts.resize(options.constraints.size());
   check_.where = false;
   check_.scratch = &scratch_;
   const world::RobotModel& model = checker.world().robots[robot];
@@ -147,6 +159,53 @@ bool SearchSpace::looks_free(const Values& from, const Values& to) {
       if (find_contact(between(from, to, static_cast<double>(at) / static_cast<double>(most))))
         return false;
   return true;
+}
+
+bool SearchSpace::project(Values& q) {
+  spent_.work += kProjection;
+  return projection_.project(q, kOnConstraint);
+}
+
+bool SearchSpace::keeps(const Values& from, const Values& to) {
+  const std::size_t before = kept_.instants;
+  const bool kept = check_segment(checker_.world().robots[robot_], bands_, from, to, kept_);
+  spent_.work += kInstant * static_cast<double>(kept_.instants - before);
+  return kept;
+}
+
+std::optional<ConstraintAnswer> SearchSpace::find_broken(const robot::Path& path) {
+  kept_ = {};
+  kept_.parts.resize(options_.constraints.size());
+  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
+    kept_.segment = i;
+    if (!keeps(path[i], path[std::min(i + 1, path.size() - 1)])) return kept_;
+  }
+  return std::nullopt;
+}
+
+std::optional<robot::Path> SearchSpace::way(const Values& from, const Values& to) {
+  robot::Path out;
+  if (!has_constraints()) {
+    out.push_back(to);
+  } else if (!trace(from, to, kMostHalvings, out)) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (!looks_free(i == 0 ? from : out[i - 1], out[i])) return std::nullopt;
+  return out;
+}
+
+bool SearchSpace::trace(const Values& from, const Values& to, int depth, robot::Path& out) {
+  if (keeps(from, to)) {
+    out.push_back(to);
+    return true;
+  }
+  if (depth == 0) return false;
+  Values middle = between(from, to, 0.5);
+  if (!project(middle)) return false;
+  const double most = kLongestHalf * distance(from, to);
+  if (distance(from, middle) > most || distance(middle, to) > most) return false;
+  return trace(from, middle, depth - 1, out) && trace(middle, to, depth - 1, out);
 }
 
 world::MotionAnswer SearchSpace::check(const robot::Path& path) {

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <map>
 
+#include "constraint_bands.h"
+
 namespace kaboum::motion {
 
 using Values = std::vector<double>;  ///< one per variable
@@ -14,8 +16,9 @@ using Values = std::vector<double>;  ///< one per variable
 /// that has cost.
 class SearchSpace {
  public:
+  /// @param start  directions that are to stay parallel have the sense that they have there
   SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
-              const PathOptions& options);
+              const Values& start, const PathOptions& options);
 
   /// Samples are drawn within the limits, of joints that turn mostly within half a turn of these.
   void draw_around(const Values& start, std::span<const Values> goals);
@@ -31,6 +34,17 @@ class SearchSpace {
   /// Whether the end and configurations on the way, not far from each other, are free: cheap, and
   /// certifies nothing.
   bool looks_free(const Values& from, const Values& to);
+  /// The waypoints after `from` of a way to `to` that looks free and keeps the constraints: `to`
+  /// alone where nothing is to be kept or the straight line does; else points between are projected
+  /// onto the constraints until all stretches keep them.
+  std::optional<robot::Path> way(const Values& from, const Values& to);
+  /// Moves a configuration onto the constraints. @return whether it is there
+  bool project(Values& q);
+  [[nodiscard]] bool has_constraints() const { return !bands_.empty(); }
+  /// What of the constraints a path does not keep; nullopt: it keeps all.
+  std::optional<ConstraintAnswer> find_broken(const robot::Path& path);
+  /// Largest deviations of the path that find_broken looked at last.
+  [[nodiscard]] const std::vector<double>& deviations() const { return kept_.parts; }
   /// Decides a motion at every instant.
   world::MotionAnswer check(const robot::Path& path);
 
@@ -45,6 +59,8 @@ class SearchSpace {
 
  private:
   void note(const std::optional<world::Contact>& contact);
+  bool keeps(const Values& from, const Values& to);
+  bool trace(const Values& from, const Values& to, int depth, robot::Path& out);
 
   const world::Checker& checker_;
   world::WorldState state_;
@@ -57,6 +73,9 @@ class SearchSpace {
   Values weight_;  ///< how far a variable moves points, per unit of it
   Values lower_, upper_, near_lower_, near_upper_;
   double range_ = 1, spacing_ = 1;
+  std::vector<ConstraintBand> bands_;
+  ConstraintProjection projection_;
+  ConstraintAnswer kept_;  ///< of what was looked at last
   Spent spent_;
   std::map<std::array<world::Item, 2>, std::size_t> met_;
 };

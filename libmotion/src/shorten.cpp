@@ -9,21 +9,19 @@ namespace {
 
 using Certain = world::MotionAnswer::Outcome;
 
-bool can_join(SearchSpace& space, const Values& a, const Values& b) {
-  return space.looks_free(a, b) && space.check({a, b}).outcome == Certain::Free;
+/// The waypoints after `a` of a way to `b` that is certainly free and keeps the constraints.
+std::optional<robot::Path> certain_way(SearchSpace& space, const Values& a, const Values& b) {
+  auto way = space.way(a, b);
+  if (!way) return std::nullopt;
+  robot::Path path{a};
+  path.insert(path.end(), way->begin(), way->end());
+  if (space.check(path).outcome != Certain::Free) return std::nullopt;
+  return way;
 }
 
-/// Leaves waypoints out: from each, the farthest that a straight line leads to is next.
-robot::Path without_detours(const robot::Path& path, SearchSpace& space) {
-  robot::Path out{path.front()};
-  std::size_t at = 0;
-  while (at + 1 < path.size()) {
-    std::size_t next = path.size() - 1;
-    while (next > at + 1 && !can_join(space, path[at], path[next])) --next;
-    out.push_back(path[next]);
-    at = next;
-  }
-  return out;
+bool can_join(SearchSpace& space, const Values& a, const Values& b) {
+  if (space.has_constraints() && space.find_broken({a, b})) return false;
+  return space.looks_free(a, b) && space.check({a, b}).outcome == Certain::Free;
 }
 
 /// A place on a path: a segment and a share of it.
@@ -41,7 +39,31 @@ Place place_at(const std::vector<double>& lengths, double length) {
   return out;
 }
 
+double length_of(const SearchSpace& space, const Values& from, const robot::Path& way) {
+  double out = space.distance(from, way.front());
+  for (std::size_t i = 1; i < way.size(); ++i) out += space.distance(way[i - 1], way[i]);
+  return out;
+}
+
 }  // namespace
+
+robot::Path without_detours(const robot::Path& path, SearchSpace& space) {
+  robot::Path out{path.front()};
+  std::size_t at = 0;
+  while (at + 1 < path.size()) {
+    std::size_t next = path.size() - 1;
+    if (space.has_constraints()) {
+      // Long straight lines leave the constraints: the first that does ends the look.
+      next = at + 1;
+      while (next + 1 < path.size() && can_join(space, path[at], path[next + 1])) ++next;
+    } else {
+      while (next > at + 1 && !can_join(space, path[at], path[next])) --next;
+    }
+    out.push_back(path[next]);
+    at = next;
+  }
+  return out;
+}
 
 robot::Path shorten(robot::Path path, SearchSpace& space, std::size_t shortcuts, Random& random) {
   if (path.size() < 3 || shortcuts == 0) return path;
@@ -61,10 +83,11 @@ robot::Path shorten(robot::Path path, SearchSpace& space, std::size_t shortcuts,
                  last = between(path[b.segment], path[b.segment + 1], b.share);
     // Not worth a look where little is gained.
     if (space.distance(first, last) > to - from - 0.01 * whole) continue;
-    if (!can_join(space, first, last)) continue;
+    const auto way = certain_way(space, first, last);
+    if (!way || length_of(space, first, *way) > to - from - 0.01 * whole) continue;
     robot::Path shorter(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(a.segment) + 1);
     shorter.push_back(first);
-    shorter.push_back(last);
+    shorter.insert(shorter.end(), way->begin(), way->end());
     shorter.insert(shorter.end(), path.begin() + static_cast<std::ptrdiff_t>(b.segment) + 1,
                    path.end());
     path = std::move(shorter);

@@ -3,9 +3,12 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/length_unit.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/world/features.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 
 #include "scene_robot.h"
@@ -36,6 +39,7 @@ class Parser : detail::SceneRobot {
     for (const Located& c : list(root, "allowed_contacts")) add_contact(c);
     world_.attachments.resize(world_.objects.size());
     for (const Located& a : list(root, "attachments")) attach(a);
+    for (const Located& c : list(root, "constraints")) add_constraints(c);
     note_unknown_sources();
   }
 
@@ -169,6 +173,77 @@ class Parser : detail::SceneRobot {
     world_.attachments[*object] = std::move(out);
   }
 
+  void add_constraints(const Located& c) {
+    known(c, {"name", "all"});
+    const Located& name = need(c, "name");
+    for (const ConstraintSet& other : world_.constraints)
+      if (other.name == string(name)) fail(name, "the name '" + name.text + "' is used twice");
+    if (name.text.find_first_of(",=") != std::string::npos)
+      fail(name, "a name of constraints with ',' or '='");
+    ConstraintSet out{name.text, {}};
+    for (const Located& one : array(need(c, "all"))) out.constraints.push_back(constraint(one));
+    if (out.constraints.empty()) fail(c, "at least one constraint is expected in 'all'");
+    world_.constraints.push_back(std::move(out));
+  }
+
+  ToleratedConstraint constraint(const Located& c) const {
+    known(c, {"relation", "first", "second", "value", "within", "within_angle"});
+    ToleratedConstraint out;
+    out.relation = relation(need(c, "relation"));
+    out.first = feature_named(need(c, "first"));
+    out.second = feature_named(need(c, "second"));
+    using kinematics::Relation;
+    const bool measured = out.relation == Relation::Distance || out.relation == Relation::Angle;
+    const Located* value = find(c, "value");
+    if (measured) {
+      out.value = number(need(c, "value"));
+    } else if (value != nullptr) {
+      fail(*value, std::string("'") + name_of(out.relation) + "' has no value");
+    }
+    const kinematics::Constraint plain = kinematics_constraint(out);
+    try {
+      require_valid(plain);
+    } catch (const Error& error) {
+      fail(c, error.what());
+    }
+    const kinematics::Measures measures = measures_of(plain);
+    read_tolerance(c, "within", measures.length, "lengths", out.within);
+    read_tolerance(c, "within_angle", measures.angle, "directions", out.within_angle);
+    return out;
+  }
+
+  void read_tolerance(const Located& c, const char* name, bool meant, const char* what,
+                      double& tolerance) const {
+    const Located* given = find(c, name);
+    if (given == nullptr) return;
+    if (!meant) fail(*given, std::string("this constraint is not about ") + what);
+    tolerance = number(*given);
+    if (!(tolerance > 0)) fail(*given, "a tolerance above 0 is expected");
+  }
+
+  kinematics::Relation relation(const Located& value) const {
+    using kinematics::Relation;
+    std::vector<std::string> names;
+    for (const Relation r : {Relation::Coincident, Relation::Parallel, Relation::Perpendicular,
+                             Relation::Distance, Relation::Angle}) {
+      if (string(value) == name_of(r)) return r;
+      names.emplace_back(name_of(r));
+    }
+    const std::string similar = did_you_mean(value.text, names);
+    fail(value,
+         "there is no relation '" + value.text + "'" +
+             (similar.empty() ? ": one of coincident, parallel, perpendicular, distance, angle"
+                              : similar));
+  }
+
+  FixedFeature feature_named(const Located& value) const {
+    try {
+      return find_feature(world_, string(value));
+    } catch (const Error& error) {
+      fail(value, error.what());
+    }
+  }
+
   World world_;
   std::set<std::string> names_;
 };
@@ -181,7 +256,7 @@ World parse_scene(std::string_view text, const std::string& name, const FileRead
   const Located root = detail::is_yaml(name) ? detail::parse_located_yaml(text, name)
                                              : detail::parse_located(text, name);
   values.known(root, {"kaboum_scene", "unit", "robots", "objects", "regions", "allowed_contacts",
-                      "attachments"});
+                      "attachments", "constraints"});
   const Located& version = values.need(root, "kaboum_scene");
   if (values.number(version) != 1) values.fail(version, "this version reads scenes of version 1");
   Parser parser(root, values, read);

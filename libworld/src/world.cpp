@@ -1,5 +1,7 @@
 // Names and places of what is in a world.
 
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
 #include <kaboum/world/world.h>
 
 namespace kaboum::world {
@@ -33,6 +35,16 @@ std::optional<std::size_t> World::find_object(const std::string& name) const {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i].name == name) return i;
   return std::nullopt;
+}
+
+const ConstraintSet& World::constraint_set(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const ConstraintSet& set : constraints) {
+    if (set.name == name) return set;
+    names.push_back(set.name);
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              "the scene has no constraints '" + name + "'" + did_you_mean(name, names));
 }
 
 const BoundingSet& World::outer(const Item& item) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/motion/path_constraint.h>
 #include <kaboum/world/motion_check.h>
 
 #include <string>
@@ -15,5 +16,7 @@ Json to_json(const world::World& world, const world::Contact& contact);
 
 std::string describe(const world::World& world, const world::MotionAnswer& answer);
 Json to_json(const world::World& world, const world::MotionAnswer& answer);
+
+Json to_json(const robot::Robot& robot, const motion::PathConstraint& constraint);
 
 }  // namespace kaboum::tools

@@ -7,13 +7,13 @@
 #include <kaboum/robot/path_file.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/scene.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <sstream>
 
 #include "common/check_report.h"
-#include "common/scene_file.h"
 #include "inside.h"
 #include "options.h"
 
@@ -61,7 +61,40 @@ std::vector<double> configuration_at(const robot::Path& path, std::size_t segmen
   return out;
 }
 
-int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std::size_t robot,
+/// Whether the motion keeps what is asked for: an exit code.
+int check_kept(const tools::CheckOptions& o, const world::World& world, std::size_t robot,
+               const robot::Path& path, tools::Json& report) {
+  if (o.keep.keep.empty()) return tools::kDone;
+  const std::vector<motion::PathConstraint> constraints =
+      constraints_of(world, initial_state(world), robot, path.front(), {&path.back(), 1}, o.keep);
+  const motion::ConstraintAnswer answer = check_constraints(world.robots[robot], path, constraints);
+  using Outcome = motion::ConstraintAnswer::Outcome;
+  tools::Json& kept =
+      report["kept"] = {{"answer", answer.outcome == Outcome::Kept     ? "kept"
+                                   : answer.outcome == Outcome::Broken ? "broken"
+                                                                       : "undecided"},
+                        {"instants", answer.instants},
+                        {"constraints", tools::Json::array()}};
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    kept["constraints"].push_back(tools::to_json(world.robots[robot].kinematics, constraints[i]));
+    if (answer.outcome == Outcome::Kept) kept["constraints"].back()["used"] = answer.parts[i];
+  }
+  if (answer.outcome == Outcome::Kept) {
+    say(o, "kept at every instant: " + words_of(constraints, answer.parts));
+    return tools::kDone;
+  }
+  kept["segment"] = answer.segment;
+  kept["share"] = answer.share;
+  kept["deviation"] = answer.deviation;
+  std::ostringstream line;
+  line << (answer.outcome == Outcome::Broken ? "not kept: " : "undecided: ")
+       << describe(answer, constraints) << ", " << 100 * answer.share
+       << " % of the way from waypoint " << answer.segment + 1 << " to " << answer.segment + 2;
+  say(o, line.str());
+  return answer.outcome == Outcome::Broken ? tools::kNo : tools::kLimit;
+}
+
+int check_path(const tools::CheckOptions& o, const world::SceneFile& scene, std::size_t robot,
                const robot::Path& path, tools::Json& report) {
   const world::Checker checker(scene.world);
   const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
@@ -91,18 +124,20 @@ int check_path(const tools::CheckOptions& o, const tools::SceneFile& scene, std:
   const collide::Inclusion inside = tools::decide_inside(
       checker, initial_state(scene.world), robot, path, o.motion, wanted,
       [&](const std::string& line) { say(o, line); }, report);
+  const int kept = check_kept(o, scene.world, robot, path, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
                      : answer.outcome == Outcome::Undecided                      ? "undecided"
                      : answer.contact && answer.contact->certain && answer.meets ? "colliding"
                                                                                  : "within epsilon";
   using collide::Inclusion;
-  if (answer.outcome == Outcome::Contact || inside == Inclusion::NotIncluded) return tools::kNo;
+  if (answer.outcome == Outcome::Contact || inside == Inclusion::NotIncluded || kept == tools::kNo)
+    return tools::kNo;
   return answer.outcome == Outcome::Undecided || inside == Inclusion::Undecided ? tools::kLimit
-                                                                                : tools::kDone;
+                                                                                : kept;
 }
 
-int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
+int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
                  std::optional<std::size_t> robot, const robot::Path& values, tools::Json& report) {
   const world::Checker checker(scene.world);
   world::Scratch scratch;
@@ -161,7 +196,7 @@ int check_states(const tools::CheckOptions& o, const tools::SceneFile& scene,
 int check(const tools::CheckOptions& o) {
   if (!o.path.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
-  tools::SceneFile scene = tools::read_scene(o.scene);
+  world::SceneFile scene = world::read_scene(o.scene);
   scene.world.margins = world::margins_of(scene.world, o.margin);
   std::vector<std::string> inputs = scene.inputs;
   inputs.insert(inputs.end(), {o.path, o.configurations});
@@ -170,7 +205,7 @@ int check(const tools::CheckOptions& o) {
   tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   std::optional<std::size_t> robot;
   const bool moves = !o.path.empty() || !o.configuration.empty() || !o.configurations.empty();
-  if (moves || !o.robot.empty()) robot = tools::robot_named(scene.world, o.robot);
+  if (moves || !o.robot.empty()) robot = world::robot_named(scene.world, o.robot);
   robot::Path values;
   if (robot) {
     const world::RobotModel& model = scene.world.robots[*robot];
@@ -208,6 +243,7 @@ void require_meaning(const tools::CheckOptions& o) {
   for (const auto& option : robot::path_options())
     require(option, given, "--path, --configuration or --configurations");
   for (const auto& option : world::motion_options()) require(option, moves, "--path");
+  for (const auto& option : motion::keep_options()) require(option, moves, "--path");
 }
 
 }  // namespace

@@ -44,14 +44,16 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->check(png_name())
       ->type_name("FILE");
   add_request_options(app, world::motion_options(), o.motion, o.stated);
+  add_request_options(app, motion::keep_options(), o.keep, o.stated);
   add_common_options(app, o.common);
   app.footer(
       "Free is certain. Contacts are colliding where inner sets meet, which is certain, else "
       "within epsilon: the solids are at most that far apart "
       "(docs/algorithms/bounded-predicates.md). Waypoints and configurations are counted from 1.\n"
-      "Exit codes: 0 free, and inside; 1 not free, or not certainly inside; 2 usage; 3 bad input; "
-      "4 output failed; 6 internal error; "
-      "7 undecided (--max-intervals; whether something is inside).");
+      "Exit codes: 0 free, inside, and kept; 1 not free, not certainly inside, or not kept; 2 "
+      "usage; "
+      "3 bad input; 4 output failed; 6 internal error; "
+      "7 undecided (--max-intervals; whether something is inside, or kept).");
 }
 
 }  // namespace kaboum::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/motion/keep_options.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/motion_check.h>
@@ -23,6 +24,7 @@ struct CheckOptions {
   robot::PathOptions reading;
   world::Checker::Options state;
   world::MotionOptions motion;
+  motion::KeepRequest keep;
   world::MarginRequest margin;
   std::set<std::string> stated;  ///< names of the options of these that were stated
   bool distance = false;

@@ -3,13 +3,13 @@
 #include <kaboum/kinematics/inverse.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/world/scene.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
 
 #include "answer.h"
-#include "common/scene_file.h"
 #include "options.h"
 
 namespace {
@@ -54,12 +54,12 @@ Chain read_chain(const Options& o) {
     robot::RobotFile read = robot::read_robot(o.robot);
     out = {o.robot, read.sha256, std::move(read.robot), o.tip, {}};
   } else {
-    tools::SceneFile scene = tools::read_scene(o.scene);
+    world::SceneFile scene = world::read_scene(o.scene);
     const world::RobotModel& model =
-        scene.world.robots[tools::robot_named(scene.world, o.robot_name)];
+        scene.world.robots[world::robot_named(scene.world, o.robot_name)];
     out = {o.scene, scene.sha256, model.kinematics, o.tip, {}};
     if (!o.tool.empty()) {
-      const world::ToolFrame& tool = tools::tool_named(model, o.tool);
+      const world::ToolFrame& tool = world::tool_named(model, o.tool);
       out.tip = model.kinematics.links[tool.link].name;
       out.tool = tool.pose;
     }

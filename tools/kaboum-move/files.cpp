@@ -22,16 +22,17 @@ WrittenPath write_path(const MoveRequest& r, const robot::Path& path, const Move
   if (out.path == path) return out;
   ensure(o.degrees, "a path is written as another one");
   const world::WorldState state = initial_state(r.scene.world);
-  motion::require_free({checker, state, r.robot}, out.path, o.search.check.resolution,
-                       "--degrees: the waypoints, rounded,");
+  motion::require_free({checker, state, r.robot, r.constraints}, out.path,
+                       o.search.check.resolution, "--degrees: the waypoints, rounded,");
   return out;
 }
 
 Execution execute(const MoveRequest& r, const robot::Path& path, const MoveOptions& o,
                   const world::Checker& checker) {
   const world::WorldState state = initial_state(r.scene.world);
-  motion::SampledPath made = motion::sample_path({checker, state, r.robot}, path, o.execution,
-                                                 o.search.check.resolution, unit_of(o));
+  motion::SampledPath made =
+      motion::sample_path({checker, state, r.robot, r.constraints}, path, o.execution,
+                          o.search.check.resolution, unit_of(o));
   return {std::move(made.csv),
           {{"file", o.trajectory},
            {"rate", o.execution.rate},

@@ -24,10 +24,20 @@ int move(const MoveOptions& o) {
       {{"--output", o.output}, {"--trajectory", o.trajectory}, {"--report", o.common.report}},
       inputs);
   for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
+  if (r.goals.empty()) {
+    for (const std::string& why : r.unreached) std::cerr << "kaboum-move: " << why << '\n';
+    tools::write_report(o.common, "kaboum-move",
+                        {{"scene", {{"file", o.scene}, {"sha256", r.scene.sha256}}},
+                         {"robot", r.model().name},
+                         {"outcome", "goal out of reach"},
+                         {"unreached", r.unreached}});
+    return r.out_of_reach ? tools::kNo : tools::kLimit;
+  }
   const world::Checker checker(r.scene.world);
   const PathAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     motion::PathOptions options = o.search;
+    options.constraints = r.constraints;
     options.check.progress = [&](const std::string& stage) { progress.show(stage); };
     return find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, options);
   }();
@@ -36,7 +46,7 @@ int move(const MoveOptions& o) {
   if (answer.outcome != Outcome::Found) {
     std::cerr << "kaboum-move: " << tools::reason(r, answer) << '\n';
     tools::write_report(o.common, "kaboum-move", report);
-    return answer.contact ? tools::kNo : tools::kLimit;
+    return answer.contact || answer.broken ? tools::kNo : tools::kLimit;
   }
   const tools::WrittenPath written = tools::write_path(r, answer.path, o, checker);
   report["waypoints"] = written.path;
@@ -51,11 +61,13 @@ int move(const MoveOptions& o) {
       {{o.trajectory, [&] { io::write_file(o.trajectory, execution->csv); }},
        {o.common.report, [&] { tools::write_report(o.common, "kaboum-move", report); }},
        {o.output, [&] { io::write_file(o.output, written.csv); }}});
-  tools::log(o.common.quiet,
-             std::to_string(answer.path.size()) + " waypoints" +
-                 (answer.straight ? ", straight" : "") + ", free at every instant" +
-                 (o.margin.margins.empty() ? "" : ", with margins kept: " + words_of(o.margin)) +
-                 (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : ""));
+  tools::log(
+      o.common.quiet,
+      std::to_string(answer.path.size()) + " waypoints" + (answer.straight ? ", straight" : "") +
+          ", free at every instant" +
+          (o.margin.margins.empty() ? "" : ", with margins kept: " + words_of(o.margin)) +
+          (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : "") +
+          (r.constraints.empty() ? "" : "; kept: " + words_of(r.constraints, answer.deviations)));
   return tools::kDone;
 }
 

@@ -40,12 +40,20 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->type_name("Q1,Q2,…");
   app.add_option("--goals", o.goals, "Go to one of the lines of a file of joint values")
       ->type_name("FILE");
+  app.add_option("--to-pose", o.to_pose,
+                 "Pose of the tool in the world to go to: X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or "
+                 "X,Y,Z,QX,QY,QZ,QW or X,Y,Z and a matrix, row by row; may be repeated. One of all "
+                 "configurations that reach it within the limits is gone to")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("POSE");
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
       ->capture_default_str()
       ->type_name("FILE");
   app.add_flag("--degrees", o.degrees,
                "Angles are in degrees, those read and those in -o and --trajectory [radians]");
   add_request_options(app, motion::path_options(), o.search, o.stated);
+  add_request_options(app, motion::keep_options(), o.keep, o.stated);
   add_request_options(app, world::margin_options(), o.margin, o.stated);
   describe_execution(app, o);
   add_common_options(app, o.common);
@@ -54,8 +62,11 @@ void describe(CLI::App& app, MoveOptions& o) {
       "(--degrees: degrees) and metres. A path that is written is certified; that none was found "
       "says nothing "
       "(docs/algorithms/motion-planning.md).\n"
-      "Exit codes: 0 done; 1 the start, or every goal, is not free; 2 usage; 3 bad input; 4 output "
-      "failed; 6 internal error; 7 no path found (--max-work, --max-nodes, --timeout).");
+      "Exit codes: 0 done; 1 the start, or every goal, is not free, breaks a constraint or is out "
+      "of "
+      "reach; 2 usage; 3 bad input; 4 output failed; 6 internal error; 7 no path found "
+      "(--max-work, "
+      "--max-nodes, --timeout).");
 }
 
 }  // namespace kaboum::tools

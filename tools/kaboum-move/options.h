@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/motion/find_path.h>
+#include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/trajectory_options.h>
 #include <kaboum/world/margins.h>
 
@@ -17,9 +18,10 @@ namespace kaboum::tools {
 /// The command line of kaboum-move.
 struct MoveOptions {
   std::string scene, robot, from, start, goals, output = "-", trajectory;
-  std::vector<std::string> to;
+  std::vector<std::string> to, to_pose;
   motion::PathOptions search;
   motion::TrajectoryOptions execution;
+  motion::KeepRequest keep;
   world::MarginRequest margin;
   std::set<std::string> stated;  ///< names of the libraries' options that were stated
   bool degrees = false;

@@ -3,6 +3,8 @@
 #include "request.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/motion/pose_goals.h>
+#include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path_file.h>
 
@@ -32,8 +34,9 @@ std::vector<double> configuration(const std::string& text, const char* option, c
 }
 
 /// The goals of a file. Those beyond the joints' limits are left out with a note: others may do.
-void add_goals(MoveRequest& r, robot::Path goals, const std::string& file) {
-  const std::size_t given = r.goals.size();
+void add_goals(MoveRequest& r, robot::Path goals, const MoveOptions& o) {
+  const std::string& file = o.goals;
+  const std::size_t given = o.to.size() + o.to_pose.size();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     if (const auto bad = find_out_of_limits(r.kinematics(), goals[i])) {
       r.notes.push_back(file + ": goal " + std::to_string(i + 1) + " is left out: joint '" +
@@ -45,6 +48,28 @@ void add_goals(MoveRequest& r, robot::Path goals, const std::string& file) {
   }
   if (r.goals.empty())
     throw Error(ErrorCode::InvalidInput, file + ": all goals are outside the joints' limits");
+}
+
+/// The configurations with which the tool has the poses that are asked for.
+void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
+  const world::ToolFrame tool = motion::moving_frame(r.model(), o.keep.tool);
+  std::size_t number = o.to.size();
+  for (const std::string& text : o.to_pose) {
+    ++number;
+    const geom::Transform pose = robot::parse_pose(text, "--to-pose");
+    const motion::PoseGoals goals =
+        motion::pose_goals(r.model(), tool, pose, r.start, o.search.seed);
+    for (const std::vector<double>& q : goals.configurations) {
+      r.goals.push_back(q);
+      r.numbers.push_back(number);
+    }
+    if (!goals.configurations.empty()) continue;
+    const std::string why = "--to-pose " + text + ": no configuration within the limits puts '" +
+                            tool.name + "' there" +
+                            (goals.complete ? "" : ", as far as was found: " + goals.why);
+    r.unreached.push_back(why);
+    r.out_of_reach = r.out_of_reach && goals.complete;
+  }
 }
 
 Json blockers_json(const world::World& world, const PathAnswer& answer) {
@@ -59,10 +84,10 @@ Json blockers_json(const world::World& world, const PathAnswer& answer) {
 
 MoveRequest read_request(const MoveOptions& o) {
   MoveRequest r;
-  r.scene = read_scene(o.scene);
+  r.scene = world::read_scene(o.scene);
   r.scene.world.margins = world::margins_of(r.scene.world, o.margin);
   r.notes = r.scene.notes;
-  r.robot = robot_named(r.scene.world, o.robot);
+  r.robot = world::robot_named(r.scene.world, o.robot);
   const robot::Robot& robot = r.kinematics();
   const auto read = [&](const std::string& file, bool limits) {
     return robot::read_path(file, robot, {limits, o.degrees, {}}, r.notes);
@@ -74,8 +99,19 @@ MoveRequest read_request(const MoveOptions& o) {
     r.goals.push_back(configuration(text, "--to", o, robot));
     r.numbers.push_back(r.goals.size());
   }
-  if (!o.goals.empty()) add_goals(r, read(o.goals, false), o.goals);
-  if (r.goals.empty()) usage("where to? Give --to Q1,Q2,… or --goals FILE");
+  add_pose_goals(r, o);
+  if (!o.goals.empty()) add_goals(r, read(o.goals, false), o);
+  if (r.goals.empty()) {
+    if (r.unreached.empty()) usage("where to? Give --to Q1,Q2,…, --to-pose POSE or --goals FILE");
+    return r;
+  }
+  r.notes.insert(r.notes.end(), r.unreached.begin(), r.unreached.end());
+  try {
+    r.constraints = motion::constraints_of(r.scene.world, initial_state(r.scene.world), r.robot,
+                                           r.start, r.goals, o.keep);
+  } catch (const Error& error) {
+    usage(remedy_of_program(error.what()));
+  }
   return r;
 }
 
@@ -100,6 +136,14 @@ Json answer_json(const MoveRequest& r, const PathAnswer& answer, const MoveOptio
     out["straight"] = answer.straight;
     out["waypoints"] = answer.path;
   }
+  if (!r.constraints.empty()) {
+    out["kept"] = Json::array();
+    for (std::size_t i = 0; i < r.constraints.size(); ++i) {
+      out["kept"].push_back(to_json(r.kinematics(), r.constraints[i]));
+      if (i < answer.deviations.size()) out["kept"].back()["used"] = answer.deviations[i];
+    }
+  }
+  if (answer.broken) out["broken"] = describe(*answer.broken, r.constraints);
   if (!o.margin.margins.empty()) out["margins"] = words_of(o.margin);
   if (answer.contact) out["contact"] = to_json(r.scene.world, *answer.contact);
   return out;
@@ -112,6 +156,11 @@ std::string reason(const MoveRequest& r, const PathAnswer& answer) {
   if (answer.outcome == Outcome::GoalInContact)
     return std::string(r.goals.size() > 1 ? "no goal is free: " : "the goal is not free: ") +
            describe(world, *answer.contact);
+  if (answer.broken)
+    return std::string(answer.outcome == Outcome::StartBreaksConstraint ? "the start"
+                       : r.goals.size() > 1                             ? "every goal that is free"
+                                                                        : "the goal") +
+           " breaks a constraint: " + describe(*answer.broken, r.constraints);
   std::string out = "no path found, which does not say that there is none: the search ended by ";
   out += answer.outcome == Outcome::WorkEnded    ? "--max-work"
          : answer.outcome == Outcome::NodesEnded ? "--max-nodes"

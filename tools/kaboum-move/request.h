@@ -1,24 +1,27 @@
 #pragma once
 
 #include <kaboum/motion/find_path.h>
+#include <kaboum/world/scene.h>
 
 #include <string>
 #include <vector>
 
 #include "common/report.h"
-#include "common/scene_file.h"
 #include "options.h"
 
 /// What kaboum-move is asked for, and what it says of the answer.
 namespace kaboum::tools {
 
 struct MoveRequest {
-  SceneFile scene;
+  world::SceneFile scene;
   std::size_t robot = 0;
   std::vector<double> start;
   robot::Path goals;
   std::vector<std::size_t> numbers;  ///< of the goals, as they were given, from 1
+  std::vector<motion::PathConstraint> constraints;
   std::vector<std::string> notes;
+  std::vector<std::string> unreached;  ///< poses that no configuration reaches, and why
+  bool out_of_reach = true;            ///< all of these are, for certain
 
   [[nodiscard]] const world::RobotModel& model() const { return scene.world.robots[robot]; }
   [[nodiscard]] const robot::Robot& kinematics() const { return model().kinematics; }

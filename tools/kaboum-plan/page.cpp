@@ -6,7 +6,6 @@
 #include <kaboum/execution/plan_page.h>
 #include <kaboum/io/mesh_io.h>
 
-#include "common/scene_file.h"
 #include "input.h"
 
 namespace kaboum::tools {

@@ -5,21 +5,20 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/world/allowed_pairs.h>
+#include <kaboum/world/scene.h>
 
 #include <iostream>
-
-#include "common/scene_file.h"
 
 namespace kaboum::tools {
 
 int find_pairs(const SceneOptions& o) {
   require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, {o.scene});
-  const SceneFile scene = read_scene(o.scene);
+  const world::SceneFile scene = world::read_scene(o.scene);
   for (const std::string& note : scene.notes) log(o.common.quiet, note);
   const auto say = [&](const std::string& line) {
     if (!o.common.quiet) std::cout << line << '\n';
   };
-  const world::RobotModel& robot = scene.world.robots[robot_named(scene.world, o.robot)];
+  const world::RobotModel& robot = scene.world.robots[world::robot_named(scene.world, o.robot)];
   const auto name = [&](std::uint32_t link) { return robot.kinematics.links[link].name; };
   Json pairs = Json::array(), never = Json::array();
   std::vector<world::AllowedPair> proofs;

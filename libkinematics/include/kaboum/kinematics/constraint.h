@@ -46,6 +46,9 @@ enum class Relation {
           ///< towards the plane's normal, −π/2 … π/2: `value` [rad]
 };
 
+/// "coincident", "parallel", "perpendicular", "distance", "angle".
+const char* name_of(Relation relation);
+
 struct Constraint {
   Relation relation = Relation::Coincident;
   PlacedFeature first, second;
@@ -67,6 +70,12 @@ struct Cost {
 /// @pre the constraint is supported (require_valid).
 Cost cost(const Constraint& constraint, const Transform& first, const Transform& second,
           double length);
+
+/// What a constraint is about: it may be off by lengths, by angles, or by both.
+struct Measures {
+  bool length = false, angle = false;
+};
+Measures measures_of(const Constraint& constraint);
 
 /// @throws Error{InvalidArgument} when there is no such relation of such features, a direction is
 ///   not of unit length, or the value makes no sense.

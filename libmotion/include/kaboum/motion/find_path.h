@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/motion/path_constraint.h>
 #include <kaboum/world/motion_check.h>
 
 #include <limits>
@@ -19,7 +20,8 @@ struct PathOptions {
   double most_seconds = std::numeric_limits<double>::infinity();
   /// Number of shortcuts that are tried; 0: the path is as the search found it.
   std::size_t shortcuts = 60;
-  world::MotionOptions check = {};  ///< its progress is told of the whole search
+  std::vector<PathConstraint> constraints = {};  ///< that are kept at every instant
+  world::MotionOptions check = {};               ///< its progress is told of the whole search
 };
 
 /// Two things that stood in the way, and how often.
@@ -40,11 +42,13 @@ struct Spent {
 
 struct PathAnswer {
   enum class Outcome {
-    Found,               ///< `path` is free at every instant, for certain
-    StartOutsideLimits,  ///< `variable` says where
-    GoalOutsideLimits,   ///< all goals are; of the first
-    StartInContact,      ///< outer sets meet: `contact`
-    GoalInContact,       ///< all goals are, or outside the limits; of the first that is
+    Found,                  ///< `path` is free at every instant, for certain
+    StartOutsideLimits,     ///< `variable` says where
+    GoalOutsideLimits,      ///< all goals are; of the first
+    StartInContact,         ///< outer sets meet: `contact`
+    GoalInContact,          ///< all goals are, or outside the limits; of the first that is
+    StartBreaksConstraint,  ///< `broken` says which
+    GoalBreaksConstraint,   ///< all goals do that are free and within the limits; of the first
     // No path was found, which does not say that there is none.
     WorkEnded,
     NodesEnded,
@@ -56,6 +60,9 @@ struct PathAnswer {
   bool straight = false;  ///< the first try, a straight line, was free
   std::optional<world::Contact> contact;
   std::uint32_t variable = 0;
+  std::optional<ConstraintAnswer> broken;
+  /// Largest deviation from each constraint that was seen on the path, in parts of what is allowed.
+  std::vector<double> deviations;
   std::vector<Blocker> blockers;  ///< what was met most often first, at most five
   Spent spent;
 };
@@ -63,14 +70,15 @@ struct PathAnswer {
 const char* name_of(PathAnswer::Outcome outcome);
 
 /// A path of straight segments of joint values from `start` to one of `goals`: a straight line if
-/// that is free, else by RRT-Connect, made shorter. Whatever the search does, a path is returned
-/// only when world::check_motion has found the whole of it free at every instant, as it is. What
-/// the robot carries moves with it; all else stays where `state` has it. The same arguments give
-/// the same answer, to the bit, unless time ends the search.
+/// that is free, else by RRT-Connect, made shorter; where constraints are to be kept, its steps are
+/// projected onto them. Whatever the search does, a path is returned only when world::check_motion
+/// has found the whole of it free at every instant, as it is, and check_constraints that it keeps
+/// its constraints. What the robot carries moves with it; all else stays where `state` has it. The
+/// same arguments give the same answer, to the bit, unless time ends the search.
 ///
 /// @param goals  one or more, a value per variable each.
-/// @throws Error{InvalidArgument} as world::check_motion; for no goals, and limits that are not
-///   above 0.
+/// @throws Error{InvalidArgument} as world::check_motion and require_keepable; for no goals, and
+///   limits that are not above 0.
 PathAnswer find_path(const world::Checker& checker, const world::WorldState& state,
                      std::size_t robot, const std::vector<double>& start,
                      std::span<const std::vector<double>> goals, const PathOptions& options);

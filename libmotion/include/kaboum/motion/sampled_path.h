@@ -1,9 +1,11 @@
 #pragma once
 
+#include <kaboum/motion/path_constraint.h>
 #include <kaboum/motion/trajectory_options.h>
 #include <kaboum/world/motion_check.h>
 
 #include <functional>
+#include <span>
 
 namespace kaboum::motion {
 
@@ -19,6 +21,7 @@ struct MovingRobot {
   const world::Checker& checker;
   const world::WorldState& state;
   std::size_t robot = 0;
+  std::span<const PathConstraint> constraints = {};  ///< that it keeps
 
   [[nodiscard]] const robot::Robot& kinematics() const;
 };
@@ -28,7 +31,7 @@ struct MovingRobot {
 /// @throws Error{InvalidInput}
 robot::Path parse_path(const std::string& csv, const robot::Robot& robot, AngleUnit unit);
 
-/// Decides that a path is free at every instant.
+/// Decides that a path is free at every instant, and keeps the constraints.
 /// @param resolution  to which the path was decided before, above 0: this is 1000 times finer, for
 ///   what was decided is not to be refused for a rounding [rad or length]
 /// @param what  of the path, in messages: "the samples"

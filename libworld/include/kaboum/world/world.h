@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/collide/bounding_set.h>
+#include <kaboum/kinematics/constraint.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/world/primitive.h>
 
@@ -53,6 +54,30 @@ struct Feature {
 struct LinkFeature {
   std::uint32_t link = 0;
   Feature feature;
+};
+
+/// A feature and what it is fixed to.
+struct FixedFeature {
+  enum class To : std::uint8_t { World, Object, Link };
+  To to = To::World;
+  std::size_t index = 0;   ///< of the object or robot
+  std::uint32_t link = 0;  ///< of a Link
+  Feature feature;         ///< in the frame of what it is fixed to
+};
+
+/// A relation of two features that is to hold within a tolerance.
+struct ToleratedConstraint {
+  kinematics::Relation relation = kinematics::Relation::Coincident;
+  FixedFeature first, second;
+  double value = 0;            ///< of a distance [length] or an angle [rad]
+  double within = 1e-3;        ///< how far lengths may be off [length]
+  double within_angle = 0.02;  ///< how far directions may be off [rad]
+};
+
+/// Constraints that hold at once, by a name.
+struct ConstraintSet {
+  std::string name;
+  std::vector<ToleratedConstraint> constraints;
 };
 
 /// Two links of a robot whose contact is not looked for.
@@ -140,6 +165,7 @@ struct World {
   std::vector<RobotModel> robots;
   std::vector<Object> objects;
   std::vector<Region> regions;
+  std::vector<ConstraintSet> constraints = {};
   std::vector<std::array<Item, 2>> allowed;            ///< contacts that are none
   std::vector<std::optional<Attachment>> attachments;  ///< at first; one for every object
   Margins margins = {};
@@ -148,6 +174,8 @@ struct World {
   [[nodiscard]] std::string name_of(const Item& item) const;
   [[nodiscard]] std::optional<std::size_t> find_robot(const std::string& name) const;
   [[nodiscard]] std::optional<std::size_t> find_object(const std::string& name) const;
+  /// @throws Error{InvalidArgument} when there is none, with a similar name.
+  [[nodiscard]] const ConstraintSet& constraint_set(const std::string& name) const;
   [[nodiscard]] const BoundingSet& outer(const Item& item) const;
   [[nodiscard]] const std::optional<BoundingSet>& inner(const Item& item) const;
 };

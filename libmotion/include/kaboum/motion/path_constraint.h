@@ -1,0 +1,69 @@
+#pragma once
+
+#include <kaboum/kinematics/constraint.h>
+#include <kaboum/robot/path.h>
+#include <kaboum/world/world.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+/// Constraints that motions keep at every instant. docs/algorithms/motion-planning.md,
+/// "Constraints that are kept".
+namespace kaboum::motion {
+
+/// A relation of a feature that moves with a link of a robot to one that stays, to be kept within
+/// tolerances. Directions that are to be parallel keep the sense that they have at the start.
+struct PathConstraint {
+  std::string name;  ///< in messages
+  kinematics::Relation relation = kinematics::Relation::Coincident;
+  std::uint32_t link = 0;       ///< of the robot
+  kinematics::Feature moving;   ///< in the link's frame
+  kinematics::Feature resting;  ///< in the world
+  double value = 0;             ///< of a distance [length] or an angle [rad]
+  double within = 1e-3;         ///< [length]
+  double within_angle = 0.02;   ///< [rad]
+};
+
+/// The constraints of a set, for motions of one robot while all else stays.
+/// @throws Error{InvalidArgument} unless of each constraint's features one moves with the robot and
+///   the other stays, and as require_keepable.
+std::vector<PathConstraint> path_constraints(const world::World& world,
+                                             const world::WorldState& state, std::size_t robot,
+                                             const world::ConstraintSet& set);
+
+/// @throws Error{InvalidArgument} for relations that are not defined (kinematics::require_valid), a
+///   tolerance that is not above 0, a link that the robot lacks, and where a line or a plane moves
+///   and is to hold a point that stays, or a plane a line: these are not decided.
+void require_keepable(const PathConstraint& constraint, const robot::Robot& robot);
+
+/// Answer to whether constraints are kept at every instant of a path.
+struct ConstraintAnswer {
+  enum class Outcome {
+    Kept,      ///< by all, for certain
+    Broken,    ///< by `constraint` at the place, for certain
+    Undecided  ///< there: it comes so near to its tolerance that rounding matters
+  };
+  Outcome outcome = Outcome::Kept;
+  std::size_t segment = 0;  ///< from waypoint i to i + 1
+  double share = 0;         ///< of the segment
+  std::size_t constraint = 0;
+  double deviation = 0;       ///< there [length or rad]
+  bool of_direction = false;  ///< the deviation is an angle
+  std::size_t instants = 0;   ///< that were looked at
+  std::vector<double>
+      parts{};  ///< largest deviation seen of each constraint, in parts of what is allowed
+};
+
+/// Decides whether a robot keeps constraints at every instant of a path of straight segments of
+/// joint values. A stretch of a segment keeps one when its ends do with the room that the second
+/// derivative of the motion may take between them; other stretches are halved.
+/// @pre path_constraints made the constraints, or require_keepable was asked of them; each waypoint
+///   has a finite value per variable.
+ConstraintAnswer check_constraints(const world::RobotModel& robot, const robot::Path& path,
+                                   std::span<const PathConstraint> constraints);
+
+/// One line of what breaks a constraint: "'upright' is off by 0.3 rad, 0.05 rad are allowed".
+std::string describe(const ConstraintAnswer& answer, std::span<const PathConstraint> constraints);
+
+}  // namespace kaboum::motion

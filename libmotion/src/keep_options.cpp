@@ -1,0 +1,205 @@
+// Constraints of motions by the names that users give them.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
+#include <kaboum/base/parse_numbers.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/kinematics/inverse.h>
+#include <kaboum/motion/keep_options.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/world/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace kaboum::motion {
+namespace {
+
+using geom::Transform;
+using geom::Vec3;
+using kinematics::Line;
+using kinematics::Plane;
+using kinematics::Point;
+
+constexpr double kUsualAngle = 0.05, kUsualLength = 0.002;
+
+[[noreturn]] void refuse_keep(const std::string& what) {
+  throw Error(ErrorCode::InvalidArgument, "«keep»: " + what);
+}
+
+/// Makes the constraints of the usual names.
+class UsualConstraints {
+ public:
+  UsualConstraints(const world::RobotModel& robot, const world::ToolFrame& tool,
+                   const std::vector<double>& start, std::span<const std::vector<double>> goals)
+      : robot_(robot), tool_(tool), goals_(goals), at_start_(place(start)) {}
+
+  std::vector<PathConstraint> make(const std::string& name, double within) const {
+    if (name == "upright") return {direction(name, Vec3::UnitZ(), within)};
+    if (name == "orientation")
+      return {direction(name, at_start_.linear.col(0), within),
+              direction(name, at_start_.linear.col(2), within)};
+    PathConstraint out;
+    out.name = name;
+    out.link = tool_.link;
+    out.moving = Point{tool_.pose.translation};
+    out.within = within;
+    if (name == "level")
+      out.resting = Plane{at_start_.translation, Vec3::UnitZ()};
+    else
+      out.resting = line(within);
+    return {out};
+  }
+
+ private:
+  [[nodiscard]] Transform place(const std::vector<double>& q) const {
+    return robot_.base * robot::forward(robot_.kinematics, q)[tool_.link] * tool_.pose;
+  }
+
+  /// A direction of the world in which something of the tool points at the start.
+  [[nodiscard]] PathConstraint direction(const std::string& name, const Vec3& d,
+                                         double within) const {
+    PathConstraint out;
+    out.name = name;
+    out.relation = kinematics::Relation::Parallel;
+    out.link = tool_.link;
+    const Vec3 of_tool = at_start_.linear.transpose() * d;
+    out.moving = Line{tool_.pose.translation, (tool_.pose.linear * of_tool).normalized()};
+    out.resting = Line{at_start_.translation, d.normalized()};
+    out.within_angle = within;
+    return out;
+  }
+
+  [[nodiscard]] kinematics::Feature line(double within) const {
+    const Vec3 begin = at_start_.translation;
+    std::optional<Vec3> end;
+    for (const std::vector<double>& goal : goals_) {
+      const Vec3 there = place(goal).translation;
+      if (end && (there - *end).norm() > 0.5 * within)
+        refuse_keep("'line' leads to one place, but the tool is in different places at the goals");
+      if (!end) end = there;
+    }
+    const Vec3 way = end.value_or(begin) - begin;
+    if (way.norm() <= 0.5 * within) return Point{begin};
+    return Line{begin, way.normalized()};
+  }
+
+  const world::RobotModel& robot_;
+  const world::ToolFrame& tool_;
+  std::span<const std::vector<double>> goals_;
+  Transform at_start_;
+};
+
+double tolerance_of(const std::string& name, const std::string& text) {
+  const std::optional<std::vector<double>> number = parse_numbers(text);
+  if (!number || number->size() != 1 || !(number->front() > 0) || !std::isfinite(number->front()))
+    refuse_keep("'" + name + "=" + text + "': a tolerance is a number above 0");
+  return number->front();
+}
+
+std::vector<Option<KeepRequest>> keep_table() {
+  return {
+      option<KeepRequest>(
+          {.name = "keep",
+           .text =
+               "What the motion keeps at every instant, certified: upright (what of the tool "
+               "points up at the start goes on doing so), orientation (the tool does not "
+               "turn), line (the tool's origin stays on the straight line to the goal), level "
+               "(it stays at its height), each perhaps with a tolerance (upright=0.1 [0.05 rad], "
+               "line=0.001 [0.002, in the scene's unit]); or constraints of the scene by their "
+               "name",
+           .values = "NAME[=TOLERANCE],…",
+           .kind = OptionDescription::Kind::Names},
+          [](auto& r) -> auto& { return r.keep; }),
+      option<KeepRequest>(
+          {.name = "tool",
+           .text = "Tool of the robot that is meant: its origin and its axes",
+           .values = "NAME",
+           .otherwise = "the only one; of a robot without tools its last link"},
+          [](auto& r) -> auto& { return r.tool; })};
+}
+
+}  // namespace
+
+const std::vector<Option<KeepRequest>>& keep_options() {
+  static const std::vector<Option<KeepRequest>> options = keep_table();
+  return options;
+}
+
+world::ToolFrame moving_frame(const world::RobotModel& robot, const std::string& name) {
+  if (!robot.tools.empty() || !name.empty()) return world::tool_named(robot, name);
+  const std::string tip = kinematics::only_tip(robot.kinematics);
+  return {tip, *robot.kinematics.find_link(tip), {}};
+}
+
+std::vector<PathConstraint> constraints_of(const world::World& world,
+                                           const world::WorldState& state, std::size_t robot,
+                                           const std::vector<double>& start,
+                                           std::span<const std::vector<double>> goals,
+                                           const KeepRequest& request) {
+  static const std::vector<std::string> kUsual{"upright", "orientation", "line", "level"};
+  std::vector<PathConstraint> out;
+  const world::RobotModel& model = world.robots.at(robot);
+  for (const std::string& text : request.keep) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::vector<PathConstraint> more;
+    if (std::ranges::find(kUsual, name) != kUsual.end()) {
+      const bool angle = name == "upright" || name == "orientation";
+      const double within = equals != std::string::npos
+                                ? tolerance_of(name, text.substr(equals + 1))
+                                : (angle ? kUsualAngle : kUsualLength);
+      const world::ToolFrame tool = moving_frame(model, request.tool);
+      more = UsualConstraints(model, tool, start, goals).make(name, within);
+    } else {
+      std::vector<std::string> names = kUsual;
+      bool known = false;
+      for (const world::ConstraintSet& set : world.constraints) {
+        names.push_back(set.name);
+        known = known || set.name == name;
+      }
+      if (!known) {
+        const std::string similar = did_you_mean(name, names);
+        refuse_keep("the scene has no constraints '" + name + "'" +
+                    (similar.empty() ? "; without, there are upright, orientation, line and level"
+                                     : similar));
+      }
+      if (equals != std::string::npos)
+        refuse_keep("'" + text + "': the scene states the tolerances of its constraints");
+      more = path_constraints(world, state, robot, world.constraint_set(name));
+    }
+    out.insert(out.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
+  }
+  return out;
+}
+
+std::string words_of(std::span<const PathConstraint> constraints,
+                     std::span<const double> deviations) {
+  std::string out;
+  for (std::size_t i = 0; i < constraints.size();) {
+    const std::string& name = constraints[i].name;
+    std::vector<std::string> within;
+    double deviation = 0;
+    const auto add = [&](double tolerance, const char* unit) {
+      const std::string text = number_text(tolerance) + unit;
+      if (std::ranges::find(within, text) == within.end()) within.push_back(text);
+    };
+    for (; i < constraints.size() && constraints[i].name == name; ++i) {
+      const PathConstraint& c = constraints[i];
+      const kinematics::Measures measures =
+          measures_of(kinematics::Constraint{c.relation, {{}, c.moving}, {{}, c.resting}, c.value});
+      if (measures.length) add(c.within, "");
+      if (measures.angle) add(c.within_angle, " rad");
+      if (i < deviations.size()) deviation = std::max(deviation, deviations[i]);
+    }
+    out += (out.empty() ? "" : "; ") + name + " within ";
+    for (std::size_t k = 0; k < within.size(); ++k) out += (k == 0 ? "" : " and ") + within[k];
+    if (!deviations.empty())
+      out += " (" + std::to_string(std::lround(100 * deviation)) + " % of it seen)";
+  }
+  return out;
+}
+
+}  // namespace kaboum::motion

@@ -1,0 +1,376 @@
+// Constraints that a motion keeps at every instant: each is a bound of the norm of a vector that
+// moves smoothly, decided by its ends and its second derivative.
+// docs/algorithms/motion-planning.md.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
+#include <kaboum/motion/path_constraint.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/world/features.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "constraint_bands.h"
+
+namespace kaboum::motion {
+namespace {
+
+using geom::Transform;
+using geom::Vec3;
+using kinematics::Relation;
+using Measure = ConstraintBand::Measure;
+using Certainty = ConstraintAnswer::Outcome;
+using To = world::FixedFeature::To;
+
+constexpr double kPi = std::numbers::pi;
+/// Bounds the rounding of the few operations that a band's limits and residuals take.
+constexpr double kOutward = 1 + 0x1p-40;
+/// Where the room between two instants is this part of a band, and it is still not certain, it is
+/// given up: the motion touches the tolerance.
+constexpr double kLeastRoom = 1e-6;
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
+
+enum Kind : std::size_t { kPoint, kLine, kPlane };
+
+Vec3 position_of(const kinematics::Feature& f) {
+  return std::visit([](const auto& x) { return x.position; }, f);
+}
+
+Vec3 direction_of(const kinematics::Feature& f) {
+  if (const auto* line = std::get_if<kinematics::Line>(&f)) return line->direction.normalized();
+  return std::get<kinematics::Plane>(f).normal.normalized();
+}
+
+kinematics::Constraint plain(const PathConstraint& c) {
+  using FrameKind = kinematics::FrameId::Kind;
+  return {
+      c.relation, {{FrameKind::Link, 0, 0}, c.moving}, {{FrameKind::World}, c.resting}, c.value};
+}
+
+Eigen::Matrix3d along(const Vec3& d) { return d * d.transpose(); }
+
+class Bands {
+ public:
+  Bands(std::span<const PathConstraint> constraints, const world::RobotModel& robot,
+        std::span<const double> start)
+      : constraints_(constraints), robot_(robot) {
+    if (!constraints.empty()) links_ = robot::forward(robot.kinematics, start);
+  }
+
+  std::vector<ConstraintBand> run() {
+    for (at_ = 0; at_ < constraints_.size(); ++at_) add(constraints_[at_]);
+    return std::move(bands_);
+  }
+
+ private:
+  void add(const PathConstraint& c) {
+    const std::size_t moving = c.moving.index(), resting = c.resting.index();
+    const bool mixed = (moving == kLine) != (resting == kLine);  // a line and a plane
+    switch (c.relation) {
+      case Relation::Coincident:
+        add_point(c);
+        if (moving == kPoint) return;
+        return mixed ? add_sine(c) : add_parallel(c);
+      case Relation::Distance:
+        return add_point(c);
+      case Relation::Parallel:
+        return mixed ? add_sine(c) : add_parallel(c);
+      case Relation::Perpendicular:
+        return mixed ? add_parallel(c) : add_sine(c);
+      case Relation::Angle:
+        return add_chord(c, direction_of(c.resting), mixed ? kPi / 2 - c.value : c.value);
+    }
+  }
+
+  ConstraintBand& add_band(const PathConstraint& c, Measure measure, double value, double within) {
+    ConstraintBand band;
+    band.constraint = at_;
+    band.link = c.link;
+    band.measure = measure;
+    band.value = value;
+    band.within = within;
+    bands_.push_back(band);
+    return bands_.back();
+  }
+
+  /// The moving feature's point, and the feature that stays.
+  void add_point(const PathConstraint& c) {
+    ConstraintBand& band = add_band(c, Measure::Length, c.value, c.within);
+    band.own = position_of(c.moving);
+    band.center = position_of(c.resting);
+    if (c.resting.index() == kLine)
+      band.across = Eigen::Matrix3d::Identity() - along(direction_of(c.resting));
+    if (c.resting.index() == kPlane) band.across = along(direction_of(c.resting));
+    band.low = std::max(0.0, c.value - c.within) * kOutward;
+    band.high = (c.value + c.within) / kOutward;
+  }
+
+  void add_sine(const PathConstraint& c) {
+    ConstraintBand& band = add_band(c, Measure::Sine, 0, c.within_angle);
+    band.is_direction = true;
+    band.own = direction_of(c.moving);
+    band.across = along(direction_of(c.resting));
+    band.high = c.within_angle < kPi / 2 ? std::sin(c.within_angle) / kOutward : 2;
+  }
+
+  /// In the sense that it has at the start.
+  void add_parallel(const PathConstraint& c) {
+    const Vec3 d = direction_of(c.resting);
+    const Vec3 u = robot_.base.linear * (links_[c.link].linear * direction_of(c.moving));
+    add_chord(c, u.dot(d) < 0 ? Vec3(-d) : d, 0);
+  }
+
+  void add_chord(const PathConstraint& c, const Vec3& center, double value) {
+    ConstraintBand& band = add_band(c, Measure::Chord, value, c.within_angle);
+    band.is_direction = true;
+    band.own = direction_of(c.moving);
+    band.center = center;
+    const double least = value - c.within_angle, most = value + c.within_angle;
+    band.low = least > 0 ? 2 * std::sin(least / 2) * kOutward : 0;
+    band.high = most < kPi ? 2 * std::sin(most / 2) / kOutward : 3;
+  }
+
+  std::span<const PathConstraint> constraints_;
+  const world::RobotModel& robot_;
+  std::vector<Transform> links_;
+  std::size_t at_ = 0;
+  std::vector<ConstraintBand> bands_;
+};
+
+/// The least norm on the straight line between two vectors.
+double least_norm(const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a;
+  const double length = d.squaredNorm();
+  const double s = length > 0 ? std::clamp(-a.dot(d) / length, 0.0, 1.0) : 0;
+  return (a + s * d).norm();
+}
+
+/// One band along one segment.
+class BandCheck {
+ public:
+  BandCheck(const world::RobotModel& robot, const ConstraintBand& band,
+            const sweep::LinkMotion& motion, ConstraintAnswer& answer)
+      : base_(robot.base), band_(band), motion_(motion), answer_(answer) {
+    const std::array<Vec3, 2> points{band.is_direction ? Vec3(Vec3::Zero()) : band.own, band.own};
+    const sweep::MotionBounds bounds(motion, points);
+    second_ = !motion.moves()     ? 0
+              : band.is_direction ? bounds.turn() * bounds.turn()
+                                  : bounds.derivative(2);
+    // Two points make a direction; 2^-44 is for the base, the projection and the norm.
+    error_ = ((band.is_direction ? 2 : 1) * bounds.error(0) +
+              0x1p-44 * (bounds.extent() + base_.translation.norm() + band.center.norm() + 1)) *
+             kOutward;
+  }
+
+  bool run() {
+    const Vec3 begin = residual(0), end = residual(1);
+    return is_kept(0, begin) && is_kept(1, end) && stays(0, 1, begin, end);
+  }
+
+ private:
+  Vec3 residual(double share) {
+    ++answer_.instants;
+    const Vec3 g = band_.residual(base_ * motion_.at(share));
+    double& part = answer_.parts[band_.constraint];
+    part = std::max(part, band_.deviation(g.norm()) / band_.within);
+    return g;
+  }
+
+  bool is_kept(double share, const Vec3& g) {
+    const double norm = g.norm();
+    if (norm + error_ <= band_.high && (band_.low == 0 || norm - error_ >= band_.low)) return true;
+    return fail(norm - error_ > band_.high || norm + error_ < band_.low ? Certainty::Broken
+                                                                        : Certainty::Undecided,
+                share, norm);
+  }
+
+  /// @pre both ends are kept
+  bool stays(double begin, double end, const Vec3& first, const Vec3& last) {
+    const double length = end - begin;
+    // Between two instants a vector is off the line between its values by an eighth of the second
+    // derivative, times the square of the time, at most.
+    const double room = 0.125 * second_ * length * length * kOutward;
+    const double most = std::max(first.norm(), last.norm());
+    if (most + room + error_ <= band_.high &&
+        (band_.low == 0 || least_norm(first, last) - room - error_ >= band_.low))
+      return true;
+    const double middle = 0.5 * begin + 0.5 * end;
+    const Vec3 between = residual(middle);
+    if (!is_kept(middle, between)) return false;
+    if (room < kLeastRoom * (band_.high - band_.low) || !(begin < middle && middle < end))
+      return fail(Certainty::Undecided, middle, between.norm());
+    return stays(begin, middle, first, between) && stays(middle, end, between, last);
+  }
+
+  bool fail(Certainty outcome, double share, double norm) {
+    answer_.outcome = outcome;
+    answer_.share = share;
+    answer_.constraint = band_.constraint;
+    answer_.deviation = band_.deviation(norm);
+    answer_.of_direction = band_.is_direction;
+    return false;
+  }
+
+  const Transform& base_;
+  const ConstraintBand& band_;
+  const sweep::LinkMotion& motion_;
+  ConstraintAnswer& answer_;
+  double second_ = 0, error_ = 0;
+};
+
+}  // namespace
+
+double ConstraintBand::deviation(double norm) const {
+  if (measure == Measure::Length) return std::abs(norm - value);
+  if (measure == Measure::Sine) return std::asin(std::min(1.0, norm));
+  return std::abs(2 * std::asin(std::min(1.0, norm / 2)) - value);
+}
+
+std::vector<ConstraintBand> bands_of(std::span<const PathConstraint> constraints,
+                                     const world::RobotModel& robot,
+                                     std::span<const double> start) {
+  return Bands(constraints, robot, start).run();
+}
+
+bool check_segment(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
+                   std::span<const double> from, std::span<const double> to,
+                   ConstraintAnswer& answer) {
+  std::optional<sweep::LinkMotion> motion;
+  std::uint32_t link = 0;
+  for (const ConstraintBand& band : bands) {
+    if (!motion || link != band.link) motion.emplace(robot.kinematics, link = band.link, from, to);
+    if (!BandCheck(robot, band, *motion, answer).run()) return false;
+  }
+  return true;
+}
+
+std::vector<PathConstraint> path_constraints(const world::World& world,
+                                             const world::WorldState& state, std::size_t robot,
+                                             const world::ConstraintSet& set) {
+  std::vector<PathConstraint> out;
+  const world::RobotModel& model = world.robots.at(robot);
+  for (const world::ToleratedConstraint& c : set.constraints) {
+    std::array<world::FixedFeature, 2> features{at_state(world, state, c.first),
+                                                at_state(world, state, c.second)};
+    const auto moves = [&](const world::FixedFeature& f) {
+      return f.to == To::Link && f.index == robot;
+    };
+    const std::string which = "the constraint of '" + c.first.feature.name + "' and '" +
+                              c.second.feature.name + "' in '" + set.name + "'";
+    if (moves(features[0]) == moves(features[1]))
+      refuse(which +
+             (moves(features[0]) ? " is between two parts of robot '"
+                                 : " has no part that moves with robot '") +
+             model.name +
+             "': one feature of a constraint that a motion keeps moves with the robot, "
+             "and the other stays");
+    if (moves(features[1])) std::swap(features[0], features[1]);
+    world::Feature resting = features[1].feature;
+    if (features[1].to == To::Link) {
+      const world::RobotModel& other = world.robots[features[1].index];
+      resting =
+          moved(resting, other.base * robot::forward(other.kinematics,
+                                                     state.q[features[1].index])[features[1].link]);
+    }
+    out.push_back({set.name, c.relation, features[0].link, kinematics_feature(features[0].feature),
+                   kinematics_feature(resting), c.value, c.within, c.within_angle});
+    try {
+      require_keepable(out.back(), model.kinematics);
+    } catch (const Error& error) {
+      refuse(which + ": " + error.what());
+    }
+  }
+  return out;
+}
+
+void require_keepable(const PathConstraint& c, const robot::Robot& robot) {
+  require_valid(plain(c));
+  if (c.link >= robot.links.size()) refuse("a constraint of a link that the robot lacks");
+  if (!(c.within > 0) || !(c.within_angle > 0)) refuse("a tolerance must be above 0");
+  const std::size_t moving = c.moving.index(), resting = c.resting.index();
+  const bool positions = c.relation == Relation::Coincident || c.relation == Relation::Distance;
+  if (positions && resting < moving)
+    refuse(std::string("whether a ") + (moving == kLine ? "line" : "plane") +
+           " that moves holds a " + (resting == kPoint ? "point" : "line") +
+           " that stays is not decided; let the smaller one move");
+}
+
+ConstraintAnswer check_constraints(const world::RobotModel& robot, const robot::Path& path,
+                                   std::span<const PathConstraint> constraints) {
+  ConstraintAnswer answer;
+  answer.parts.assign(constraints.size(), 0);
+  if (constraints.empty() || path.empty()) return answer;
+  const std::vector<ConstraintBand> bands = bands_of(constraints, robot, path.front());
+  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
+    answer.segment = i;
+    if (!check_segment(robot, bands, path[i], path[std::min(i + 1, path.size() - 1)], answer))
+      break;
+  }
+  return answer;
+}
+
+std::string describe(const ConstraintAnswer& answer, std::span<const PathConstraint> constraints) {
+  const PathConstraint& c = constraints[answer.constraint];
+  const std::string unit = answer.of_direction ? " rad" : "";
+  return "'" + c.name + "' is off by " + number_text(answer.deviation) + unit + ", " +
+         number_text(answer.of_direction ? c.within_angle : c.within) + unit + " are allowed";
+}
+
+ConstraintProjection::ConstraintProjection(const world::RobotModel& robot,
+                                           std::span<const PathConstraint> constraints,
+                                           std::span<const ConstraintBand> bands)
+    : robot_(robot), constraints_(constraints), bands_(bands) {}
+
+double ConstraintProjection::largest(std::span<const Transform> links) const {
+  double out = 0;
+  for (const ConstraintBand& band : bands_)
+    out = std::max(
+        out, band.deviation(band.residual(robot_.base * links[band.link]).norm()) / band.within);
+  return out;
+}
+
+bool ConstraintProjection::project(std::vector<double>& q, double share) const {
+  constexpr int kSteps = 25;
+  constexpr double kLongest = 0.5, kDamping = 1e-8;
+  const robot::Robot& robot = robot_.kinematics;
+  const auto n = static_cast<Eigen::Index>(q.size());
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Transform> links = robot::forward(robot, q);
+    if (largest(links) <= share) return true;
+    Eigen::MatrixXd rows(0, n);
+    Eigen::VectorXd values(0);
+    for (const PathConstraint& c : constraints_) {
+      const kinematics::Cost cost =
+          kinematics::cost(plain(c), robot_.base * links[c.link], Transform{}, 1);
+      Eigen::Matrix<double, 6, Eigen::Dynamic> twist =
+          robot::jacobian(robot, q, c.link, Vec3::Zero());
+      twist.topRows<3>() = robot_.base.linear * twist.topRows<3>();
+      twist.bottomRows<3>() = robot_.base.linear * twist.bottomRows<3>();
+      const Eigen::Index m = cost.value.size(), at = values.size();
+      rows.conservativeResize(at + m, n);
+      values.conservativeResize(at + m);
+      rows.bottomRows(m) = cost.first * twist;
+      values.tail(m) = cost.value;
+    }
+    Eigen::MatrixXd square = rows * rows.transpose();
+    square.diagonal().array() += kDamping * (1 + square.trace());
+    Eigen::VectorXd change = rows.transpose() * square.ldlt().solve(values);
+    const double length = change.norm();
+    if (!std::isfinite(length)) return false;
+    if (length > kLongest) change *= kLongest / length;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const robot::Variable& v = robot.variables[k];
+      q[k] -= change[i];
+      if (v.lower) q[k] = std::max(q[k], *v.lower);
+      if (v.upper) q[k] = std::min(q[k], *v.upper);
+    }
+  }
+  return largest(robot::forward(robot, q)) <= share;
+}
+
+}  // namespace kaboum::motion

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <kaboum/world/world.h>
+
+#include <string>
+
+namespace kaboum::world {
+
+/// The feature of a name: one that the scene names ("OBJECT/FEATURE", "ROBOT/FEATURE"), or a part
+/// of a frame ("world.z", "OBJECT.origin", "ROBOT/TOOL.x", "ROBOT/LINK.xy", "ROBOT.z" of its root):
+/// the point "origin", the lines "x", "y", "z" through it, and the planes "xy", "yz", "zx", whose
+/// normals are z, x and y. A feature that the scene names goes before a part of a frame, and a tool
+/// before a link.
+/// @throws Error{InvalidArgument} when there is no such feature, with similar names, or two kinds
+///   have the name.
+FixedFeature find_feature(const World& world, const std::string& name);
+
+/// A feature of one frame in another one, in which the first has this pose.
+Feature moved(const Feature& feature, const Transform& pose);
+
+/// Where a feature is in the world, and the link that moves it: in the world, or in the frame of
+/// the link of a robot. Objects that are carried are fixed to the link.
+/// @param state  of this world: what is carried, and where objects that are not are
+FixedFeature at_state(const World& world, const WorldState& state, const FixedFeature& feature);
+
+/// The feature as kinematics has it.
+kinematics::Feature kinematics_feature(const Feature& feature);
+
+/// A constraint as kinematics has it, of two frames: 0 that of its first feature, 1 of its second.
+kinematics::Constraint kinematics_constraint(const ToleratedConstraint& constraint);
+
+}  // namespace kaboum::world
