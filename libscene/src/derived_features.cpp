@@ -2,7 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
-#include <kaboum/geom/body_polytopes.h>
+#include <kaboum/geom/closest_point.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/scene/derived_features.h>
@@ -33,7 +33,7 @@ constexpr double kNothing = 1e-9;
 /// Shares of the way from the middle of two faces to their edge at which a tool is put.
 constexpr std::array kShares{0.0, 0.25, 0.5, 0.75, 0.95};
 
-/// A face of a convex body.
+/// A flat face of a convex body.
 struct Face {
   std::size_t body = 0;
   Vec3 normal;
@@ -41,14 +41,15 @@ struct Face {
   std::vector<Vec3> corners;  ///< of its triangles; some are there twice
 };
 
-/// A set's faces, and its bodies as half-spaces.
+/// A set's flat faces: the facets of its bodies' cores, moved out by their radii. What is round has
+/// none.
 class Faces {
  public:
   explicit Faces(const collide::BoundingSet& set)
-      : size_(set.box().diagonal()), first_of_(set.size() + 1, 0) {
+      : set_(set), size_(set.box().diagonal()), first_of_(set.size() + 1, 0) {
     for (std::size_t i = 0; i < set.size(); ++i) {
       first_of_[i] = all_.size();
-      add(geom::surface_of(set.body(i)), i);
+      add(set.body(i), i);
     }
     first_of_[set.size()] = all_.size();
   }
@@ -59,18 +60,34 @@ class Faces {
   /// True if the point just outside of a face is in another body.
   [[nodiscard]] bool is_covered(const Face& face, const Vec3& point) const {
     const Vec3 outside = point + 1e-6 * size_ * face.normal;
-    for (std::size_t body = 0; body + 1 < first_of_.size(); ++body) {
-      if (body == face.body) continue;
-      const auto begin = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body]);
-      const auto end = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body + 1]);
-      if (std::all_of(begin, end, [&](const Face& f) { return f.normal.dot(outside) < f.offset; }))
-        return true;
-    }
+    for (std::size_t body = 0; body < set_.size(); ++body)
+      if (body != face.body && holds(body, outside)) return true;
     return false;
   }
 
  private:
-  void add(const geom::Mesh& mesh, std::size_t body) {
+  [[nodiscard]] bool holds(std::size_t body, const Vec3& point) const {
+    const geom::Mesh& core = set_.body(body).core;
+    const double radius = set_.body(body).radius;
+    const auto begin = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body]);
+    const auto end = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body + 1]);
+    const auto is_below = [&](double by) {
+      return std::all_of(begin, end,
+                         [&](const Face& f) { return f.normal.dot(point) < f.offset - by; });
+    };
+    if (radius == 0) return is_below(0);
+    const auto is_near = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      return (geom::closest_point(point, a, b, c) - point).norm() < radius;
+    };
+    if (core.triangles.empty())  // a point or a segment
+      return is_near(core.vertices.front(), core.vertices.back(), core.vertices.back());
+    return is_below(radius) || std::ranges::any_of(core.triangles, [&](const geom::Triangle& t) {
+             return is_near(core.vertices[t[0]], core.vertices[t[1]], core.vertices[t[2]]);
+           });
+  }
+
+  void add(const geom::ConvexBody& of, std::size_t body) {
+    const geom::Mesh& mesh = of.core;
     const std::size_t first = all_.size();
     for (const geom::Triangle& t : mesh.triangles) {
       const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -82,11 +99,13 @@ class Faces {
             return f.normal.cross(normal).norm() < kSameFace && f.normal.dot(normal) > 0;
           });
       Face& face = same == all_.end() ? all_.emplace_back() : *same;
-      if (face.corners.empty()) face = {body, normal, normal.dot(a), {}};
-      face.corners.insert(face.corners.end(), {a, b, c});
+      if (face.corners.empty()) face = {body, normal, normal.dot(a) + of.radius, {}};
+      const Vec3 out = of.radius * face.normal;
+      face.corners.insert(face.corners.end(), {a + out, b + out, c + out});
     }
   }
 
+  const collide::BoundingSet& set_;
   double size_;
   std::vector<Face> all_;
   std::vector<std::size_t> first_of_;
@@ -233,14 +252,26 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
   return out;
 }
 
-/// What moves with a tool: the links fixed to its link, and all that they carry.
-std::vector<bool> hand_of(const robot::Robot& robot, std::uint32_t link) {
-  while (link > 0 && robot.joints[link - 1].type == robot::JointType::Fixed)
-    link = robot.joints[link - 1].parent;
+/// What moves with a link: the links fixed to it, and all that they carry.
+/// @param only_fixed  without what joints move
+std::vector<bool> moving_with(const robot::Robot& robot, std::uint32_t link, bool only_fixed) {
+  const auto is_fixed = [&](std::size_t joint) {
+    return robot.joints[joint].type == robot::JointType::Fixed;
+  };
+  while (link > 0 && is_fixed(link - 1)) link = robot.joints[link - 1].parent;
   std::vector<bool> out(robot.links.size(), false);
   out[link] = true;
   for (std::size_t i = link; i < robot.joints.size(); ++i)
-    out[i + 1] = out[i + 1] || out[robot.joints[i].parent];
+    out[i + 1] = out[i + 1] || (out[robot.joints[i].parent] && (!only_fixed || is_fixed(i)));
+  return out;
+}
+
+/// The largest ε of what is fixed to a link.
+double epsilon_at(const world::RobotModel& robot, std::uint32_t link) {
+  const std::vector<bool> fixed = moving_with(robot.kinematics, link, true);
+  double out = 0;
+  for (const world::LinkShape& shape : robot.shapes)
+    if (fixed[shape.link]) out = std::max(out, shape.outer.epsilon());
   return out;
 }
 
@@ -254,7 +285,7 @@ class Hand {
         robot_(robot),
         checker_(world),
         state_(initial_state(world)),
-        hand_(hand_of(world.robots[robot].kinematics, tool.link)) {
+        hand_(moving_with(world.robots[robot].kinematics, tool.link, false)) {
     state_.absent.assign(world.objects.size(), true);
     state_.absent[object] = false;
     state_.absent_robots.assign(world.robots.size(), true);
@@ -276,6 +307,34 @@ class Hand {
       }
     }
     return std::nullopt;
+  }
+
+  /// The part of the hand whose contact with the object is not looked at.
+  struct Unchecked {
+    std::vector<std::string> links;  ///< without a set, or with an allowed contact
+    bool all = true;
+  };
+  [[nodiscard]] Unchecked unchecked() const {
+    Unchecked out;
+    const world::RobotModel& model = world_.robots[robot_];
+    const world::Item object{world::Item::kObject, object_};
+    for (std::uint32_t link = 0; link < hand_.size(); ++link) {
+      if (!hand_[link]) continue;
+      bool looked_at = false, has_set = false;
+      for (std::size_t s = 0; s < model.shapes.size(); ++s) {
+        if (model.shapes[s].link != link) continue;
+        has_set = true;
+        const world::Item shape{robot_, s};
+        looked_at = looked_at || std::ranges::none_of(world_.allowed, [&](const auto& pair) {
+                      return pair == std::array{object, shape} || pair == std::array{shape, object};
+                    });
+      }
+      if (looked_at)
+        out.all = false;
+      else if (has_set || !model.kinematics.links[link].collision.empty())
+        out.links.push_back(model.name + "/" + model.kinematics.links[link].name);
+    }
+    return out;
   }
 
  private:
@@ -304,17 +363,42 @@ std::vector<double> angles_round(std::size_t n) {
   return out;
 }
 
+/// As people read it: what is only rounding is 0.
+double plain(double x, double size) { return std::abs(x) < 1e-15 * size ? 0 : x; }
+
+Vec3 plain(const Vec3& v, double size) {
+  return {plain(v.x(), size), plain(v.y(), size), plain(v.z(), size)};
+}
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// A pose by the numbers that a scene states.
+struct StatedPose {
+  Vec3 position;
+  Eigen::Quaterniond turn;
+
+  /// As scenes are read.
+  [[nodiscard]] Transform pose() const {
+    Transform out;
+    out.translation = position;
+    if (!turn.vec().isZero(0)) out.linear = turn.normalized().toRotationMatrix();
+    return out;
+  }
+};
+
 /// The pose of the object in the tool's frame, where the tool's axes and origin are given in the
-/// object's.
-Transform grasp_of(const Vec3& approach, const Vec3& closing, GraspRequest::Axis axis,
-                   const Vec3& origin) {
-  Transform tool;
+/// object's. @param size  of the object
+StatedPose grasp_of(const Vec3& approach, const Vec3& closing, GraspRequest::Axis axis,
+                    const Vec3& origin, double size) {
+  Eigen::Matrix3d tool;
   const Vec3 other =
       axis == GraspRequest::Axis::X ? Vec3(approach.cross(closing)) : Vec3(closing.cross(approach));
-  tool.linear.col(axis == GraspRequest::Axis::X ? 0 : 1) = closing;
-  tool.linear.col(axis == GraspRequest::Axis::X ? 1 : 0) = other;
-  tool.linear.col(2) = approach;
-  return {tool.linear.transpose(), -(tool.linear.transpose() * origin)};
+  tool.col(axis == GraspRequest::Axis::X ? 0 : 1) = closing;
+  tool.col(axis == GraspRequest::Axis::X ? 1 : 0) = other;
+  tool.col(2) = approach;
+  const Eigen::Quaterniond q(Eigen::Matrix3d(tool.transpose()));
+  return {plain(-(tool.transpose() * origin), size),
+          {plain(q.w(), 1), plain(q.x(), 1), plain(q.y(), 1), plain(q.z(), 1)}};
 }
 
 std::vector<std::size_t> objects_named(const world::World& world,
@@ -335,23 +419,57 @@ std::vector<std::size_t> objects_named(const world::World& world,
   return out;
 }
 
-/// As people read it: what is only rounding is 0.
-double plain(double x, double size) { return std::abs(x) < 1e-15 * size ? 0 : x; }
+/// Calls `work`; its errors name the scene.
+template <typename Work>
+auto naming(const std::filesystem::path& scene, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.code(), scene.string() + ": " + error.what());
+  }
+}
 
-Json numbers(const Vec3& v, double size) {
-  return {plain(v.x(), size), plain(v.y(), size), plain(v.z(), size)};
+/// The entries of a list that are of a kind.
+template <typename Of>
+Json entries_of(const Json& list, const Of& of) {
+  Json out = Json::array();
+  for (const Json& one : list)
+    if (of(one)) out.push_back(one);
+  return out;
+}
+
+/// A list with other entries in the place of those of a kind; at its end where it has none.
+template <typename Of>
+Json with_replaced(const Json& list, const Of& of, const Json& by) {
+  Json out = Json::array();
+  const auto first = std::find_if(list.begin(), list.end(), of);
+  for (auto one = list.begin();; ++one) {
+    if (one == first) out.insert(out.end(), by.begin(), by.end());
+    if (one == list.end()) return out;
+    if (!of(*one)) out.push_back(*one);
+  }
+}
+
+std::vector<std::string> names_of(const Json& entries) {
+  std::vector<std::string> out;
+  for (const Json& one : entries) out.push_back(one.at("name").get<std::string>());
+  return out;
 }
 
 /// A scene that gets entries in a list of its objects.
 class SceneEdit {
  public:
-  explicit SceneEdit(const std::filesystem::path& scene)
-      : scene_(scene), file_(world::read_scene(scene.string())) {
-    const std::vector<char> bytes = io::read_file(scene);
-    json_ = Json::parse(world::scene_as_json({bytes.data(), bytes.size()}, scene.string()));
+  explicit SceneEdit(std::filesystem::path scene) : scene_(std::move(scene)) {
+    const std::vector<char> bytes = io::read_file(scene_);
+    const std::string_view text(bytes.data(), bytes.size());
+    world_ = world::parse_scene(
+        text, scene_.string(),
+        [&](const std::string& file) { return io::read_file(scene_.parent_path() / file); },
+        &notes_);
+    json_ = Json::parse(world::scene_as_json(text, scene_.string()));
   }
 
-  [[nodiscard]] const world::World& world() const { return file_.world; }
+  [[nodiscard]] const world::World& world() const { return world_; }
 
   /// Calls derive(object, entries, added) for each object that is named: it changes the entries of
   /// the list, and says what was added. Writes the scene where something has changed.
@@ -359,16 +477,18 @@ class SceneEdit {
   AddedFeatures run(const std::vector<std::string>& objects, const char* list,
                     const Derive& derive) {
     AddedFeatures out;
-    out.notes = file_.notes;
+    out.notes = notes_.notes;
     bool changed = false;
-    for (const std::size_t object : objects_named(world(), objects)) {
+    for (const std::size_t object :
+         naming(scene_, [&] { return objects_named(world(), objects); })) {
       AddedFeatures::OfObject& added = out.objects.emplace_back();
       added.object = world().objects[object].name;
       Json& entry = entry_of(added.object);
       const Json before = entry.value(list, Json::array());
       Json after = before;
-      derive(object, after, added);
+      naming(scene_, [&] { derive(object, after, added); });
       if (after == before) continue;
+      require_attached_kept(added.object, before, after);
       changed = true;
       entry[list] = std::move(after);
     }
@@ -383,19 +503,31 @@ class SceneEdit {
     throw Error(ErrorCode::Internal, "an object that was read is in the scene");
   }
 
+  /// Refuses to move an object that is attached by one of its grasps.
+  void require_attached_kept(const std::string& object, const Json& before,
+                             const Json& after) const {
+    if (!json_.contains("attachments")) return;
+    for (const Json& attachment : json_.at("attachments")) {
+      if (attachment.at("object") != object || !attachment.contains("grasp")) continue;
+      const Json& name = attachment.at("grasp");
+      const auto is_it = [&](const Json& one) { return one.at("name") == name; };
+      const Json then = entries_of(before, is_it), now = entries_of(after, is_it);
+      if (then == now) continue;
+      throw Error(ErrorCode::InvalidInput,
+                  scene_.string() + ": the attachment of object '" + object +
+                      "' names its grasp '" + name.get<std::string>() +
+                      "', which deriving grasps again would " +
+                      (now.empty() ? "take out" : "change") +
+                      "; give that grasp a name that is not derived, or state the pose in the "
+                      "attachment");
+    }
+  }
+
   std::filesystem::path scene_;
-  world::SceneFile file_;
+  world::World world_;
+  world::SceneNotes notes_;
   Json json_;
 };
-
-/// Takes entries out of a list.
-template <typename Old>
-void erase_entries(Json& list, const Old& old) {
-  Json kept = Json::array();
-  for (const Json& one : list)
-    if (!old(one)) kept.push_back(one);
-  list = std::move(kept);
-}
 
 const char* word_of(GraspRequest::Hold hold) {
   return hold == GraspRequest::Hold::Sides ? "side" : "face";
@@ -410,8 +542,16 @@ bool is_top(std::string_view name) {
   return name == "top" || (name.starts_with("top") && is_number(name.substr(3)));
 }
 
-std::string why_none(const DerivedGrasps& found, const GraspRequest& request) {
+bool is_round(const collide::BoundingSet& set) {
+  for (std::size_t i = 0; i < set.size(); ++i)
+    if (!set.body(i).core.triangles.empty()) return false;
+  return true;
+}
+
+std::string why_none(const DerivedGrasps& found, const GraspRequest& request,
+                     const collide::BoundingSet& set) {
   const bool sides = request.hold == GraspRequest::Hold::Sides;
+  if (is_round(set)) return "it is round: it has no flat face";
   if (found.faces == 0)
     return sides ? "no two parallel faces face each other" +
                        std::string(std::isfinite(request.opening) ? " within the opening" : "")
@@ -421,56 +561,96 @@ std::string why_none(const DerivedGrasps& found, const GraspRequest& request) {
          (sides ? "; fingers that may touch it need an allowed contact" : "");
 }
 
-}  // namespace
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
 
-DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
-                            const GraspRequest& request) {
+/// Grasps by the numbers that a scene states: these are the poses that are decided.
+std::vector<StatedPose> poses_of_grasps(const world::World& world, std::size_t object,
+                                        const GraspRequest& request, DerivedGrasps& out) {
+  if (request.directions == 0)
+    throw Error(ErrorCode::InvalidArgument, "«directions» must be at least 1");
   const std::size_t r = robot_named(world, request.robot);
   const world::ToolFrame& tool = tool_named(world.robots[r], request.tool);
   const collide::BoundingSet& set = world.objects.at(object).outer;
+  const double size = set.box().diagonal();
   const std::vector<Hold> holds = holds_of(Faces(set), request);
   const bool sides = request.hold == GraspRequest::Hold::Sides;
-  double gap = request.gap + set.epsilon();
-  for (const world::LinkShape& shape : world.robots[r].shapes)
-    if (shape.link == tool.link) gap += shape.outer.epsilon();
+  const double gap = request.gap + set.epsilon() + epsilon_at(world.robots[r], tool.link);
   Hand hand(world, object, r, tool);
-  DerivedGrasps out;
+  const Hand::Unchecked unchecked = hand.unchecked();
+  out.unchecked = unchecked.links;
+  out.hand_unchecked = unchecked.all;
   out.faces = holds.size();
+  std::vector<StatedPose> poses;
   // The first direction of each hold, then the second …: the first grasps differ most.
   for (const double angle : angles_round(request.directions)) {
     for (const Hold& hold : holds) {
-      if (out.grasps.size() >= request.most) return out;
+      if (poses.size() >= request.most) return poses;
       const Vec2 edge = longest_edge(hold.where);
       // Across the longest edge first.
       const Vec2 across(-edge.y(), edge.x());
       const Vec2 turned = std::cos(angle) * across + std::sin(angle) * edge;
       const Vec3 direction = turned.x() * hold.axes.u + turned.y() * hold.axes.v;
       std::optional<std::string> contact;
+      const auto is_free = [&](const StatedPose& grasp) {
+        contact = hand.contact_at(grasp.pose());
+        if (!contact) poses.push_back(grasp);
+        return !contact;
+      };
       if (sides) {
         const double room = reach_within(hold.where, hold.axes(hold.middle), -turned);
-        for (const double share : kShares) {
-          const Transform grasp = grasp_of(direction, hold.normal, request.closing,
-                                           hold.middle - share * room * direction);
-          contact = hand.contact_at(grasp);
-          if (contact) continue;
-          out.grasps.push_back({{}, grasp});
-          break;
-        }
+        for (const double share : kShares)
+          if (is_free(grasp_of(direction, hold.normal, request.closing,
+                               hold.middle - share * room * direction, size)))
+            break;
       } else {
-        const Transform grasp =
-            grasp_of(-hold.normal, direction, request.closing, hold.middle + gap * hold.normal);
-        contact = hand.contact_at(grasp);
-        if (!contact) out.grasps.push_back({{}, grasp});
+        is_free(grasp_of(-hold.normal, direction, request.closing, hold.middle + gap * hold.normal,
+                         size));
       }
-      if (contact) {
-        ++out.in_contact;
-        if (out.contact.empty()) out.contact = *contact;
-      } else {
-        out.grasps.back().name =
-            tool.name + "/" + word_of(request.hold) + "-" + std::to_string(out.grasps.size());
-      }
+      if (!contact) continue;
+      ++out.in_contact;
+      if (out.contact.empty()) out.contact = *contact;
     }
   }
+  return poses;
+}
+
+std::string prefix_of(const std::string& tool, GraspRequest::Hold hold) {
+  return tool + "/" + word_of(hold) + "-";
+}
+
+/// Another robot with a tool of that name; null: none.
+const world::RobotModel* other_with_tool(const world::World& world, std::size_t robot,
+                                         const std::string& tool) {
+  for (std::size_t r = 0; r < world.robots.size(); ++r)
+    if (r != robot && std::ranges::any_of(world.robots[r].tools,
+                                          [&](const auto& other) { return other.name == tool; }))
+      return &world.robots[r];
+  return nullptr;
+}
+
+/// Where an object is at first, from its frame to the world.
+Transform pose_at_first(const world::World& world, std::size_t object) {
+  const world::Object& thing = world.objects.at(object);
+  if (object >= world.attachments.size() || !world.attachments[object]) return thing.pose;
+  const world::Attachment& held = *world.attachments[object];
+  const world::RobotModel& robot = world.robots[held.robot];
+  return robot.base * robot::forward(robot.kinematics, robot.home)[held.link] * held.pose;
+}
+
+}  // namespace
+
+DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
+                            const GraspRequest& request) {
+  DerivedGrasps out;
+  const std::vector<StatedPose> poses = poses_of_grasps(world, object, request, out);
+  const std::string prefix = prefix_of(
+      tool_named(world.robots[robot_named(world, request.robot)], request.tool).name, request.hold);
+  for (const StatedPose& pose : poses)
+    out.grasps.push_back({prefix + std::to_string(out.grasps.size() + 1), pose.pose()});
   return out;
 }
 
@@ -478,10 +658,11 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
                                           const PlaceRequest& request) {
   const world::Object& thing = world.objects.at(object);
   const Faces faces(thing.outer);
-  const Vec3 up = thing.pose.linear.transpose() * Vec3::UnitZ();
+  const Vec3 up = pose_at_first(world, object).linear.transpose() * Vec3::UnitZ();
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Face& face : faces.all())
-    for (const Vec3& corner : face.corners) lowest = std::min(lowest, up.dot(corner));
+  for (std::size_t i = 0; i < thing.outer.size(); ++i)
+    for (const Vec3& corner : thing.outer.body(i).core.vertices)
+      lowest = std::min(lowest, up.dot(corner) - thing.outer.body(i).radius);
   struct Top {
     Vec3 place;
     double area;
@@ -522,64 +703,107 @@ AddedFeatures add_grasps(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const GraspRequest& request) {
   SceneEdit edit(scene);
   const world::World& world = edit.world();
-  const world::ToolFrame& tool =
-      tool_named(world.robots[robot_named(world, request.robot)], request.tool);
-  const std::string prefix = tool.name + "/" + word_of(request.hold) + "-";
-  return edit.run(
+  const std::size_t r = naming(scene, [&] { return robot_named(world, request.robot); });
+  const std::string tool =
+      naming(scene, [&] { return tool_named(world.robots[r], request.tool).name; });
+  const std::string prefix = prefix_of(tool, request.hold);
+  const world::RobotModel* other = other_with_tool(world, r, tool);
+  AddedFeatures out = edit.run(
       objects, "grasps", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
-        const DerivedGrasps found = derive_grasps(world, object, request);
-        if (found.grasps.empty()) added.shortfall = why_none(found, request);
-        erase_entries(list, [&](const Json& one) {
-          const std::string of = one.value("name", "");
-          return of.starts_with(prefix) && is_number(std::string_view(of).substr(prefix.size()));
-        });
-        const double size = world.objects[object].outer.box().diagonal();
-        for (const world::Grasp& grasp : found.grasps) {
-          const Eigen::Quaterniond q(grasp.pose.linear);
-          list.push_back({{"name", grasp.name},
-                          {"position", numbers(grasp.pose.translation, size)},
-                          {"quaternion",
-                           {plain(q.x(), 1), plain(q.y(), 1), plain(q.z(), 1), plain(q.w(), 1)}}});
-          added.names.push_back(grasp.name);
+        DerivedGrasps found;
+        Json derived = Json::array();
+        for (const StatedPose& pose : poses_of_grasps(world, object, request, found)) {
+          added.names.push_back(prefix + std::to_string(derived.size() + 1));
+          derived.push_back(
+              {{"name", added.names.back()},
+               {"position", numbers(pose.position)},
+               {"quaternion", {pose.turn.x(), pose.turn.y(), pose.turn.z(), pose.turn.w()}}});
         }
+        const auto is_derived = [&](const Json& one) {
+          const auto name = one.at("name").get<std::string>();
+          return name.starts_with(prefix) &&
+                 is_number(std::string_view(name).substr(prefix.size()));
+        };
+        const Json before = entries_of(list, is_derived);
+        if (derived.empty()) {
+          added.shortfall = why_none(found, request, world.objects[object].outer);
+          added.kept = names_of(before);
+          if (!added.kept.empty()) added.shortfall += "; those derived before are kept";
+          return;
+        }
+        added.unchecked = found.unchecked;
+        if (found.hand_unchecked)
+          added.shortfall = "whether the hand touches it was not looked at: " +
+                            (found.unchecked.empty()
+                                 ? "nothing that moves with tool '" + tool + "' has a set"
+                                 : joined(found.unchecked) +
+                                       ": no set ('links_without_set'), or an allowed contact");
+        if (other != nullptr && !before.empty() && before != derived)
+          throw Error(ErrorCode::InvalidInput,
+                      "object '" + added.object + "' has grasps " + prefix +
+                          "1, …, which may be those of robot '" + other->name +
+                          "', whose tool is called '" + tool +
+                          "', too: call one of the tools otherwise, or take these grasps out of "
+                          "the scene");
+        list = with_replaced(list, is_derived, derived);
       });
+  if (other != nullptr)
+    out.notes.push_back("robot '" + other->name + "' has a tool '" + tool +
+                        "', too: planners take these grasps for those of both, so that the tools "
+                        "need different names unless their hands are the same");
+  if (request.hold == GraspRequest::Hold::Sides && !std::isfinite(request.opening))
+    out.notes.push_back(
+        "how far the fingers open was not stated («opening»): faces are taken "
+        "however far apart they are");
+  return out;
 }
 
 AddedFeatures add_places(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const PlaceRequest& request) {
   SceneEdit edit(scene);
   const world::World& world = edit.world();
-  std::vector<std::string> kept;
   AddedFeatures out = edit.run(
       objects, "features", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
         const auto is_point = [](const Json& one, bool top) {
-          const std::string of = one.value("name", "");
-          return one.contains("point") && (top ? is_top(of) : of == "bottom");
+          const auto name = one.at("name").get<std::string>();
+          return one.contains("point") && (top ? is_top(name) : name == "bottom");
         };
         const std::vector<world::Feature> found = derive_places(world, object, request);
         const double size = world.objects[object].outer.box().diagonal();
         for (const bool top : {false, true}) {
+          const bool any = std::ranges::any_of(
+              found, [&](const world::Feature& feature) { return is_top(feature.name) == top; });
+          // Nothing takes the place of what is not found.
           const auto same = [&](const Json& one) { return is_point(one, top); };
-          if (request.replace) erase_entries(list, same);
-          const bool has = std::any_of(list.begin(), list.end(), same);
-          if (has && (kept.empty() || kept.back() != added.object)) kept.push_back(added.object);
-          bool any = has;
-          for (const world::Feature& feature : found) {
-            if (is_top(feature.name) != top) continue;
-            any = true;
-            if (has) continue;
-            list.push_back({{"name", feature.name}, {"point", numbers(feature.point, size)}});
-            added.names.push_back(feature.name);
+          const std::vector<std::string> has = names_of(entries_of(list, same));
+          if (!has.empty() && (!request.replace || !any)) {
+            added.kept.insert(added.kept.end(), has.begin(), has.end());
+            if (request.replace)
+              added.shortfall += std::string(added.shortfall.empty() ? "" : "; ") +
+                                 (top ? "no face looks up" : "it stands on no face") + ": '" +
+                                 has.front() + "' is kept";
+            continue;
           }
-          if (!any)
+          if (!any) {
             added.shortfall +=
                 std::string(added.shortfall.empty() ? "" : "; ") +
                 (top ? "no face looks up" : "it stands on no face, so that it has no bottom");
+            continue;
+          }
+          Json derived = Json::array();
+          for (const world::Feature& feature : found) {
+            if (is_top(feature.name) != top) continue;
+            derived.push_back(
+                {{"name", feature.name}, {"point", numbers(plain(feature.point, size))}});
+            added.names.push_back(feature.name);
+          }
+          list = with_replaced(list, same, derived);
         }
       });
-  for (const std::string& object : kept)
-    out.notes.push_back("object '" + object +
-                        "': the points that it has are kept; «force» replaces them");
+  for (const AddedFeatures::OfObject& object : out.objects)
+    if (!object.kept.empty() && !request.replace)
+      out.notes.push_back("object '" + object.object +
+                          "': the points that it has are kept; «force» replaces them");
   return out;
 }
 

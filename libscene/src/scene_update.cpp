@@ -7,6 +7,7 @@
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "set_maker.h"
 
@@ -249,5 +250,20 @@ class Update {
 }  // namespace
 
 MadeScene update_scene(const SceneUpdate& update) { return Update(update).run(); }
+
+std::vector<std::string> files_of(const fs::path& scene) {
+  std::vector<std::string> out{scene.string()};
+  const std::vector<char> bytes = io::read_file(scene);
+  const std::string text = world::scene_as_json({bytes.data(), bytes.size()}, scene.string());
+  const std::function<void(const Json&)> look_at = [&](const Json& value) {
+    if (value.is_object() && value.contains("file") && value.at("file").is_string())
+      out.push_back((scene.parent_path() / value.at("file").get<std::string>()).string());
+    if (value.is_structured())
+      for (const Json& part : value) look_at(part);
+  };
+  // What is no JSON names no files; whoever reads the scene says where it is wrong.
+  look_at(Json::parse(text, nullptr, false));
+  return out;
+}
 
 }  // namespace kaboum::scene

@@ -271,9 +271,10 @@ MadeScene SetMaker::write(const Json& scene) {
   const std::string text = yaml ? to_yaml(scene) : scene.dump(2) + "\n";
   const fs::path folder = scene_.parent_path();
   Json readable = scene;
-  for (Json& robot : readable.at("robots"))
-    if (const auto kept = kept_.find(robot.at("name")); kept != kept_.end())
-      for (const std::string& link : kept->second) robot["links_without_set"].push_back(link);
+  if (!kept_.empty())  // a scene may be without "robots"
+    for (Json& robot : readable.at("robots"))
+      if (const auto kept = kept_.find(robot.at("name")); kept != kept_.end())
+        for (const std::string& link : kept->second) robot["links_without_set"].push_back(link);
   static_cast<void>(
       world::parse_scene(readable.dump(2), scene_.string() + " (as JSON)",
                          [&](const std::string& file) { return read(folder, file); }));

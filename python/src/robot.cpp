@@ -340,7 +340,11 @@ RobotValue robot_of(const py::object& value, const char* argument) {
 std::vector<std::string> names_given(const py::object& names) {
   if (names.is_none()) return {};
   if (py::isinstance<py::str>(names)) return {names.cast<std::string>()};
-  return names.cast<std::vector<std::string>>();
+  try {
+    return names.cast<std::vector<std::string>>();
+  } catch (const py::cast_error&) {
+    throw Error(ErrorCode::InvalidArgument, "names must be a str or a sequence of str");
+  }
 }
 
 certify::LinkEpsilons epsilons_of(const py::object& given) {

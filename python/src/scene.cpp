@@ -24,14 +24,24 @@ struct SceneValue {
   std::shared_ptr<scene::SceneDraft> draft;
 };
 
-/// JSON of what Python states; arrays become lists.
-std::string json_text(const py::object& value) {
+/// JSON of what Python states; arrays become lists. @param of  whose it is, for messages
+std::string json_text(const py::object& value, const std::string& of) {
   const auto list_of = [](const py::object& o) -> py::object { return o.attr("tolist")(); };
-  return py::module_::import("json")
-      .attr("dumps")(value, py::arg("allow_nan") = false,
-                     py::arg("default") = py::cpp_function(list_of))
-      .cast<std::string>();
+  try {
+    return py::module_::import("json")
+        .attr("dumps")(value, py::arg("allow_nan") = false,
+                       py::arg("default") = py::cpp_function(list_of))
+        .cast<std::string>();
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError) &&
+        !error.matches(PyExc_AttributeError))
+      throw;
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              of + ": numbers must be finite, and all else texts, lists and dicts by name");
 }
+
+std::string object_called(const std::string& name) { return "object '" + name + "'"; }
 
 std::vector<double> pose_of(const py::object& at, const std::string& name) {
   std::vector<double> out;
@@ -126,7 +136,7 @@ std::string file_of(const SceneValue& scene) {
 }
 
 void add_entry(SceneValue& scene, const char* list, const py::object& entry) {
-  const std::string text = json_text(entry);
+  const std::string text = json_text(entry, list);
   run(0, [&] { scene.draft->add_entry(list, text); });
 }
 
@@ -144,7 +154,7 @@ void add_robot(SceneValue& scene, const std::string& name, const py::object& rob
     throw Error(ErrorCode::InvalidArgument, "robot must be a kaboum.CertifiedRobot");
   const auto& value = robot.cast<const CertifiedValue&>();
   if (!at.is_none()) members["base"] = pose_dict(at, name);
-  const std::string text = json_text(members);
+  const std::string text = json_text(members, "robot '" + name + "'");
   run(0, [&] { scene.draft->add_robot(name, value.file, value.made, text); });
 }
 
@@ -160,9 +170,9 @@ void add_object(SceneValue& scene, const std::string& name, const py::object& sh
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
   if (!features.is_none()) members["features"] = features;
   if (!grasps.is_none()) members["grasps"] = grasps;
-  const std::string text = json_text(members);
+  const std::string text = json_text(members, object_called(name));
   if (primitive) {
-    const std::string sizes = json_text(shape);
+    const std::string sizes = json_text(shape, object_called(name));
     run(0, [&] { scene.draft->add_primitive_object(name, sizes, text); });
     return;
   }
@@ -178,9 +188,9 @@ void add_region(SceneValue& scene, const std::string& name, const py::object& sh
   require_mesh(options, is_made(shape) || is_primitive(shape));
   py::dict members;
   if (!at.is_none()) members["pose"] = pose_dict(at, name);
-  const std::string text = json_text(members);
+  const std::string region = "region '" + name + "'", text = json_text(members, region);
   if (is_primitive(shape)) {
-    const std::string primitive = json_text(shape);
+    const std::string primitive = json_text(shape, region);
     run(0, [&] { scene.draft->add_primitive_region(name, primitive, text); });
     return;
   }
@@ -188,7 +198,6 @@ void add_region(SceneValue& scene, const std::string& name, const py::object& sh
   run(0, [&] { scene.draft->add_region(name, std::move(inner), text); });
 }
 
-/// A dict of names and files.
 /// Files by name; of what is described by its sizes, a primitive, where those are taken.
 std::vector<scene::NamedFile> files_of(const py::object& given, const char* argument,
                                        std::vector<scene::NamedPrimitive>* primitives = nullptr) {
@@ -201,8 +210,8 @@ std::vector<scene::NamedFile> files_of(const py::object& given, const char* argu
     const auto value = py::reinterpret_borrow<py::object>(shape);
     const std::string name = py::str(key);
     if (primitives != nullptr && is_primitive(value))
-      primitives->push_back(
-          {name, world::parse_primitive(json_text(value), "object '" + name + "'")});
+      primitives->push_back({name, world::parse_primitive(json_text(value, object_called(name)),
+                                                          object_called(name))});
     else
       out.push_back({name, path_text(value, argument)});
   }
@@ -256,15 +265,39 @@ py::dict update_scene(const py::object& path, const py::kwargs& given) {
 }
 
 py::dict dict_of_added(const scene::AddedFeatures& added) {
-  py::dict names, without;
+  py::dict names, kept, without, unchecked;
   for (const scene::AddedFeatures::OfObject& object : added.objects) {
-    names[py::str(object.object)] = object.names;
-    if (!object.shortfall.empty()) without[py::str(object.object)] = object.shortfall;
+    const py::str name(object.object);
+    names[name] = object.names;
+    if (!object.kept.empty()) kept[name] = object.kept;
+    if (!object.shortfall.empty()) without[name] = object.shortfall;
+    if (!object.unchecked.empty()) unchecked[name] = object.unchecked;
   }
   py::dict out;
   out["names"] = names;
+  out["kept"] = kept;
   out["without"] = without;
+  out["unchecked"] = unchecked;
   out["notes"] = spelled(added.notes);
+  return out;
+}
+
+/// The objects that are named; None: all, which is empty.
+std::vector<std::string> objects_given(const py::object& objects) {
+  if (objects.is_none()) return {};
+  if (py::isinstance<py::str>(objects)) return {objects.cast<std::string>()};
+  std::vector<std::string> out;
+  bool all_are_names = py::isinstance<py::iterable>(objects);
+  if (all_are_names)
+    for (const py::handle one : objects) {
+      all_are_names = all_are_names && py::isinstance<py::str>(one);
+      if (all_are_names) out.push_back(one.cast<std::string>());
+    }
+  if (!all_are_names)
+    throw Error(ErrorCode::InvalidArgument, "objects must be a str or a sequence of str");
+  if (out.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "objects is empty: name some, or leave it out for all objects");
   return out;
 }
 
@@ -277,7 +310,7 @@ py::dict add_derived(const char* function, const std::vector<Option<Request>>& t
   Request request;
   take_keywords(function, table, given, request, Runs::Briefly);
   const std::string file = path_text(path, "path");
-  const std::vector<std::string> names = names_given(objects);
+  const std::vector<std::string> names = objects_given(objects);
   return dict_of_added(run(0, [&] { return add(file, names, request); }));
 }
 
@@ -293,8 +326,8 @@ constexpr const char* kGraspsDoc =
     R"(Derives grasps of objects from the faces of their sets, free of contact with the hand, and writes
 them into the scene: `kaboum-scene grasps`.
 
-Grasps of the tool that were derived so before are replaced. Whether an arm gets there is not looked
-at.
+Grasps of the tool that were derived so before are replaced where some are found. Whether an arm
+gets there, and whether fingers or a cup reach the faces, is not looked at.
 
 Parameters
 ----------
@@ -306,7 +339,9 @@ objects : str or sequence of str, optional
 Returns
 -------
 dict
-    'names': by object, those of its grasps. 'without': by object, why it has none. 'notes'.)";
+    'names': by object, those of its grasps. 'kept': by object, of those that were derived before,
+    where none are found. 'without': by object, why none are found, or that nothing of the hand was
+    looked at. 'unchecked': by object, links of the hand that were not looked at. 'notes'.)";
 
 constexpr const char* kPlacesDoc =
     R"(Derives points on which objects stand ('bottom') and on which others are put ('top', 'top2', …)
@@ -322,7 +357,8 @@ objects : str or sequence of str, optional
 Returns
 -------
 dict
-    'names': by object, those of its points. 'without': by object, what it has not. 'notes'.)";
+    'names': by object, those of its points that were derived. 'kept': by object, of those that it
+    had. 'without': by object, what it has not. 'unchecked': empty. 'notes'.)";
 
 constexpr const char* kSceneDoc =
     R"(Robots, objects and regions with certified sets, put together in process (docs/scene.md).

@@ -36,7 +36,7 @@ expect 0 '' "$S" make cell.json --robot arm=arm.urdf --effort fast --epsilon 0.0
   --primitive table=box:0.4,0.3,0.04 --at table=0.52,-0.3,-0.02 --primitive shelf=box:0.2,0.15,0.02 --at shelf=0.45,0.3,0.05 \
   --primitive b1=box:0.024,0.024,0.06 --at b1=0.4,-0.25,0.0305 --primitive b2=box:0.024,0.024,0.06 --at b2=0.5,-0.25,0.0305,0,0,0.4 \
   --primitive b3=cylinder:0.011,0.06 --at b3=0.5,-0.35,0.0305
-expect 2 'has no tools' "$S" grasps cell.json
+expect 2 'cell.json: .*has no tools' "$S" grasps cell.json
 python3 - <<'END'
 import json
 d = json.load(open("cell.json"))
@@ -46,10 +46,16 @@ arm["home"] = {"j2": -0.5, "j3": 1.7, "j5": 1.9415926535897932}
 json.dump(d, open("cell.json", "w"), indent=1)
 END
 cp cell.json before.json
-expect 2 "no object 'shelv'; did you mean 'shelf'" "$S" grasps cell.json --object shelv
-expect 2 "no tool 'hamd'; did you mean 'hand'" "$S" grasps cell.json --tool hamd
+expect 2 "cell.json: .*no object 'shelv'; did you mean 'shelf'" "$S" grasps cell.json --object shelv
+expect 2 "cell.json: .*no tool 'hamd'; did you mean 'hand'" "$S" grasps cell.json --tool hamd
 expect 2 'directions' "$S" grasps cell.json --directions 0
 expect 2 'opening' "$S" grasps cell.json --opening -1
+# A report is written over nothing that the scene names.
+for command in grasps places update pairs; do
+  expect 2 'report would overwrite' "$S" "$command" cell.json --report cell/arm/hand.glb
+  expect 2 'report would overwrite' "$S" "$command" cell.json --report ./arm.urdf
+done
+expect 2 'srdf would overwrite' "$S" pairs cell.json --srdf arm.urdf
 cmp cell.json before.json || fail "a refused request changed the scene"
 
 expect 0 'shelf: 2' "$S" places cell.json --report p.json
@@ -59,7 +65,8 @@ expect 1 'table: none; no two parallel faces' "$S" grasps cell.json --object tab
 # Again: the same grasps, not twice as many.
 cp cell.json once.json
 expect 0 '' "$S" grasps cell.json --object b1 --object b2 --object b3 --closing x --opening 0.03
-expect 0 'the points that it has are kept; --force' "$S" places cell.json
+expect 0 'the points that it has are kept; --force' "$S" places cell.json --report kept.json
+grep -q 'b1: 2 kept (bottom' err.txt || fail "does not say what is kept: $(cat err.txt)"
 cmp cell.json once.json || fail "deriving again changed the scene"
 python3 - <<'END' || fail "reports and scene differ"
 import json
@@ -69,7 +76,9 @@ points = {o["name"]: [f["name"] for f in o["features"]] for o in scene["objects"
 for o in json.load(open("g.json"))["objects"]:
     assert o["names"] == grasps[o["object"]] and o["names"][0] == "hand/side-1" and not o["shortfall"], o
 for o in json.load(open("p.json"))["objects"]:
-    assert o["names"] == points[o["object"]] == ["bottom", "top"], o
+    assert o["names"] == points[o["object"]] == ["bottom", "top"] and not o["kept"] and not o["shortfall"], o
+for o in json.load(open("kept.json"))["objects"]:
+    assert o["kept"] == ["bottom", "top"] and not o["names"] and not o["shortfall"], o
 assert 0 < len(grasps["b3"]) <= 24 and grasps["table"] == []
 END
 
@@ -95,4 +104,97 @@ python3 -c '
 import json
 of = [g["name"] for o in json.load(open("cell.json"))["objects"] if o["name"] == "b1" for g in o["grasps"]]
 assert "hand/side-1" in of and "hand/face-2" in of, of' || fail "grasps of the other kind are gone"
+
+# What nothing was found for stays: grasps that were derived before, and points with --force.
+cp cell.json once.json
+expect 1 "b1: [0-9]* kept (hand/side-1 …); no two parallel faces.*within the opening; those derived before are kept" \
+  "$S" grasps cell.json --object b1 --closing x --opening 0.001 --report g.json
+cmp cell.json once.json || fail "grasps are gone where none were found"
+# edit PROGRAM: of the scene d, in Python
+edit() {
+  python3 -c "
+import json
+d = json.load(open('once.json'))
+of = {o['name']: o for o in d['objects']}
+arm = d['robots'][0]
+$1
+json.dump(d, open('edited.json', 'w'), indent=1)"
+  cp edited.json before.json
+}
+edit "of['b1']['pose'] = {'position': [0.4, -0.25, 0.04], 'rpy': [0.5, 0.3, 0]}"
+expect 1 "b1: 2 kept (bottom …); it stands on no face: 'bottom' is kept; no face looks up: 'top' is kept" \
+  "$S" places edited.json --object b1 --force
+cmp edited.json before.json || fail "points are gone where none were found"
+# A pyramid stands, and nothing stands on it.
+cat >pyramid.off <<'END'
+OFF
+5 6 0
+-1 -1 0
+1 -1 0
+1 1 0
+-1 1 0
+0 0 1
+3 0 2 1
+3 0 3 2
+3 0 1 4
+3 1 2 4
+3 2 3 4
+3 3 0 4
+END
+expect 0 '' "$S" make pyramid.json --object pyramid=pyramid.off --epsilon 1%
+expect 1 'pyramid: 1 (bottom …); no face looks up' "$S" places pyramid.json --quiet
+expect 1 'pyramid: 1 kept (bottom …); no face looks up' "$S" places pyramid.json
+
+# An object that is attached by a derived grasp stays where it is.
+edit "d['attachments'] = [{'object': 'b1', 'robot': 'arm', 'tool': 'hand', 'grasp': 'hand/side-3'}]"
+expect 0 'b1: [0-9]' "$S" grasps edited.json --object b1 --closing x --opening 0.03
+cmp edited.json before.json || fail "deriving the same grasps beside others changed the scene"
+for most in '--most 2' '--directions 3'; do
+  cp edited.json before.json
+  # shellcheck disable=SC2086
+  expect 3 "edited.json: the attachment of object 'b1' names its grasp 'hand/side-3', which .*state the pose" \
+    "$S" grasps edited.json --object b1 --closing x --opening 0.03 $most
+  cmp edited.json before.json || fail "a grasp that is attached by was changed"
+done
+
+# Grasps belong to tools by name only: nobody's are replaced by another robot's.
+edit "
+other = json.loads(json.dumps(arm))
+other.update(name='second', base={'position': [3, 0, 0]})
+other['tools'][0]['position'] = [0, 0, 0.13]
+d['robots'].append(other)"
+expect 0 "robot 'second' has a tool 'hand', too" "$S" grasps edited.json --robot arm --object b1 --closing x --opening 0.03
+expect 3 "edited.json: object 'b1' has grasps hand/side-1, …, which may be those of robot 'arm'" \
+  "$S" grasps edited.json --robot second --object b1 --closing x --opening 0.03 --directions 3
+cmp edited.json before.json || fail "the grasps of another robot were replaced"
+
+# A hand that is not looked at is said, and is not 0; a part of it is said, whatever is quiet.
+edit "
+arm['links'] = [l for l in arm['links'] if l['link'] != 'hand']
+arm['links_without_set'] = ['hand']"
+expect 1 "b1: .*whether the hand touches it was not looked at: arm/hand" \
+  "$S" grasps edited.json --object b1 --closing x --opening 0.03 --quiet --report g.json
+edit "d['allowed_contacts'] = [['b1', 'arm/hand']]"
+expect 1 "b1: .*whether the hand touches it was not looked at: arm/hand" "$S" grasps edited.json --object b1 --closing x --opening 0.03
+edit "
+arm['tools'].append({'name': 'low', 'link': 'forearm', 'position': [0, 0, 0.4]})
+d['allowed_contacts'] = [['b1', 'arm/hand']]"
+expect 0 'b1: whether arm/hand touches it was not looked at' \
+  "$S" grasps edited.json --object b1 --tool low --closing x --opening 0.03 --most 1 --quiet --report g.json
+python3 -c '
+import json
+o = json.load(open("g.json"))["objects"][0]
+assert o["unchecked"] == ["arm/hand"] and not o["shortfall"] and len(o["names"]) == 1, o' || fail "the report does not say what was not looked at"
+expect 0 'how far the fingers open was not stated (--opening)' "$S" grasps cell.json --object b2 --closing x
+
+# Neither robots nor flat faces.
+cat >nor.json <<'END'
+{"kaboum_scene": 1, "unit": "mm", "objects": [{"name": "b", "shape": {"box": {"size": [10, 10, 10]}}}]}
+END
+expect 0 'b: 2' "$S" places nor.json
+grep -q '"robots"' nor.json && fail "a scene got robots"
+expect 2 'nor.json: .*no robot' "$S" grasps nor.json
+edit "d['objects'].append({'name': 'ball', 'shape': {'sphere': {'radius': 0.015}}})"
+expect 1 'ball: none; it is round' "$S" grasps edited.json --object ball --closing x --opening 0.04
+expect 1 'ball: none; it is round' "$S" grasps edited.json --object ball --hold face
 finish

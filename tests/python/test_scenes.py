@@ -55,6 +55,18 @@ def test_grasps_and_places_are_the_programs(parts, monkeypatch):
     assert (parts / "a.json").read_bytes() == (parts / "b.json").read_bytes()
     with pytest.raises(kaboum.Error, match="did you mean 'post'"):
         kaboum.add_grasps("b.json", ["posts"])
+    for call in (kaboum.add_grasps, kaboum.add_places):
+        with pytest.raises(kaboum.Error, match="objects is empty.*leave it out"):
+            call("b.json", [])
+        for wrong in (3, b"post", [b"post"], ["post", 3]):
+            with pytest.raises(kaboum.Error, match="objects must be a str or a sequence of str"):
+                call("b.json", wrong)
+    assert (parts / "a.json").read_bytes() == (parts / "b.json").read_bytes()
+    # What is not found anew stays.
+    none = kaboum.add_grasps("b.json", "post", closing="x", opening=0.001)
+    assert none["names"] == {"post": []} and none["kept"] == grasps["names"] and "are kept" in none["without"]["post"]
+    again = kaboum.add_places("b.json", "post")
+    assert again["kept"] == {"post": ["bottom", "top"]} and again["without"] == {}
 
 
 def test_scene_is_the_programs(parts, monkeypatch):
@@ -160,8 +172,15 @@ def test_what_a_scene_refuses(parts, tmp_path):
                        (lambda: kaboum.World(3), "kaboum.Scene")):
         with pytest.raises(kaboum.Error, match=re.escape(says)):
             call()
-    with pytest.raises(ValueError):
+    with pytest.raises(kaboum.Error, match="robot 'arm'.*finite"):
         scene.add_robot("arm", made, at=(float("nan"), 0, 0))
+    for size in (float("nan"), object(), np.array([1, np.inf])):
+        ball = {"sphere": {"radius": size}}
+        for call in (lambda: scene.add_object("o", ball), lambda: kaboum.make_scene(tmp_path / "a.json", objects={"o": ball})):
+            with pytest.raises(kaboum.Error, match="object 'o'.*finite"):
+                call()
+        with pytest.raises(kaboum.Error, match="region 'o'.*finite"):
+            scene.add_region("o", ball)
     scene.add_robot("arm", made, nonsense=1)
     with pytest.raises(kaboum.Error, match="nonsense"):
         kaboum.World(scene)

@@ -4,13 +4,19 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
+#include <kaboum/io/mesh_io.h>
 #include <kaboum/scene/derived_features.h>
+#include <kaboum/scene/scene_update.h>
+#include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "support/temporary_folder.h"
 
 namespace kaboum::scene {
 namespace {
@@ -211,6 +217,149 @@ TEST(Grasps, OfWhatHasNoParallelFacesAreNone) {
   EXPECT_EQ(derive_grasps(world, 0, {.hold = GraspRequest::Hold::Face}).faces, 4U);
 }
 
+TEST(Grasps, OfRoundBodiesAreAtTheirFlatFacesOnly) {
+  world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
+  const auto faces = [&](std::vector<geom::ConvexBody> bodies, GraspRequest::Hold hold) {
+    world.objects[0].outer = {std::move(bodies), collide::Direction::Outer, 0};
+    return derive_grasps(world, 0, {.hold = hold, .directions = 1, .most = 100, .gap = 0});
+  };
+  const auto round = [](std::vector<Vec3> core, double radius) {
+    geom::ConvexBody out{"round", {}, radius};
+    out.core.vertices = std::move(core);
+    return out;
+  };
+  const geom::ConvexBody ball = round({Vec3::Zero()}, 0.1),
+                         capsule = round({{0, 0, -0.2}, {0, 0, 0.2}}, 0.1);
+  for (const auto hold : {GraspRequest::Hold::Sides, GraspRequest::Hold::Face}) {
+    EXPECT_EQ(faces({ball}, hold).faces, 0U);
+    EXPECT_EQ(faces({capsule}, hold).faces, 0U);
+  }
+  const Vec3 half(0.1, 0.2, 0.3);
+  const geom::ConvexBody box{"box", hull_of({-half, half}, {}), 0.05};
+  EXPECT_EQ(faces({box}, GraspRequest::Hold::Sides).faces, 3U);
+  const DerivedGrasps found = faces({box}, GraspRequest::Hold::Face);
+  ASSERT_EQ(found.grasps.size(), 6U);
+  for (const world::Grasp& grasp : found.grasps) {
+    const Transform tool = tool_in_object(grasp);
+    const Vec3 normal = -tool.linear.col(2);
+    int along = 0;
+    normal.cwiseAbs().maxCoeff(&along);
+    EXPECT_LT((tool.translation - (half[along] + 0.05) * normal).norm(), 1e-12);
+  }
+  // A ball on the middle of a face covers it.
+  EXPECT_EQ(faces({box, round({{0, 0, 0.4}}, 0.08)}, GraspRequest::Hold::Face).faces, 5U);
+  EXPECT_EQ(faces({box, round({{0, 0, 0.4}}, 0.04)}, GraspRequest::Hold::Face).faces, 6U);
+  // A rounded corner does not where planes that are moved out would; nearer, each covers the other.
+  geom::ConvexBody corner = box;
+  for (Vec3& v : corner.core.vertices) v += half + Vec3(0.04, 0.04, 0.39);
+  EXPECT_EQ(faces({box, corner}, GraspRequest::Hold::Face).faces, 12U);
+  for (Vec3& v : corner.core.vertices) v -= Vec3(0.03, 0.03, 0.03);
+  EXPECT_EQ(faces({box, corner}, GraspRequest::Hold::Face).faces, 10U);
+}
+
+TEST(Grasps, BySuctionAreTheLargestEpsilonOfTheHandAway) {
+  const Vec3 half(0.1, 0.2, 0.3);
+  world::World world = world_with({{-half, half}}, 9, {}, 0.004);
+  world::RobotModel& arm = world.robots[0];
+  // The tool is on a frame that is fixed to the palm; a finger moves against it.
+  arm.kinematics.links.insert(arm.kinematics.links.end(), {{"frame", {}, {}}, {"finger", {}, {}}});
+  arm.kinematics.joints.push_back(
+      {.name = "to frame", .type = robot::JointType::Fixed, .parent = 2, .origin = {}});
+  arm.kinematics.joints.push_back({.name = "j2",
+                                   .type = robot::JointType::Revolute,
+                                   .parent = 2,
+                                   .origin = {},
+                                   .axis = Vec3::UnitX(),
+                                   .variable = 1});
+  arm.kinematics.variables.push_back({"j2", -1.0, 1.0});
+  arm.home.push_back(0);
+  arm.tools[0].link = 3;
+  arm.shapes[1].outer = set_of({kPalm}, {}, 0.002);
+  arm.shapes.push_back({1, set_of({kPalm}, {}, 0.003), {}});
+  arm.shapes.push_back({4, set_of({kPalm}, {}, 0.1), {}});
+  const DerivedGrasps found =
+      derive_grasps(world, 0, {.hold = GraspRequest::Hold::Face, .directions = 1, .gap = 0.001});
+  ASSERT_EQ(found.grasps.size(), 6U);
+  for (const world::Grasp& grasp : found.grasps) {
+    const Transform tool = tool_in_object(grasp);
+    const Vec3 normal = -tool.linear.col(2);
+    EXPECT_NEAR(normal.dot(tool.translation), half.dot(normal.cwiseAbs()) + 0.008, 1e-12);
+  }
+}
+
+TEST(Grasps, SayWhatOfTheHandIsNotLookedAt) {
+  world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
+  world::RobotModel& arm = world.robots[0];
+  EXPECT_TRUE(derive_grasps(world, 0, {}).unchecked.empty());
+  EXPECT_FALSE(derive_grasps(world, 0, {}).hand_unchecked);
+  arm.kinematics.links[1].collision.emplace_back();  // but no set
+  EXPECT_EQ(derive_grasps(world, 0, {}).unchecked, std::vector<std::string>{"arm/wrist"});
+  EXPECT_FALSE(derive_grasps(world, 0, {}).hand_unchecked);
+  const world::Item object{world::Item::kObject, 0}, palm{0, 1};
+  for (const auto& pair : {std::array{object, palm}, std::array{palm, object}}) {
+    world.allowed = {pair};
+    const DerivedGrasps found = derive_grasps(world, 0, {});
+    EXPECT_EQ(found.unchecked, (std::vector<std::string>{"arm/wrist", "arm/palm"}));
+    EXPECT_TRUE(found.hand_unchecked);
+  }
+  world.allowed.clear();
+  arm.kinematics.links[1].collision.clear();
+  arm.shapes.pop_back();
+  EXPECT_TRUE(derive_grasps(world, 0, {}).unchecked.empty());
+  EXPECT_TRUE(derive_grasps(world, 0, {}).hand_unchecked);
+}
+
+/// A scene of an arm of frames and a box, in a folder.
+std::filesystem::path scene_in(const std::filesystem::path& folder) {
+  const std::string urdf =
+      "<robot name='arm'><link name='base'/><link name='hand'/><joint name='j' type='fixed'>"
+      "<parent link='base'/><child link='hand'/></joint></robot>";
+  std::ofstream(folder / "arm.urdf") << urdf;
+  const std::filesystem::path out = folder / "cell.json";
+  std::ofstream(out) << R"({"kaboum_scene": 1, "unit": "m", "robots": [{"name": "arm", "urdf":)"
+                     << R"({"file": "arm.urdf", "sha256": ")"
+                     << io::sha256(std::vector<char>(urdf.begin(), urdf.end()))
+                     << R"("}, "links": [], "tools": [{"name": "tip", "link": "hand"}]}],)"
+                     << R"("objects": [{"name": "b", "shape": {"box": {"size": [0.03, 0.07, 0.2]}})"
+                     << R"(}], "regions": [{"name": "r", "inner": {"file": "sub/r.glb"}}]})";
+  return out;
+}
+
+TEST(Grasps, AreDecidedAsTheyAreRead) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path scene = scene_in(folder.path());
+  const std::vector<std::string> named = files_of(scene);
+  EXPECT_EQ(named, (std::vector<std::string>{scene.string(), (folder.path() / "arm.urdf").string(),
+                                             (folder.path() / "sub/r.glb").string()}));
+  // Without the region, whose file is not there.
+  std::string text = [&] {
+    const std::vector<char> bytes = io::read_file(scene);
+    return std::string(bytes.begin(), bytes.end());
+  }();
+  text.erase(text.find(", \"regions\""));
+  std::ofstream(scene) << text << "}";
+  for (const auto hold : {GraspRequest::Hold::Sides, GraspRequest::Hold::Face}) {
+    const GraspRequest request{.hold = hold, .directions = 7, .most = 100};
+    const AddedFeatures added = add_grasps(scene, {}, request);
+    ASSERT_EQ(added.objects.size(), 1U);
+    EXPECT_NE(added.objects[0].shortfall.find("nothing that moves with tool 'tip' has a set"),
+              std::string::npos);
+    const world::World world = world::read_scene(scene.string()).world;
+    const DerivedGrasps again = derive_grasps(world, 0, request);
+    std::vector<world::Grasp> read;
+    for (const world::Grasp& grasp : world.objects[0].grasps)
+      if (std::ranges::find(added.objects[0].names, grasp.name) != added.objects[0].names.end())
+        read.push_back(grasp);
+    ASSERT_EQ(read.size(), again.grasps.size());
+    ASSERT_GT(read.size(), 20U);
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      EXPECT_EQ(read[i].name, again.grasps[i].name);
+      EXPECT_EQ(read[i].pose.linear, again.grasps[i].pose.linear);
+      EXPECT_EQ(read[i].pose.translation, again.grasps[i].pose.translation);
+    }
+  }
+}
+
 TEST(Grasps, NameWhatIsNotThere) {
   world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
   const auto refused = [&](const GraspRequest& request) -> std::string {
@@ -224,6 +373,7 @@ TEST(Grasps, NameWhatIsNotThere) {
   EXPECT_NE(refused({.tool = "tipp"}).find("no tool 'tipp'; did you mean 'tip'"),
             std::string::npos);
   EXPECT_NE(refused({.robot = "harm"}).find("harm"), std::string::npos);
+  EXPECT_NE(refused({.directions = 0}).find("directions"), std::string::npos);
   world.robots[0].tools.push_back({"other", 2, {}});
   EXPECT_NE(refused({}).find("several tools: name one of tip, other"), std::string::npos);
   world.robots[0].tools.clear();
@@ -249,6 +399,44 @@ TEST(Places, AreWhereTheObjectStandsAndWhatLooksUp) {
   world.objects[0].pose.linear =
       Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
   EXPECT_TRUE(derive_places(world, 0, {}).empty());
+}
+
+TEST(Places, OfWhatIsAttachedAreAsItsRobotHoldsIt) {
+  const Vec3 half(0.1, 0.2, 0.3);
+  world::World world = world_with({{-half, half}}, 9);
+  world.objects[0].pose.linear = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  EXPECT_TRUE(derive_places(world, 0, {}).empty());
+  world::Attachment held{.robot = 0, .link = 2, .pose = {}, .touching = {}};
+  held.pose.linear = Eigen::AngleAxisd(std::acos(-1.0), Vec3::UnitX()).toRotationMatrix();
+  world.attachments[0] = held;
+  const std::vector<world::Feature> found = derive_places(world, 0, {});
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_LT((found[0].point - Vec3(0, 0, 0.3)).norm(), 1e-9);  // upside down
+  EXPECT_LT((found[1].point - Vec3(0, 0, -0.3)).norm(), 1e-9);
+  // The robot is turned with its base.
+  world.robots[0].base.linear = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
+  EXPECT_TRUE(derive_places(world, 0, {}).empty());
+}
+
+TEST(Places, OfRoundBodiesAreOnTheirFlatFacesOnly) {
+  world::World world = world_with({{{0, 0, 0}, {1, 1, 1}}}, 9);
+  geom::ConvexBody capsule{"capsule", {}, 0.1};
+  capsule.core.vertices = {{-0.2, 0, 0.1}, {0.2, 0, 0.1}};
+  world.objects[0].outer = {{capsule}, collide::Direction::Outer, 0};
+  EXPECT_TRUE(derive_places(world, 0, {}).empty());
+  const Vec3 half(0.1, 0.2, 0.3);
+  const geom::ConvexBody box{"box", hull_of({-half, half}, {}), 0.05};
+  world.objects[0].outer = {{box}, collide::Direction::Outer, 0};
+  const std::vector<world::Feature> found = derive_places(world, 0, {});
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_LT((found[0].point - Vec3(0, 0, -0.35)).norm(), 1e-12);
+  EXPECT_LT((found[1].point - Vec3(0, 0, 0.35)).norm(), 1e-12);
+  // It stands on a ball, not on the box.
+  geom::ConvexBody ball{"ball", {}, 0.2};
+  ball.core.vertices = {{0, 0, -0.25}};
+  world.objects[0].outer = {{box, ball}, collide::Direction::Outer, 0};
+  ASSERT_EQ(derive_places(world, 0, {}).size(), 1U);
+  EXPECT_EQ(derive_places(world, 0, {})[0].name, "top");
 }
 
 }  // namespace

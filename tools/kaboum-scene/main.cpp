@@ -78,7 +78,7 @@ int make_scene(const tools::SceneOptions& o) {
 
 int update_scene(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  tools::require_apart({{"--report", o.common.report}}, scene::files_of(o.scene));
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
   tools::Progress progress(o.common.quiet);
@@ -105,14 +105,25 @@ int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
   for (const scene::AddedFeatures::OfObject& object : added.objects) {
     all = all && object.shortfall.empty();
     std::string line = object.object + ": ";
-    if (object.names.empty())
-      line += "none";
-    else
-      line += std::to_string(object.names.size()) + " (" + object.names.front() + " …)";
+    const auto count = [](const std::vector<std::string>& names, const char* what) {
+      return std::to_string(names.size()) + what + " (" + names.front() + " …)";
+    };
+    if (!object.names.empty()) line += count(object.names, "");
+    if (!object.kept.empty())
+      line += (object.names.empty() ? "" : ", ") + count(object.kept, " kept");
+    if (object.names.empty() && object.kept.empty()) line += "none";
     if (!object.shortfall.empty()) line += "; " + object.shortfall;
     tools::log(o.common.quiet && object.shortfall.empty(), line);
-    objects.push_back(
-        {{"object", object.object}, {"names", object.names}, {"shortfall", object.shortfall}});
+    // What the answer does not hold for is said whatever is quiet.
+    if (object.shortfall.empty())
+      for (const std::string& link : object.unchecked)
+        tools::log(false, object.object + ": whether " + link +
+                              " touches it was not looked at (no set, or an allowed contact)");
+    objects.push_back({{"object", object.object},
+                       {"names", object.names},
+                       {"kept", object.kept},
+                       {"shortfall", object.shortfall},
+                       {"unchecked", object.unchecked}});
   }
   tools::write_report(o.common, "kaboum-scene",
                       {{"command", command},
@@ -124,13 +135,13 @@ int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
 
 int add_grasps(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  tools::require_apart({{"--report", o.common.report}}, scene::files_of(o.scene));
   return say_added(o, scene::add_grasps(o.scene, o.objects, o.derived_grasps), "grasps");
 }
 
 int add_places(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::require_apart({{"--report", o.common.report}}, {o.scene});
+  tools::require_apart({{"--report", o.common.report}}, scene::files_of(o.scene));
   return say_added(o, scene::add_places(o.scene, o.objects, o.derived_places), "places");
 }
 
@@ -149,10 +160,9 @@ int main(int argc, char** argv) {
   CLI::App* places = tools::describe_places(app, options);
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done; 1 a link of a robot is not held as asked for, or an object has no such "
-      "grasp or point (the rest is written); 2 usage; 3 bad input; 4 output failed; 5 not built; 6 "
-      "internal error; "
-      "7 limit.");
+      "Exit codes: 0 done; 1 a link of a robot is not held as asked for, an object has no such "
+      "grasp or point, or no link of the hand was looked at (the rest is written); 2 usage; 3 bad "
+      "input; 4 output failed; 5 not built; 6 internal error; 7 limit.");
   return tools::run(app, argc, argv, [&] {
     if (make->parsed()) return make_scene(options);
     if (grasps->parsed()) return add_grasps(options);

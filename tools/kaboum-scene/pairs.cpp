@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/scene/scene_update.h>
 #include <kaboum/world/allowed_pairs.h>
 #include <kaboum/world/scene.h>
 
@@ -12,7 +13,7 @@
 namespace kaboum::tools {
 
 int find_pairs(const SceneOptions& o) {
-  require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, {o.scene});
+  require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, scene::files_of(o.scene));
   const world::SceneFile scene = world::read_scene(o.scene);
   for (const std::string& note : scene.notes) log(o.common.quiet, note);
   const auto say = [&](const std::string& line) {

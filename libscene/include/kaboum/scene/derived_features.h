@@ -31,7 +31,7 @@ struct GraspRequest {
   double opening = std::numeric_limits<double>::infinity();
   std::size_t directions = 8;  ///< of approach, evenly round the axis of closing or of suction
   std::size_t most = 24;       ///< grasps
-  double gap = 0.001;          ///< from the tool to a face, beyond both sets' ε [length]
+  double gap = 0.001;  ///< from the tool to a face, beyond the ε of object and hand [length]
 };
 
 /// Grasps that were derived, and those that were left out.
@@ -40,14 +40,19 @@ struct DerivedGrasps {
   std::size_t faces = 0;             ///< pairs of faces, or faces, that fit
   std::size_t in_contact = 0;        ///< grasps in contact with the hand, wherever the tool was put
   std::string contact;               ///< one of those contacts: "arm/palm"; empty: there was none
+  /// Links of the hand whose contact with the object was not looked at: they have shapes but no
+  /// set, or the contact is allowed.
+  std::vector<std::string> unchecked;
+  bool hand_unchecked = false;  ///< no link of the hand was looked at
 };
 
 /// Grasps of an object: at faces of its outer set whose middle no other body covers. Of two
 /// fingers, the tool is in the middle of where the faces face each other or, where the hand would
 /// be in contact, nearer to where it comes from. Each grasp is free of contact between the object
-/// and the hand (what moves with the tool), with the robot's joints at home, by bounded predicates.
-/// Reachability by an arm is not decided.
-/// @throws Error{InvalidArgument} for names that the world does not have
+/// and the hand (what moves with the tool), with the robot's joints at home, by bounded predicates;
+/// it is the pose by the numbers that a scene states. Whether an arm gets there, and whether
+/// fingers or a cup reach the faces, is not decided. Round bodies have no faces.
+/// @throws Error{InvalidArgument} for names that the world does not have, and no directions
 DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
                             const GraspRequest& request);
 
@@ -58,8 +63,9 @@ struct PlaceRequest {
 };
 
 /// Points of an object as placing reads them, in its frame: "bottom", the middle of the faces on
-/// which it stands as the scene has it, and "top", "top2", … in the middle of faces that look up,
-/// the largest first, whose middle no other body covers. Faces are level within 0.001 rad.
+/// which it stands as the scene has it (attached: as its robot at home holds it), and "top",
+/// "top2", … in the middle of faces that look up, the largest first, whose middle no other body
+/// covers. Faces are level within 0.001 rad.
 std::vector<world::Feature> derive_places(const world::World& world, std::size_t object,
                                           const PlaceRequest& request);
 
@@ -67,17 +73,24 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
 struct AddedFeatures {
   struct OfObject {
     std::string object;
-    std::vector<std::string> names;  ///< of grasps or points
-    std::string shortfall;           ///< why there are none; empty: there are some
+    std::vector<std::string> names;  ///< of grasps or points that were derived
+    std::vector<std::string> kept;   ///< of those that it had, and that stay in their place
+    /// What it lacks of what was asked for, and why; or that no link of the hand was looked at.
+    /// Empty: it lacks nothing.
+    std::string shortfall;
+    std::vector<std::string> unchecked;  ///< of grasps, as DerivedGrasps
   };
   std::vector<OfObject> objects;
   std::vector<std::string> notes;
 };
 
 /// Derives grasps of objects and writes them into the scene. Grasps of the tool that were derived
-/// so before are replaced, all else stays (of YAML, but for comments).
+/// so before are replaced where some are found, all else stays (of YAML, but for comments).
 /// @param objects  by name; empty: all
-/// @throws Error as derive_grasps, world::read_scene; Error{OutputFailed}
+/// @throws Error as derive_grasps, world::read_scene; Error{InvalidInput} where a grasp would
+/// change
+///   that an attachment names, or grasps that may be those of another robot's tool of the same
+///   name; Error{OutputFailed}
 AddedFeatures add_grasps(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const GraspRequest& request);
 

@@ -20,4 +20,8 @@ struct SceneUpdate {
 /// @throws Error naming the file, and what cannot be made anew because it is not known how.
 MadeScene update_scene(const SceneUpdate& update);
 
+/// A scene's file and all that it names: robots, sets, and what they were made from.
+/// @throws Error as world::scene_as_json, and where the file cannot be read
+std::vector<std::string> files_of(const std::filesystem::path& scene);
+
 }  // namespace kaboum::scene
