@@ -1,7 +1,7 @@
 # What most sources of libraries include is read once, for all of them. Clang-tidy reads each source by itself and sees
 # what one forgot to include.
 if(KABOUM_UNITY)
-  file(WRITE ${PROJECT_BINARY_DIR}/library_headers.cpp "")
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/library_headers.cpp CONTENT "")  # not anew each time
   add_library(kaboum_library_headers OBJECT ${PROJECT_BINARY_DIR}/library_headers.cpp)
   set_target_properties(kaboum_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(kaboum_library_headers PRIVATE kaboum_options Eigen3::Eigen nlohmann_json::nlohmann_json)
