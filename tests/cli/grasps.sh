@@ -125,6 +125,13 @@ edit "of['b1']['pose'] = {'position': [0.4, -0.25, 0.04], 'rpy': [0.5, 0.3, 0]}"
 expect 1 "b1: 2 kept (bottom …); it stands on no face: 'bottom' is kept; no face looks up: 'top' is kept" \
   "$S" places edited.json --object b1 --force
 cmp edited.json before.json || fail "points are gone where none were found"
+# Nor does a point go that the scene needs.
+edit "
+of['b1']['features'].append({'name': 'top2', 'point': [0, 0, 0]})
+d['constraints'] = [{'name': 'c', 'all': [{'relation': 'coincident', 'first': 'b1/top2', 'second': 'b2/top'}]}]"
+expect 0 'b1: 3 kept' "$S" places edited.json --object b1
+expect 3 "edited.json: nothing is written, .* 'b1/top2'" "$S" places edited.json --object b1 --force
+cmp edited.json before.json || fail "a point that a constraint names is gone"
 # A pyramid stands, and nothing stands on it.
 cat >pyramid.off <<'END'
 OFF
