@@ -23,6 +23,7 @@
 #include <kaboum/distance/minimum.h>
 #include <kaboum/distance/sampling.h>
 #include <kaboum/distance/search.h>
+#include <kaboum/geom/directed_distance.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 #include <meshoptimizer.h>

@@ -32,18 +32,18 @@ std::size_t robot_named(const World& world, const std::string& name) {
   for (const RobotModel& robot : world.robots) names.push_back(robot.name);
   if (name.empty()) {
     if (names.size() == 1) return 0;
-    throw Error(ErrorCode::InvalidArgument, names.empty()
-                                                ? "the scene has no robot"
-                                                : "the scene has several robots: name one (robot)");
+    throw Error(ErrorCode::InvalidArgument,
+                names.empty() ? "the scene has no robot"
+                              : "the scene has several robots: name one («robot»)");
   }
   if (const auto robot = world.find_robot(name)) return *robot;
   throw Error(ErrorCode::InvalidArgument,
-              "robot: the scene has no robot '" + name + "'" + did_you_mean(name, names));
+              "«robot»: the scene has no robot '" + name + "'" + did_you_mean(name, names));
 }
 
 const ToolFrame& tool_named(const RobotModel& robot, const std::string& name) {
   if (robot.tools.empty())
-    throw Error(ErrorCode::InvalidArgument, "tool: robot '" + robot.name + "' has no tools");
+    throw Error(ErrorCode::InvalidArgument, "«tool»: robot '" + robot.name + "' has no tools");
   if (name.empty() && robot.tools.size() == 1) return robot.tools.front();
   std::vector<std::string> names;
   std::string all;
@@ -53,7 +53,7 @@ const ToolFrame& tool_named(const RobotModel& robot, const std::string& name) {
     all += (all.empty() ? "" : ", ") + tool.name;
   }
   throw Error(ErrorCode::InvalidArgument,
-              "tool: robot '" + robot.name +
+              "«tool»: robot '" + robot.name +
                   (name.empty() ? "' has several tools: name one of " + all
                                 : "' has no tool '" + name + "'" + did_you_mean(name, names)));
 }

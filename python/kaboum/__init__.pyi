@@ -321,6 +321,12 @@ class MotionCheck:
     def free_until(self) -> tuple[int, float]: ...
     @property
     def contact(self) -> dict[str, Any] | None: ...
+    @property
+    def kept(self) -> Literal["kept", "broken", "undecided"] | None: ...
+    @property
+    def kept_until(self) -> tuple[int, float]: ...
+    @property
+    def deviation(self) -> str | None: ...
     def __bool__(self) -> bool: ...
 
 class Inclusion:
@@ -352,6 +358,10 @@ class Path:
     def contact(self) -> dict[str, Any] | None: ...
     @property
     def blockers(self) -> list[tuple[str, str, int]]: ...
+    @property
+    def kept(self) -> str: ...
+    @property
+    def broken(self) -> str | None: ...
     def trajectory(
         self,
         *,
@@ -486,6 +496,10 @@ class World:
         resolution: float = 1e-05,
         max_intervals: int = 1000000,
         # end of options
+        # options of keep
+        keep: str | Sequence[str] | None = None,
+        tool: str = "",
+        # end of options
         progress: _Progress | None = None,
     ) -> MotionCheck: ...
     def find_path(
@@ -501,6 +515,10 @@ class World:
         shortcuts: int = 60,
         seed: int = 1,
         resolution: float = 1e-05,
+        # end of options
+        # options of keep
+        keep: str | Sequence[str] | None = None,
+        tool: str = "",
         # end of options
         progress: _Progress | None = None,
     ) -> Path: ...
@@ -533,6 +551,16 @@ class World:
         robot: str | None = None,
         progress: _Progress | None = None,
     ) -> Any: ...
+    def pose_goals(
+        self,
+        pose: ArrayLike,
+        *,
+        start: ArrayLike | None = None,
+        tool: str | None = None,
+        robot: str | None = None,
+        seed: int = 1,
+        progress: _Progress | None = None,
+    ) -> NDArray[np.float64]: ...
     def stays_inside(
         self,
         what: str,

@@ -5,6 +5,7 @@
 #include <kaboum/base/option.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/robot/base_pose.h>
 
 #include <cmath>
 
@@ -138,6 +139,42 @@ std::string required_path(const py::object& value, const char* argument) {
     throw Error(ErrorCode::InvalidArgument,
                 std::string(argument) + " must be a str or an os.PathLike");
   return *path;
+}
+
+std::vector<double> numbers_of(const py::object& given, const char* name) {
+  const py::array array = array_from(given);
+  if (!array || array.ndim() != 1) {
+    PyErr_Clear();
+    throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a row of numbers");
+  }
+  require_doubles(array.attr("reshape")(1, -1).cast<py::array>(), name);
+  const auto doubles =
+      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!doubles) throw py::error_already_set();
+  std::vector<double> out(doubles.data(), doubles.data() + doubles.size());
+  for (const double x : out)
+    if (!std::isfinite(x))
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string(name) + " has a value that is not finite");
+  return out;
+}
+
+geom::Transform pose_from(const py::object& pose) {
+  const py::array array = array_from(pose);
+  if (!array) PyErr_Clear();
+  std::vector<double> numbers;
+  if (array && array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4) {
+    const std::vector<double> m = numbers_of(array.attr("reshape")(16), "pose");
+    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+      throw Error(ErrorCode::InvalidArgument, "pose: the matrix's last row must be 0, 0, 0, 1");
+    numbers = {m[3], m[7], m[11], m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
+  } else {
+    numbers = numbers_of(pose, "pose");
+  }
+  std::string text;
+  for (const double x : numbers)
+    text += (text.empty() ? "" : ",") + py::repr(py::float_(x)).cast<std::string>();
+  return robot::parse_pose(text, "pose");
 }
 
 }  // namespace kaboum::python

@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/transform.h>
 #include <kaboum/io/mesh_io.h>
 #include <pybind11/numpy.h>
 
@@ -56,6 +57,15 @@ py::array array_from(const py::object& value);
 /// @param name  what it is, for messages
 /// @throws Error{InvalidArgument} naming the first that is none
 void require_doubles(const py::array& array, const std::string& name);
+
+/// A row of numbers, all of them finite doubles.
+/// @throws Error{InvalidArgument} naming the argument
+std::vector<double> numbers_of(const py::object& given, const char* name);
+
+/// A pose of x, y, z and roll, pitch, yaw, a quaternion or a matrix, row by row; or of a 4 x 4
+/// matrix.
+/// @throws Error{InvalidArgument} where it is none of these
+geom::Transform pose_from(const py::object& pose);
 
 /// Notes of libraries with options as Python names them.
 std::vector<std::string> spelled(std::vector<std::string> notes);

@@ -79,45 +79,6 @@ py::list families_of(const InverseValue& value) {
   return out;
 }
 
-/// Values of so many numbers, all finite doubles.
-std::vector<double> numbers_of(const py::object& given, const char* name) {
-  const py::array array = array_from(given);
-  if (!array || array.ndim() != 1) {
-    PyErr_Clear();
-    throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a row of numbers");
-  }
-  require_doubles(array.attr("reshape")(1, -1).cast<py::array>(), name);
-  const auto doubles =
-      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!doubles) throw py::error_already_set();
-  std::vector<double> out(doubles.data(), doubles.data() + doubles.size());
-  for (const double x : out)
-    if (!std::isfinite(x))
-      throw Error(ErrorCode::InvalidArgument,
-                  std::string(name) + " has a value that is not finite");
-  return out;
-}
-
-/// x, y, z and roll, pitch, yaw, a quaternion or a matrix, row by row; or a 4 x
-/// 4 matrix.
-kinematics::Transform target_of(const py::object& pose) {
-  const py::array array = array_from(pose);
-  if (!array) PyErr_Clear();
-  std::vector<double> numbers;
-  if (array && array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4) {
-    const std::vector<double> m = numbers_of(array.attr("reshape")(16), "pose");
-    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
-      throw Error(ErrorCode::InvalidArgument, "pose: the matrix's last row must be 0, 0, 0, 1");
-    numbers = {m[3], m[7], m[11], m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-  } else {
-    numbers = numbers_of(pose, "pose");
-  }
-  std::string text;
-  for (const double x : numbers)
-    text += (text.empty() ? "" : ",") + py::repr(py::float_(x)).cast<std::string>();
-  return robot::parse_pose(text, "pose");
-}
-
 InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
                                 const std::optional<std::string>& tip,
                                 const std::optional<std::string>& base, const py::object& pose_of,
@@ -141,7 +102,7 @@ InverseValue inverse_kinematics(const py::object& robot, const py::object& pose,
           std::string(name) + " must have a value for each of " + robot::names_of(out.joints));
     return q;
   };
-  request.target = pose_of.is_none() ? target_of(pose)
+  request.target = pose_of.is_none() ? pose_from(pose)
                                      : kinematics::forward(*arm, joints_of(pose_of, "pose_of"));
   if (!reference.is_none()) request.reference = joints_of(reference, "reference");
   Watch watch(running.progress);

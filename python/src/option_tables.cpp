@@ -6,6 +6,7 @@
 #include <kaboum/distance/compare_options.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
+#include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/trajectory_options.h>
 #include <kaboum/picture/panels.h>
@@ -46,6 +47,7 @@ void bind_option_tables(py::module_& module) {
         out["check"] = table_of(keywords_of(world::state_options()));
         out["check_motion"] = table_of(keywords_of(world::motion_options()));
         out["find_path"] = table_of(keywords_of(motion::path_options()));
+        out["keep"] = table_of(keywords_of(motion::keep_options()));
         out["trajectory"] = table_of(keywords_of(motion::trajectory_options()));
         out["link_pairs"] = table_of(keywords_of(world::pair_options()));
         out["inverse_kinematics"] = table_of(keywords_of(kinematics::inverse_options()));

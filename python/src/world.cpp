@@ -1,6 +1,8 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
+#include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
+#include <kaboum/motion/pose_goals.h>
 #include <kaboum/motion/sampled_path.h>
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
@@ -42,6 +44,13 @@ struct ContactList {
 struct MotionValue {
   WorldValue in;
   world::MotionAnswer answer;
+  std::vector<motion::PathConstraint> constraints;
+  motion::ConstraintAnswer kept;
+
+  [[nodiscard]] bool holds() const {
+    return answer.outcome == world::MotionAnswer::Outcome::Free &&
+           kept.outcome == motion::ConstraintAnswer::Outcome::Kept;
+  }
 };
 
 struct PathValue {
@@ -49,11 +58,19 @@ struct PathValue {
   std::size_t robot = 0;
   double resolution = 0;  ///< that it was found with
   motion::PathAnswer answer;
+  std::vector<motion::PathConstraint> constraints;
 };
 
 struct TrajectoryValue {
   motion::SampledPath made;
 };
+
+std::vector<Keyword> motion_keywords() {
+  return keywords_of(world::motion_options()) + keywords_of(motion::keep_options());
+}
+std::vector<Keyword> path_keywords() {
+  return keywords_of(motion::path_options()) + keywords_of(motion::keep_options());
+}
 
 std::size_t robot_index(const world::World& world, const std::optional<std::string>& name) {
   return world::robot_named(world, name.value_or(""));
@@ -207,8 +224,12 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
 MotionValue check_motion(const WorldValue& in, const py::object& path,
                          const std::optional<std::string>& robot, const py::kwargs& given) {
   world::MotionOptions options;
-  const RunKeywords running =
-      take_keywords("check_motion", world::motion_options(), given, options, Runs::Alone);
+  motion::KeepRequest keep;
+  py::dict keywords = given;
+  take_options(world::motion_options(), keywords, options);
+  take_options(motion::keep_options(), keywords, keep);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
+  require_all_taken("check_motion", keywords, motion_keywords(), Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   bool one = false;
   const robot::Path rows =
@@ -216,16 +237,26 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   Watch watch(running.progress);
   options.progress = watch.hook();
   return run(0, [&] {
-    return MotionValue{
-        in, world::check_motion(*in.checker, initial_state(in.world()), index, rows, options)};
+    MotionValue out{in, {}, {}, {}};
+    const world::WorldState state = initial_state(in.world());
+    if (!rows.empty())
+      out.constraints =
+          constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep);
+    out.answer = world::check_motion(*in.checker, state, index, rows, options);
+    out.kept = check_constraints(in.world().robots[index], rows, out.constraints);
+    return out;
   });
 }
 
 PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
                     const std::optional<std::string>& robot, const py::kwargs& given) {
   motion::PathOptions options;
-  const RunKeywords running =
-      take_keywords("find_path", motion::path_options(), given, options, Runs::Alone);
+  motion::KeepRequest keep;
+  py::dict keywords = given;
+  take_options(motion::path_options(), keywords, options);
+  take_options(motion::keep_options(), keywords, keep);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
+  require_all_taken("find_path", keywords, path_keywords(), Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
   bool one = false;
@@ -235,10 +266,36 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   Watch watch(running.progress);
   options.check.progress = watch.hook();
   return run(0, [&] {
+    const world::WorldState state = initial_state(in.world());
+    options.constraints = constraints_of(in.world(), state, index, from.front(), to, keep);
     return PathValue{in, index, options.check.resolution,
-                     motion::find_path(*in.checker, initial_state(in.world()), index, from.front(),
-                                       to, options)};
+                     motion::find_path(*in.checker, state, index, from.front(), to, options),
+                     options.constraints};
   });
+}
+
+py::array pose_goals(const WorldValue& in, const py::object& pose, const py::object& start,
+                     const std::optional<std::string>& tool,
+                     const std::optional<std::string>& robot, std::uint64_t seed,
+                     const py::object& progress) {
+  const std::size_t index = robot_index(in.world(), robot);
+  const world::RobotModel& model = in.world().robots[index];
+  const std::size_t variables = model.kinematics.variables.size();
+  robot::Path from{model.home};
+  if (!start.is_none()) {
+    bool one = false;
+    from = rows_of(start, variables, "start", one);
+    if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
+  }
+  const geom::Transform target = pose_from(pose);
+  Watch watch(progress);
+  const motion::PoseGoals goals = run(0, [&] {
+    return motion::pose_goals(model, motion::moving_frame(model, tool.value_or("")), target,
+                              from.front(), seed, watch.hook());
+  });
+  if (goals.configurations.empty())
+    return py::array_t<double>(std::vector<py::ssize_t>{0, static_cast<py::ssize_t>(variables)});
+  return rows_array(goals.configurations);
 }
 
 TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
@@ -250,9 +307,9 @@ TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
   Watch watch(running.progress);
   return run(0, [&] {
     const world::WorldState state = initial_state(path.in.world());
-    return TrajectoryValue{motion::sample_path({*path.in.checker, state, path.robot},
-                                               path.answer.path, options, path.resolution,
-                                               motion::AngleUnit::Radians, watch.hook())};
+    return TrajectoryValue{motion::sample_path(
+        {*path.in.checker, state, path.robot, path.constraints}, path.answer.path, options,
+        path.resolution, motion::AngleUnit::Radians, watch.hook())};
   });
 }
 
@@ -473,12 +530,11 @@ void bind_answers(py::module_& module) {
         return "<kaboum.Contacts: " +
                (c.contacts.empty() ? std::string("free") : std::to_string(c.contacts.size())) + ">";
       });
-  py::class_<MotionValue>(module, "MotionCheck",
-                          "Whether a motion is free; true if and only if it is, at every instant.")
-      .def("__bool__",
-           [](const MotionValue& m) {
-             return m.answer.outcome == world::MotionAnswer::Outcome::Free;
-           })
+  py::class_<MotionValue>(
+      module, "MotionCheck",
+      "Whether a motion is free, and keeps what was asked for; true if and only "
+      "if it does, at every instant.")
+      .def("__bool__", &MotionValue::holds)
       .def_property_readonly(
           "outcome", [](const MotionValue& m) { return outcome_of(m.answer); },
           "'free', 'contact' or 'undecided' (max_intervals was reached).")
@@ -494,6 +550,27 @@ void bind_answers(py::module_& module) {
             return dict_of(m.in.world(), *m.answer.contact);
           },
           "The first contact that was found, as in `Contacts.pairs`, or None.")
+      .def_property_readonly(
+          "kept",
+          [](const MotionValue& m) -> py::object {
+            using Kept = motion::ConstraintAnswer::Outcome;
+            if (m.constraints.empty()) return py::none();
+            return py::str(m.kept.outcome == Kept::Kept     ? "kept"
+                           : m.kept.outcome == Kept::Broken ? "broken"
+                                                            : "undecided");
+          },
+          "Of what was to be kept: 'kept', 'broken' or 'undecided'; None: nothing was.")
+      .def_property_readonly(
+          "kept_until",
+          [](const MotionValue& m) { return py::make_tuple(m.kept.segment, m.kept.share); },
+          "As `free_until`, where 'broken' or 'undecided' was found.")
+      .def_property_readonly(
+          "deviation",
+          [](const MotionValue& m) -> py::object {
+            if (m.kept.outcome == motion::ConstraintAnswer::Outcome::Kept) return py::none();
+            return py::str(describe(m.kept, m.constraints));
+          },
+          "What was not kept, in words, or None.")
       .def("__repr__", [](const MotionValue& m) {
         return std::string("<kaboum.MotionCheck: ") + outcome_of(m.answer) + ">";
       });
@@ -602,6 +679,17 @@ void bind_path(py::module_& module) {
           },
           "What start or goal touches, or None.")
       .def_property_readonly(
+          "kept", [](const PathValue& p) { return words_of(p.constraints, p.answer.deviations); },
+          "The constraints that it keeps and how far it is off, in words; empty: none were asked "
+          "for.")
+      .def_property_readonly(
+          "broken",
+          [](const PathValue& p) -> py::object {
+            if (!p.answer.broken) return py::none();
+            return py::str(describe(*p.answer.broken, p.constraints));
+          },
+          "What start or goal does not keep, in words, or None.")
+      .def_property_readonly(
           "blockers",
           [](const PathValue& p) {
             py::list out;
@@ -678,6 +766,30 @@ progress
 Returns
 -------
 Inclusion)";
+
+constexpr const char* kPoseGoalsDoc =
+    R"(Configurations within the limits with which a robot's tool has a pose: goals of `find_path`.
+
+Parameters
+----------
+pose : array
+    Of the tool in the world: a 4 x 4 matrix, or x, y, z and roll, pitch, yaw, a quaternion or a
+    matrix, row by row.
+start : array, optional
+    Joints that do not move the tool keep their values of it; home by default.
+tool : str, optional
+    Of the robot; the only one by default, of a robot without tools its last link.
+robot : str, optional
+    Its name, where the scene has several.
+seed : int
+    Of the numeric search, where there is no closed form.
+progress
+    As of `check`.
+
+Returns
+-------
+array
+    n x k, a row for each; none where none was found.)";
 
 constexpr const char* kStaysDoc =
     R"(Whether a thing stays in a region along a path, at every instant.
@@ -757,10 +869,13 @@ void bind_questions_with_options(WorldClass& world) {
   const std::string draw_text =
       document("draw", "self: object, q: object, file: object = None, *, robot: object = None",
                keywords_of(world::state_options()), "bytes", kDrawDoc, Runs::Briefly);
-  const std::string motion_text = text("check_motion", "path: object, ", world::motion_options(),
-                                       "kaboum.MotionCheck", kMotionDoc);
-  const std::string path_text = text("find_path", "start: object, goals: object, ",
-                                     motion::path_options(), "kaboum.Path", kPathDoc);
+  const std::string robot_text = "*, robot: object = None";
+  const std::string motion_text =
+      document("check_motion", "self: object, path: object, " + robot_text, motion_keywords(),
+               "kaboum.MotionCheck", kMotionDoc, Runs::Alone);
+  const std::string path_text =
+      document("find_path", "self: object, start: object, goals: object, " + robot_text,
+               path_keywords(), "kaboum.Path", kPathDoc, Runs::Alone);
   const std::string stays_text = text("stays_inside", "what: str, region: str, path: object, ",
                                       world::motion_options(), "kaboum.Inclusion", kStaysDoc);
   const std::string pairs_text =
@@ -786,7 +901,10 @@ void bind_questions(WorldClass& world) {
            "Of n x k values, n bools: whether each configuration is free, for certain.")
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
-           kInsideDoc);
+           kInsideDoc)
+      .def("pose_goals", &pose_goals, py::arg("pose"), py::kw_only(), py::arg("start") = py::none(),
+           py::arg("tool") = py::none(), py::arg("robot") = py::none(), py::arg("seed") = 1,
+           py::arg("progress") = py::none(), kPoseGoalsDoc);
   bind_questions_with_options(world);
 }
 

@@ -128,4 +128,42 @@ absent none.csv none2.csv
 expect 7 'samples' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-6
 expect 7 'more than 5000000' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-velocity 1e-4
 absent none.csv none2.csv
+# What is kept: the tool's end on the straight line to a pose, certified; the same path without is not.
+python3 - <<'END' || fail "scene with a tool"
+import json
+cell = json.load(open("cell.json"))
+cell["robots"][0]["tools"] = [{"name": "end", "link": "tip", "position": [1, 0, 0]}]
+cell["constraints"] = [{"name": "off-wall", "all": [
+    {"relation": "distance", "first": "world.zx", "second": "arm/end.origin", "value": 1.5, "within": 0.5}]}]
+json.dump(cell, open("kept.json", "w"))
+cell["constraints"][0]["all"][0]["second"] = "arm/ende.origin"
+json.dump(cell, open("misspelt.json", "w"))
+END
+POSE=$(python3 -c "from math import *; print(cos(1.2) + cos(1.8), sin(1.2) + sin(1.8), 0, 0, 0, 1.8, sep=',')")
+expect 0 'kept: line within 0.001 (' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep line=0.001 -o line.csv --trajectory line-samples.csv --report line.json
+shows 0 'kept at every instant: line within 0.001' "$BIN/kaboum-check" kept.json --path line.csv --keep line=0.001 --report kept-report.json
+shows 0 'kept at every instant' "$BIN/kaboum-check" kept.json --path line-samples.csv --keep line=0.001 --resolution 1e-8 --max-intervals 100000000
+python3 - <<'END' || fail "the end is not on the line"
+import csv, json, math
+def end(q): return complex(math.cos(q[0]) + math.cos(q[0] + q[1]), math.sin(q[0]) + math.sin(q[0] + q[1]))
+rows = [[float(x) for x in row] for row in list(csv.reader(open("line.csv")))[1:]]
+assert len(rows) > 3, rows
+a, b = end(rows[0]), end(rows[-1])
+for p, q in zip(rows, rows[1:]):
+    for k in range(101):
+        z = end([x + (y - x) * k / 100 for x, y in zip(p, q)])
+        assert abs(((z - a) * (b - a).conjugate()).imag) / abs(b - a) <= 0.001, (p, q, k)
+assert json.load(open("line.json"))["kept"][0]["used"] <= 1
+kept = json.load(open("kept-report.json"))["kept"]
+assert kept["answer"] == "kept" and kept["constraints"][0]["relation"] == "coincident", kept
+END
+expect 0 '' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" -o plain.csv
+shows 1 "not kept: 'line' is off by" "$BIN/kaboum-check" kept.json --path plain.csv --keep line=0.001
+expect 0 'kept: off-wall within 0.5' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep off-wall -o wall.csv
+expect 1 "the goal breaks a constraint: 'off-wall' is off by" "$M" kept.json --from=0.6,1 --to=0.3,0 --keep off-wall -o none.csv
+expect 7 'no configuration within the limits puts .*the search for them is numeric' "$M" kept.json --from=0.6,1 --to-pose=3,0,0 -o none.csv
+expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep of-wall -o none.csv
+expect 3 "there is no feature 'arm/ende.origin'; did you mean 'arm/end.origin'?" "$M" misspelt.json --from=0.6,1 "--to-pose=$POSE" -o none.csv
+expect 2 'keep needs --path' "$BIN/kaboum-check" kept.json --keep level
+absent none.csv
 finish

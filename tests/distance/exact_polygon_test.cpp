@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/geom/convex_hull.h>
-#include <kaboum/geom/distance.h>
+#include <kaboum/geom/triangle_search.h>
 
 #include <random>
 

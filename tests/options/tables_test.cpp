@@ -7,6 +7,7 @@
 #include <kaboum/distance/compare_options.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
+#include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/trajectory_options.h>
 #include <kaboum/picture/panels.h>
@@ -108,6 +109,7 @@ TEST(OptionTables, AreSound) {
   check("verdicts on motions", verify::motion_verdict_options());
   check("inverse kinematics", kinematics::inverse_options());
   check("paths", motion::path_options());
+  check("what motions keep", motion::keep_options());
   check("trajectories", motion::trajectory_options());
   check("files of paths", robot::path_options());
   check("shapes of robots", robot::shape_options());

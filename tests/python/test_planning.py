@@ -270,6 +270,33 @@ def test_paths_are_free_at_every_instant(cell):
         refused.trajectory()
 
 
+def test_motions_keep_what_is_asked_for(cell):
+    world = kaboum.World(cell)
+    home = world.home()
+    rng = np.random.default_rng(3)
+    goals = [q for q in home + rng.uniform(-1, 1, (60, len(home))) if world.check(q)]
+    tried = [(q, world.find_path(home, q, keep="upright=0.4", max_work=0.1)) for q in goals]
+    kept = [path for _, path in tried if path]
+    off = [(q, path) for q, path in tried if path.outcome == "goal breaks a constraint"]
+    assert kept and off
+    for path in kept:
+        motion = world.check_motion(path.waypoints, keep=["upright=0.4"])
+        assert motion and motion.kept == "kept" and motion.deviation is None
+        assert path.kept.startswith("upright within 0.4 rad (") and path.broken is None
+    (q, path), plain = off[0], next(p for p in (world.find_path(home, q) for q, _ in off) if p)
+    assert path.broken.startswith("'upright' is off by") and not len(path)
+    motion = world.check_motion(plain.waypoints, keep="upright=0.4")
+    assert not motion and motion.outcome == "free" and motion.kept == "broken"
+    assert motion.kept_until[1] > 0 and motion.deviation.startswith("'upright' is off by")
+    assert world.check_motion(plain.waypoints).kept is None and plain.kept == ""
+    far = world.pose_goals(np.diag([1, 1, 1, 1]) + 99 * np.eye(4, k=3), start=home)
+    assert far.shape == (0, len(home))
+    for wrong, words in ((dict(keep="uprigt"), "did you mean 'upright'"), (dict(keep="upright=0"), "above 0"),
+                         (dict(keep="line", tool="nobody"), "tool")):
+        with pytest.raises(kaboum.Error, match=words):
+            world.check_motion([home, home], **wrong)
+
+
 def test_margins_keep_things_apart(cell):
     world = kaboum.World(cell)
     home = world.home()

@@ -508,5 +508,52 @@ TEST(YamlScene, MessagesNameLineAndColumn) {
   EXPECT_THROW(parse_yaml(files, "- 1\n"), Error);
 }
 
+TEST(Scene, StatesConstraintsBetweenFeatures) {
+  const SceneFiles files;
+  const std::string objects =
+      R"("objects": [{"name": "box", "pose": {"position": [1, 2, 3]}, "outer": )" +
+      files.ref("box.glb") +
+      R"(, "features": [{"name": "top", "plane": {"point": [0, 0, 0.5], "normal": [0, 0, 2]}},
+          {"name": "twice", "point": [0, 0, 0]}, {"name": "twice", "line": {"point": [0, 0, 0], "direction": [1, 0, 0]}}]}])";
+  const std::string tools = R"("tools": [{"name": "flange", "link": "l3", "position": [1, 0, 0]}])";
+  const auto scene = [&](const std::string& constraints) {
+    return files.scene(objects + ", \"constraints\": " + constraints, tools);
+  };
+  const std::string one =
+      R"({"relation": "coincident", "first": "arm/flange.origin", "second": "box/top", "within": 0.25})";
+  const World world = files.world(
+      scene("[{\"name\": \"on-top\", \"all\": [" + one +
+            R"(, {"relation": "angle", "first": "box.x", "second": "world.x", "value": 0.5}]}])"));
+  const ConstraintSet& set = world.constraint_set("on-top");
+  ASSERT_EQ(set.constraints.size(), 2U);
+  const ToleratedConstraint& c = set.constraints[0];
+  EXPECT_EQ(c.first.to, FixedFeature::To::Link);
+  EXPECT_EQ(c.first.link, 3U);
+  EXPECT_EQ(c.first.feature.point, Vec3(1, 0, 0));
+  EXPECT_EQ(c.second.to, FixedFeature::To::Object);
+  EXPECT_EQ(c.second.feature.kind, Feature::Kind::Plane);
+  EXPECT_EQ(c.within, 0.25);
+  EXPECT_EQ(set.constraints[1].value, 0.5);
+  EXPECT_EQ(set.constraints[1].within_angle, 0.02);
+  const auto refused = [&](const std::string& constraint, const std::vector<std::string>& words) {
+    expect_refused(files, scene("[{\"name\": \"c\", \"all\": [" + constraint + "]}]"), words);
+  };
+  refused(replaced(one, "box/top", "box/tip"), {"did you mean 'box/top'?"});
+  refused(replaced(one, "box/top", "box.zz"), {"no feature 'box.zz'"});
+  refused(replaced(one, "box/top", "box/twice"), {"in two kinds"});
+  refused(replaced(one, "coincident", "coincidence"), {"did you mean 'coincident'?"});
+  refused(replaced(one, "coincident", "near"), {"one of coincident, parallel"});
+  refused(replaced(one, "coincident", "parallel"), {"parallel of a point and a plane"});
+  refused(replaced(one, "coincident", "distance"), {"'value' is missing"});
+  refused(replaced(one, "\"within\": 0.25", "\"value\": 1"), {"'coincident' has no value"});
+  refused(replaced(one, "\"within\": 0.25", "\"within_angle\": 1"), {"not about directions"});
+  refused(replaced(one, "0.25", "0"), {"a tolerance above 0"});
+  refused("", {"at least one constraint"});
+  const std::string whole = "{\"name\": \"c\", \"all\": [" + one + "]}";
+  expect_refused(files, scene("[" + whole + ", " + whole + "]"), {"'c' is used twice"});
+  expect_refused(files, scene("[" + replaced(whole, "\"c\"", "\"c=1\"") + "]"), {"',' or '='"});
+  EXPECT_THROW(static_cast<void>(world.constraint_set("on-to")), Error);
+}
+
 }  // namespace
 }  // namespace kaboum::world

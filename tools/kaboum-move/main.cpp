@@ -26,11 +26,10 @@ int move(const MoveOptions& o) {
   for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
   if (r.goals.empty()) {
     for (const std::string& why : r.unreached) std::cerr << "kaboum-move: " << why << '\n';
-    tools::write_report(o.common, "kaboum-move",
-                        {{"scene", {{"file", o.scene}, {"sha256", r.scene.sha256}}},
-                         {"robot", r.model().name},
-                         {"outcome", "goal out of reach"},
-                         {"unreached", r.unreached}});
+    tools::Json report = tools::answer_json(r, {}, o);
+    report["outcome"] = "goal out of reach";
+    report["unreached"] = r.unreached;
+    tools::write_report(o.common, "kaboum-move", report);
     return r.out_of_reach ? tools::kNo : tools::kLimit;
   }
   const world::Checker checker(r.scene.world);

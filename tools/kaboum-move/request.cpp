@@ -106,12 +106,8 @@ MoveRequest read_request(const MoveOptions& o) {
     return r;
   }
   r.notes.insert(r.notes.end(), r.unreached.begin(), r.unreached.end());
-  try {
-    r.constraints = motion::constraints_of(r.scene.world, initial_state(r.scene.world), r.robot,
-                                           r.start, r.goals, o.keep);
-  } catch (const Error& error) {
-    usage(remedy_of_program(error.what()));
-  }
+  r.constraints = motion::constraints_of(r.scene.world, initial_state(r.scene.world), r.robot,
+                                         r.start, r.goals, o.keep);
   return r;
 }
 
