@@ -10,7 +10,7 @@
 namespace kaboum::execution {
 namespace {
 
-constexpr const char* kAnswers = "KABOUM-ANSWERS 5";
+constexpr const char* kAnswers = "KABOUM-ANSWERS 6";
 
 /// @param option  that states the language
 plan::Text read_text(const std::string& file, const std::optional<plan::Language>& given,

@@ -65,7 +65,12 @@ bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t 
                            random_.between(-1, 1))
             .normalized();
     const geom::Vec3 offset(share(-0.25, 0.25), share(-0.25, 0.25), share(0.1, 0.6));
-    const Transform pose{turn.toRotationMatrix(), middle + offset};
+    Transform pose{turn.toRotationMatrix(), middle + offset};
+    // What is to stay upright is only turned about the vertical.
+    const world::Object& thing = geometry_.world.objects[object];
+    if (thing.upright)
+      pose.linear = robot::rotation_about(geom::Vec3::UnitZ(), 2 * std::atan2(turn.z(), turn.w())) *
+                    thing.pose.linear;
     Goals goals;
     add_goals(goals, from, held.link, pose * inverse(held.pose));
     for (const std::vector<double>& q : goals.configurations)

@@ -1,4 +1,4 @@
-// Straight lines of a tool by inverse kinematics, and paths on which something stays upright.
+// Straight lines of a tool by inverse kinematics.
 #include "lines.h"
 
 #include <kaboum/kinematics/closed_form.h>
@@ -18,8 +18,6 @@ namespace {
 constexpr double kJump = 0.5;
 /// Most that the tool turns from one waypoint to the next. [rad]
 constexpr double kTurn = 0.1;
-/// Stretches of a segment that are shorter are not halved again.
-constexpr double kShortest = 1e-6;
 
 /// The configuration that reaches a pose next to another one.
 std::optional<std::vector<double>> next_to(const ik::Arm& arm,
@@ -83,42 +81,6 @@ std::optional<robot::Path> follow_line(const world::RobotModel& robot, std::uint
     path.push_back(std::move(full));
   }
   return path;
-}
-
-bool stays_upright(const world::RobotModel& robot, const robot::Path& path,
-                   const Upright& upright) {
-  const robot::Robot& kinematics = robot.kinematics;
-  const auto lean = [&](const std::vector<double>& q) {
-    const geom::Vec3 up =
-        robot.base.linear * (forward(kinematics, q)[upright.link].linear * upright.up);
-    return std::atan2(up.head<2>().norm(), up.z());
-  };
-  for (std::size_t s = 0; s + 1 < path.size(); ++s) {
-    // Most that the link turns along the whole segment: its angular velocity is the sum of those of
-    // the joints before it.
-    double turned = 0;
-    for (std::uint32_t at = upright.link; at > 0; at = kinematics.joints[at - 1].parent) {
-      const robot::Joint& joint = kinematics.joints[at - 1];
-      if (joint.type == robot::JointType::Revolute)
-        turned +=
-            std::abs(joint.multiplier * (path[s + 1][joint.variable] - path[s][joint.variable]));
-    }
-    std::vector<std::pair<double, double>> stretches{{0, 1}};  // the earlier one last
-    while (!stretches.empty()) {
-      const auto [begin, end] = stretches.back();
-      stretches.pop_back();
-      const double middle = 0.5 * (begin + end);
-      std::vector<double> q = path[s];
-      for (std::size_t j = 0; j < q.size(); ++j) q[j] += middle * (path[s + 1][j] - q[j]);
-      constexpr double kRounding = 1e-9;
-      const double leans = lean(q) + kRounding;
-      if (leans + 0.5 * turned * (end - begin) <= upright.angle) continue;
-      if (leans > upright.angle || end - begin < kShortest) return false;
-      stretches.emplace_back(middle, end);
-      stretches.emplace_back(begin, middle);
-    }
-  }
-  return true;
 }
 
 }  // namespace kaboum::manipulation

@@ -79,7 +79,11 @@ std::optional<world::Attachment> MotionSequence::held_by(std::size_t robot,
   return held && held->robot == robot ? held : std::nullopt;
 }
 
-bool MotionSequence::is_free(std::size_t robot, const robot::Path& path) const {
+bool MotionSequence::may_follow(std::size_t robot, const robot::Path& path) const {
+  const auto kept = motion::carried_constraints(geometry_.world, state_, robot);
+  if (motion::check_constraints(geometry_.world.robots[robot], path, kept).outcome !=
+      motion::ConstraintAnswer::Outcome::Kept)
+    return false;
   const Stopwatch watch;
   const bool free = check_motion(geometry_.checker, state_, robot, path, geometry_.check).outcome ==
                     world::MotionAnswer::Outcome::Free;

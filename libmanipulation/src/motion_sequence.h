@@ -19,8 +19,10 @@ class MotionSequence {
   MotionSequence(const Geometry& geometry, const plan::Question& question, world::WorldState state,
                  std::vector<std::optional<std::size_t>> mounted);
 
-  /// To one of some configurations. @return whether it was done.
-  bool go(std::size_t robot, const Goals& goals);
+  /// To one of some configurations. What is carried keeps upright where the scene wants it to.
+  /// @param kept  what is kept besides
+  /// @return whether it was done.
+  bool go(std::size_t robot, const Goals& goals, std::vector<motion::PathConstraint> kept = {});
   bool go(std::size_t robot, const std::vector<double>& q);
 
   /// @return false.
@@ -45,7 +47,8 @@ class MotionSequence {
   /// How a robot holds an object with the tool that is at one of its grasps; nullopt: none is.
   [[nodiscard]] std::optional<world::Attachment> find_grasp(std::size_t robot,
                                                             std::size_t object) const;
-  [[nodiscard]] bool is_free(std::size_t robot, const robot::Path& path) const;
+  /// Whether a path is certainly free, and keeps upright what the robot carries.
+  [[nodiscard]] bool may_follow(std::size_t robot, const robot::Path& path) const;
   [[nodiscard]] bool is_free(const world::WorldState& state) const;
   [[nodiscard]] bool is_free_at(std::size_t robot, const std::vector<double>& q) const;
   /// Moves an object, and what is mounted on it, to the hand or to rest.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "along_tool.h"
 #include "motion_sequence.h"
@@ -69,6 +70,11 @@ motion::PathAnswer MotionSequence::look_for_path(const world::WorldState& state,
     if (answer.outcome == motion::PathAnswer::Outcome::WorkEnded)
       answer = count(find_path_along_tool(geometry_.checker, state, robot, start, near, options));
   }
+  // Lines along the tool were not asked whether they keep anything.
+  if (answer.outcome == motion::PathAnswer::Outcome::Found &&
+      motion::check_constraints(geometry_.world.robots[robot], answer.path, options.constraints)
+              .outcome != motion::ConstraintAnswer::Outcome::Kept)
+    answer = {};
   if (answer.outcome != motion::PathAnswer::Outcome::Found)
     answer =
         count(find_path(geometry_.checker, state, robot, start, goals.configurations, options));
@@ -86,7 +92,7 @@ bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
   robot::Path& last = last_paths_[robot];
   if (last.size() > 1 && last.front() == q && last.back() == state_.q[robot]) {
     const robot::Path back(last.rbegin(), last.rend());
-    if (is_free(robot, back)) {
+    if (may_follow(robot, back)) {
       record(robot, back);
       return true;
     }
@@ -96,12 +102,15 @@ bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
   return go(robot, goals);
 }
 
-bool MotionSequence::go(std::size_t robot, const Goals& goals) {
+bool MotionSequence::go(std::size_t robot, const Goals& goals,
+                        std::vector<motion::PathConstraint> kept) {
   const auto none = [&](bool all, const std::string& reason) {
     return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
   };
   motion::PathOptions options = geometry_.options.path;
   options.check = geometry_.check;
+  options.constraints = motion::carried_constraints(geometry_.world, state_, robot);
+  std::ranges::move(kept, std::back_inserter(options.constraints));
   options.seed = question_.seed;
   for (unsigned i = 0; i < question_.attempt; ++i) options.most_work *= kMoreWork;
   const motion::PathAnswer answer = look_for_path(state_, robot, goals, options);
@@ -111,19 +120,25 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals) {
       record(robot, answer.path);
       chosen_ = chosen_ || goals.configurations.size() > 1 || !goals.all || !goals.alone;
       return true;
-    case Outcome::GoalInContact: {
+    case Outcome::GoalInContact:
+    case Outcome::GoalBreaksConstraint: {
       const bool all = goals.all && goals.alone;
-      std::string where = "blocked at its end";
+      const bool meets = answer.outcome == Outcome::GoalInContact;
+      std::string where = meets ? "blocked at its end" : "not upright at its end";
       if (!goals.listed.empty())
         where = (all ? goals.none() : "no configuration that was tried for " + goals.listed) +
-                " is free of contact";
-      none(all, where + ": " + name_of(geometry_.world, answer.contact->items));
+                (meets ? " is free of contact" : " keeps it upright");
+      none(all, where + ": " +
+                    (meets ? name_of(geometry_.world, answer.contact->items)
+                           : describe(*answer.broken, options.constraints)));
       listed_ = !goals.listed.empty();
       return false;
     }
     case Outcome::StartInContact:
       return none(true, "the robot cannot start: contact of " +
                             name_of(geometry_.world, answer.contact->items));
+    case Outcome::StartBreaksConstraint:
+      return none(true, "the robot cannot start: " + describe(*answer.broken, options.constraints));
     case Outcome::StartOutsideLimits:
     case Outcome::GoalOutsideLimits:
       return none(true, "outside the limits of a joint");

@@ -65,8 +65,6 @@ class Sequence : public MotionSequence {
   std::optional<Goals> goals_in_reach(std::size_t robot, std::size_t object);
   /// Turns about the vertical, or a seat's normal, that are tried.
   [[nodiscard]] std::vector<double> turns();
-  bool go_upright(std::size_t robot, std::size_t object, const world::Attachment& held,
-                  const Goals& goals, const world::Transform& link_pose);
   /// Which grasps of the object the robot that takes it may use.
   enum class Grasps : std::uint8_t { Preferred, All };
   bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q,

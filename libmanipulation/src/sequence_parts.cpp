@@ -20,10 +20,8 @@ using kinematics::inverse;
 using plan::Answer;
 using world::Transform;
 
-/// Between two waypoints of a straight line, and of one on which something is kept upright. [m]
-constexpr double kStep = 0.01, kUprightStep = 0.02;
-/// How far things are lifted before they are carried upright. [m]
-constexpr std::array<double, 6> kHeights{0.03, 0.08, 0.15, 0.25, 0.35, 0.5};
+/// Between two waypoints of a line on which something slides, and of one on which it is lifted. [m]
+constexpr double kStep = 0.01, kLiftStep = 0.02;
 /// How far from one plane points of an upper face may be, with the sets' ε. [m]
 constexpr double kFlat = 1e-4;
 /// A base is at least so many epsilons of its support wide: slots up to 2 wide may be closed in
@@ -145,47 +143,6 @@ robot::Path thinned(robot::Path path, const Good& good) {
 
 }  // namespace
 
-bool Sequence::go_upright(std::size_t robot, std::size_t object, const world::Attachment& held,
-                          const Goals& goals, const Transform& link_pose) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  const geom::Vec3 up =
-      held.pose.linear *
-      (geometry_.world.objects[object].pose.linear.transpose() * geom::Vec3::UnitZ());
-  const Upright upright{held.link, up, geometry_.options.upright};
-  const auto good = [&](const robot::Path& path) {
-    return stays_upright(model, path, upright) && is_free(robot, path);
-  };
-  if (!stays_upright(model, {state_.q[robot], state_.q[robot]}, upright))
-    return fail(Answer::Kind::Impossible,
-                geometry_.world.objects[object].name + " is not upright where it is");
-  for (const std::vector<double>& goal : goals.configurations) {
-    const robot::Path path{state_.q[robot], goal};
-    if (!good(path)) continue;
-    record(robot, path);
-    return true;
-  }
-  // Up, across and down.
-  for (const double height : kHeights) {
-    const geom::Vec3 by = height * geom::Vec3::UnitZ();
-    robot::Path path{state_.q[robot]};
-    bool whole = true;
-    for (const Transform& to :
-         {shifted(pose_of_link(robot, held.link), by), shifted(link_pose, by), link_pose}) {
-      const auto line = follow_line(model, held.link, path.back(), to, kUprightStep);
-      whole = line.has_value();
-      if (!whole) break;
-      path.insert(path.end(), line->begin() + 1, line->end());
-    }
-    if (!whole) continue;
-    path.back() = configuration_of(manipulation::word_of(path.back()), model);
-    if (!good(path)) continue;
-    record(robot, thinned(std::move(path), good));
-    return true;
-  }
-  return fail(Answer::Kind::NotFound, "no path on which " + geometry_.world.objects[object].name +
-                                          " stays upright was found");
-}
-
 bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support, bool upright) {
   const world::World& world = geometry_.world;
   const world::Object &thing = world.objects[object], &below = world.objects[support];
@@ -203,6 +160,9 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
   // state again.
   fail(Answer::Kind::NotFound, "nothing was found to be in reach");
   const std::vector<double> angles = turns();
+  std::vector<motion::PathConstraint> kept;
+  if (upright)
+    kept.push_back(motion::upright_constraint(world, *held, object, geometry_.options.upright));
   const auto stands = [&](const geom::Vec3& point, double angle) {
     Transform pose = turned(geom::Vec3::UnitZ(), angle);
     pose.linear = pose.linear * thing.pose.linear;
@@ -213,7 +173,7 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
     add_goals(goals, robot, held->link, link);
     goals.all = false;  // there are other turns
     if (goals.configurations.empty()) return false;
-    if (!(upright ? go_upright(robot, object, *held, goals, link) : go(robot, goals))) return false;
+    if (!go(robot, goals, kept)) return false;
     target_ = Target{object, pose, std::nullopt, held->link, 0};
     chosen_ = true;
     return true;
@@ -328,7 +288,7 @@ bool Sequence::mount(std::size_t robot, std::size_t object, std::size_t onto) {
       auto line = follow_line(model, held->link, goal, link, kStep);
       if (!line) continue;
       line->back() = configuration_of(manipulation::word_of(line->back()), model);
-      if (!is_free_at(robot, line->back()) || !is_free(robot, *line)) {
+      if (!is_free_at(robot, line->back()) || !may_follow(robot, *line)) {
         fail(Answer::Kind::NotFound, thing.name + " does not slide into " + below.name);
         continue;
       }
@@ -356,7 +316,7 @@ bool Sequence::withdraw(std::size_t robot) {
                           shifted(link, target_->depth * back), kStep);
   if (line) {
     line->back() = configuration_of(manipulation::word_of(line->back()), model);
-    if (is_free(robot, *line)) {
+    if (may_follow(robot, *line)) {
       record(robot, *line);
       return true;
     }
@@ -370,12 +330,13 @@ bool Sequence::lift(std::size_t robot, std::size_t object, double height) {
   const std::string& name = geometry_.world.objects[object].name;
   if (!held) return fail(Answer::Kind::Impossible, model.name + " does not hold " + name);
   const Transform to = shifted(pose_of_link(robot, held->link), height * geom::Vec3::UnitZ());
-  auto line = follow_line(model, held->link, state_.q[robot], to, kUprightStep);
+  auto line = follow_line(model, held->link, state_.q[robot], to, kLiftStep);
   if (!line) return fail(Answer::Kind::NotFound, name + " cannot be lifted straight");
   line->back() = configuration_of(manipulation::word_of(line->back()), model);
-  if (!is_free(robot, *line))
+  if (!may_follow(robot, *line))
     return fail(Answer::Kind::NotFound, name + " is not free to be lifted");
-  record(robot, thinned(std::move(*line), [&](const robot::Path& p) { return is_free(robot, p); }));
+  record(robot,
+         thinned(std::move(*line), [&](const robot::Path& p) { return may_follow(robot, p); }));
   chosen_ = true;
   return true;
 }

@@ -139,7 +139,7 @@ std::vector<PathConstraint> constraints_of(const world::World& world,
                                            std::span<const std::vector<double>> goals,
                                            const KeepRequest& request) {
   static const std::vector<std::string> kUsual{"upright", "orientation", "line", "level"};
-  std::vector<PathConstraint> out;
+  std::vector<PathConstraint> out = carried_constraints(world, state, robot);
   const world::RobotModel& model = world.robots.at(robot);
   for (const std::string& text : request.keep) {
     const std::size_t equals = text.find('=');

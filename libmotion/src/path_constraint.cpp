@@ -287,6 +287,32 @@ std::vector<PathConstraint> path_constraints(const world::World& world,
   return out;
 }
 
+PathConstraint upright_constraint(const world::World& world, const world::Attachment& held,
+                                  std::size_t object, double within_angle) {
+  PathConstraint out;
+  out.name = world.objects[object].name + " upright";
+  // From no angle on: parallel directions might as well be opposite.
+  out.relation = Relation::Angle;
+  out.link = held.link;
+  const Vec3 up = world.objects[object].pose.linear.transpose() * Vec3::UnitZ();
+  out.moving = kinematics::Line{held.pose.translation, (held.pose.linear * up).normalized()};
+  out.resting = kinematics::Line{};
+  out.within_angle = within_angle;
+  return out;
+}
+
+std::vector<PathConstraint> carried_constraints(const world::World& world,
+                                                const world::WorldState& state, std::size_t robot) {
+  std::vector<PathConstraint> out;
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const auto& held = state.attachments[o];
+    const std::optional<double>& upright = world.objects[o].upright;
+    if (held && held->robot == robot && upright)
+      out.push_back(upright_constraint(world, *held, o, *upright));
+  }
+  return out;
+}
+
 void require_keepable(const PathConstraint& c, const robot::Robot& robot) {
   require_valid(plain(c));
   if (c.link >= robot.links.size()) refuse("a constraint of a link that the robot lacks");

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "scene_robot.h"
@@ -57,7 +58,7 @@ class Parser : detail::SceneRobot {
   }
 
   void add_object(const Located& o) {
-    known(o, {"name", "pose", "shape", "outer", "inner", "features", "grasps"});
+    known(o, {"name", "pose", "shape", "outer", "inner", "features", "grasps", "upright"});
     const std::string name = new_name(o);
     const Transform pose_of_object = pose_member(o, "pose");
     std::optional<Primitive> shape = shape_of(o);
@@ -68,6 +69,11 @@ class Parser : detail::SceneRobot {
     for (const Located& f : list(o, "features")) {
       known(f, {"name", "point", "line", "plane"});
       out.features.push_back(feature(f, taken));
+    }
+    if (const Located* upright = find(o, "upright")) {
+      out.upright = number(*upright);
+      if (!(*out.upright > 0) || *out.upright > std::numbers::pi)
+        fail(*upright, "an angle above 0 is expected, in radians: most that the object may lean");
     }
     for (const Located& g : list(o, "grasps")) {
       known(g, {"name", "position", "rpy", "quaternion"});

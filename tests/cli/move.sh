@@ -164,6 +164,7 @@ expect 1 "the goal breaks a constraint: 'off-wall' is off by" "$M" kept.json --f
 expect 7 'no configuration within the limits puts .*the search for them is numeric' "$M" kept.json --from=0.6,1 --to-pose=3,0,0 -o none.csv
 expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep of-wall -o none.csv
 expect 3 "there is no feature 'arm/ende.origin'; did you mean 'arm/end.origin'?" "$M" misspelt.json --from=0.6,1 "--to-pose=$POSE" -o none.csv
+expect 2 'CSV is written' "$M" kept.json --from=0.6,1 --to=0.3,0 -o none.json
 expect 2 'keep needs --path' "$BIN/kaboum-check" kept.json --keep level
 absent none.csv
 finish

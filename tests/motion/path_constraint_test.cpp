@@ -506,6 +506,24 @@ TEST_F(UsualNames, AreConstraintsOfTheTool) {
             Kept::Kept);
 }
 
+TEST_F(UsualNames, ComeWithWhatIsCarriedUpright) {
+  world_.objects[0].upright = 0.3;
+  EXPECT_TRUE(make({}).empty());
+  world::WorldState state = initial_state(world_);
+  state.attachments[0] = world::Attachment{0, 2, {}, {}};
+  const std::vector<std::vector<double>> goals{{0.5, 0.2, 0}};
+  const auto made = constraints_of(world_, state, 0, {0, 0.1, 0.2}, goals, {});
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].name, "box upright");
+  EXPECT_EQ(made[0].link, 2U);
+  EXPECT_EQ(made[0].within_angle, 0.3);
+  // The arm is plane: the box stands. Held upside down it does not, though it is parallel.
+  EXPECT_EQ(check_constraints(world_.robots[0], {{0, 0.1, 0.2}}, made).outcome, Kept::Kept);
+  state.attachments[0]->pose.linear = Vec3(1, -1, -1).asDiagonal();
+  const auto over = constraints_of(world_, state, 0, {0, 0.1, 0.2}, goals, {});
+  EXPECT_EQ(check_constraints(world_.robots[0], {{0, 0.1, 0.2}}, over).outcome, Kept::Broken);
+}
+
 TEST_F(UsualNames, AreRefusedWithWhatWouldHelp) {
   expect_refused({{"uprigt"}, ""}, "did you mean 'upright'?");
   expect_refused({{"on-wal"}, ""}, "did you mean 'on-wall'?");

@@ -508,6 +508,22 @@ TEST(YamlScene, MessagesNameLineAndColumn) {
   EXPECT_THROW(parse_yaml(files, "- 1\n"), Error);
 }
 
+TEST(Scene, StatesHowFarWhatIsCarriedMayLean) {
+  const SceneFiles files;
+  const auto scene = [&](const std::string& upright) {
+    return files.scene(R"("objects": [{"name": "box", "outer": )" + files.ref("box.glb") +
+                       R"(, "upright": )" + upright + "}]");
+  };
+  EXPECT_EQ(files.world(scene("0.25")).objects.at(0).upright, 0.25);
+  EXPECT_FALSE(files
+                   .world(files.scene(R"("objects": [{"name": "box", "outer": )" +
+                                      files.ref("box.glb") + "}]"))
+                   .objects.at(0)
+                   .upright);
+  for (const char* wrong : {"0", "-1", "3.2", "\"yes\""})
+    expect_refused(files, scene(wrong), {wrong[0] == '"' ? "number" : "an angle above 0"});
+}
+
 TEST(Scene, StatesConstraintsBetweenFeatures) {
   const SceneFiles files;
   const std::string objects =

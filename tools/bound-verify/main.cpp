@@ -6,6 +6,28 @@
 
 namespace tools = kaboum::tools;
 
+namespace {
+
+/// The limits that a command has: "--max-contacts, --max-work".
+std::string limits_of(const CLI::App& command) {
+  std::string out;
+  for (const CLI::Option* option : command.get_options())
+    if (const std::string name = option->get_name(); name.starts_with("--max-"))
+      out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+int decide(const CLI::App& app, const tools::VerifyOptions& options) {
+  const int code = options.decide();
+  if (code != tools::kLimit) return code;
+  for (const CLI::App* command : app.get_subcommands())
+    if (const std::string limits = limits_of(*command); !limits.empty())
+      tools::log(options.common.quiet, "undecided; a larger limit may decide it: " + limits);
+  return code;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app(
       "Decides from files alone, in exact arithmetic, whether what was made of a mesh, a robot or "
@@ -25,5 +47,5 @@ int main(int argc, char** argv) {
     std::cerr << "bound-verify: " << command << " (see bound-verify --help)\n";
     return tools::kUsage;
   }
-  return tools::run(app, argc, argv, [&] { return options.decide(); });
+  return tools::run(app, argc, argv, [&] { return decide(app, options); });
 }

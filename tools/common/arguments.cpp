@@ -86,6 +86,16 @@ CLI::Validator page_name() {
           ""};
 }
 
+CLI::Validator csv_name() {
+  return {[](const std::string& s) {
+            return extension_of(s) != ".json" ? std::string()
+                                              : "CSV is written: give a name that ends with .csv, "
+                                                "not " +
+                                                    s;
+          },
+          ""};
+}
+
 CLI::Validator unit_name() {
   return CLI::IsMember(std::vector<std::string>(kLengthUnits.begin(), kLengthUnits.end()))
       .description("");

@@ -31,6 +31,8 @@ CLI::Validator png_name();
 CLI::Validator preview_name();
 /// Refuses names of pages that are not .html.
 CLI::Validator page_name();
+/// Refuses names of JSON where CSV is written.
+CLI::Validator csv_name();
 /// Whether the name is that of a page.
 bool is_page(const std::string& name);
 

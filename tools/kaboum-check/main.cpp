@@ -64,9 +64,9 @@ std::vector<double> configuration_at(const robot::Path& path, std::size_t segmen
 /// Whether the motion keeps what is asked for: an exit code.
 int check_kept(const tools::CheckOptions& o, const world::World& world, std::size_t robot,
                const robot::Path& path, tools::Json& report) {
-  if (o.keep.keep.empty()) return tools::kDone;
   const std::vector<motion::PathConstraint> constraints =
       constraints_of(world, initial_state(world), robot, path.front(), {&path.back(), 1}, o.keep);
+  if (constraints.empty()) return tools::kDone;
   const motion::ConstraintAnswer answer = check_constraints(world.robots[robot], path, constraints);
   using Outcome = motion::ConstraintAnswer::Outcome;
   tools::Json& kept =

@@ -17,6 +17,7 @@ void describe_execution(CLI::App& app, MoveOptions& o) {
       app.add_option("--trajectory", o.trajectory,
                      "Write samples over time: from rest to rest along each segment, by quintic "
                      "polynomials, within the limits below; CSV")
+          ->check(csv_name())
           ->type_name("FILE");
   add_request_options(app, motion::trajectory_options(), o.execution, o.stated);
   for (const auto& option : motion::trajectory_options())
@@ -48,6 +49,7 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("POSE");
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
+      ->check(csv_name())
       ->capture_default_str()
       ->type_name("FILE");
   app.add_flag("--degrees", o.degrees,

@@ -87,6 +87,7 @@ CLI::App* add_show_command(CLI::App& app, PlanOptions& o) {
   w->add_option("--html", o.html,
                 "Instead: one page that plays the plan's execution in the scene of --scene, every "
                 "branch, for a browser; no network is needed")
+      ->check(page_name())
       ->excludes("--output-format")
       ->excludes("--output")
       ->type_name("FILE");

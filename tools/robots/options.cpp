@@ -36,6 +36,7 @@ void add_formats(CLI::App& app, RobotOptions& o) {
   app.add_option("--html-report", o.html,
                  "Write a page about a robot: of every link, pictures of original and result, "
                  "counts, epsilon, time and verdict")
+      ->check(page_name())
       ->type_name("FILE.html");
 }
 

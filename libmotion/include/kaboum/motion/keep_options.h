@@ -27,7 +27,7 @@ const std::vector<Option<KeepRequest>>& keep_options();
 ///   last links
 world::ToolFrame moving_frame(const world::RobotModel& robot, const std::string& name);
 
-/// The constraints that are asked for.
+/// The constraints that are asked for, and those of what the robot carries (carried_constraints).
 /// @param start  of the motion: what is kept is what there is at first
 /// @param goals  configurations; "line" leads to where the tool is there
 /// @throws Error{InvalidArgument} for names that the scene lacks, tolerances that are not above 0,

@@ -32,6 +32,15 @@ std::vector<PathConstraint> path_constraints(const world::World& world,
                                              const world::WorldState& state, std::size_t robot,
                                              const world::ConstraintSet& set);
 
+/// Of an object that a link carries: it leans by no more than an angle from how it stands in the
+/// scene.
+PathConstraint upright_constraint(const world::World& world, const world::Attachment& held,
+                                  std::size_t object, double within_angle);
+
+/// What a robot keeps because of what it carries: world::Object::upright.
+std::vector<PathConstraint> carried_constraints(const world::World& world,
+                                                const world::WorldState& state, std::size_t robot);
+
 /// @throws Error{InvalidArgument} for relations that are not defined (kinematics::require_valid), a
 ///   tolerance that is not above 0, a link that the robot lacks, and where a line or a plane moves
 ///   and is to hold a point that stays, or a plane a line: these are not decided.

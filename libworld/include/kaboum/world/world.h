@@ -120,6 +120,9 @@ struct Object {
   std::vector<Feature> features;
   std::vector<Grasp> grasps;
   std::optional<Primitive> primitive = {};  ///< of which the sets are; none: they are of a mesh
+  /// While a robot carries it, it leans by no more than this from how it stands at first; none: it
+  /// may lean as it likes. > 0 [rad]
+  std::optional<double> upright = {};
 };
 
 /// A part of space that things may be asked to be in.
