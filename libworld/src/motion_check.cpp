@@ -26,15 +26,15 @@ std::vector<std::size_t> all_of(const MovingPairs& pairs) {
 
 class Motion {
  public:
-  Motion(const Checker& checker, const WorldState& state, std::size_t robot,
-         const robot::Path& path, const MotionOptions& options)
+  Motion(const Checker& checker, const WorldState& state,
+         const std::vector<detail::MovingRobot>& robots, const MotionOptions& options)
       : world_(checker.world()),
-        path_(path),
+        waypoints_(robots.front().path->size()),
         options_(options),
-        moving_(checker, state, robot, path, options.scratch) {}
+        moving_(checker, state, robots, options.scratch) {}
 
   MotionAnswer run() {
-    for (std::size_t i = 0; i == 0 || i + 1 < path_.size(); ++i) {
+    for (std::size_t i = 0; i == 0 || i + 1 < waypoints_; ++i) {
       segment_ = i;
       moving_.prepare(i);
       if (!is_free(0, 1, all_of(moving_))) break;
@@ -53,7 +53,7 @@ class Motion {
   void tell() const {
     if (!options_.progress || answer_.intervals % kToldEvery != 1) return;
     options_.progress("segment " + std::to_string(segment_ + 1) + " of " +
-                      std::to_string(std::max<std::size_t>(path_.size(), 2) - 1) + ", " +
+                      std::to_string(std::max<std::size_t>(waypoints_, 2) - 1) + ", " +
                       std::to_string(answer_.intervals) + " intervals");
   }
 
@@ -115,7 +115,7 @@ class Motion {
   }
 
   const World& world_;
-  const robot::Path& path_;
+  std::size_t waypoints_;
   const MotionOptions& options_;
   MovingPairs moving_;
   std::size_t segment_ = 0;
@@ -129,7 +129,7 @@ class Obstacles {
             const robot::Path& path, const std::vector<Item>& things, const MotionOptions& options)
       : path_(path),
         options_(options),
-        moving_(checker, state, robot, path, options.scratch, &things),
+        moving_(checker, state, {{robot, &path}}, options.scratch, &things),
         intervals_(moving_.pairs().size()) {}
 
   std::vector<Item> run() {
@@ -196,7 +196,29 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
                           const robot::Path& path, const MotionOptions& options) {
   detail::require_motion(checker, state, robot, path, options);
   if (Observer* observer = checker.observer()) observer->asked(state, robot, path, nullptr);
-  return Motion(checker, state, robot, path, options).run();
+  return Motion(checker, state, {{robot, &path}}, options).run();
+}
+
+MotionAnswer check_motions(const Checker& checker, const WorldState& state,
+                           const std::vector<RobotPath>& paths, const MotionOptions& options) {
+  if (paths.empty()) throw Error(ErrorCode::InvalidArgument, "a motion of no robot");
+  std::vector<detail::MovingRobot> robots;
+  for (const RobotPath& p : paths) {
+    detail::require_motion(checker, state, p.robot, p.path, options);
+    const std::string& name = checker.world().robots[p.robot].name;
+    if (std::ranges::find(robots, p.robot, &detail::MovingRobot::robot) != robots.end())
+      throw Error(ErrorCode::InvalidArgument, "robot '" + name + "' has two paths");
+    if (p.path.size() != paths.front().path.size())
+      throw Error(ErrorCode::InvalidArgument,
+                  "robots that move at once need equally many waypoints: '" + name + "' has " +
+                      std::to_string(p.path.size()) + ", '" +
+                      checker.world().robots[paths.front().robot].name + "' has " +
+                      std::to_string(paths.front().path.size()));
+    robots.push_back({p.robot, &p.path});
+  }
+  if (Observer* observer = checker.observer())
+    for (const RobotPath& p : paths) observer->asked(state, p.robot, p.path, nullptr);
+  return Motion(checker, state, robots, options).run();
 }
 
 std::vector<Item> find_obstacles(const Checker& checker, const WorldState& state, std::size_t robot,

@@ -18,6 +18,7 @@ namespace kaboum::world::detail {
 /// Something that a robot's motion moves: a shape of it, or an object that it carries.
 struct Mover {
   Item item;
+  std::size_t robot = 0;  ///< that moves it
   std::uint32_t link = 0;
   Transform on_link;  ///< identity for shapes of links
   sweep::Reach reach;
@@ -37,11 +38,13 @@ inline Mover mover_of(const Checker& checker, const WorldState& state, const Ite
   Mover out;
   out.item = item;
   if (item.robot != Item::kObject) {
+    out.robot = item.robot;
     out.reach = checker.reach_of(item.robot, item.index);
     out.link = checker.world().robots[item.robot].shapes[item.index].link;
     return out;
   }
   const Attachment& attachment = *state.attachments[item.index];
+  out.robot = attachment.robot;
   out.link = attachment.link;
   out.on_link = attachment.pose;
   out.grasp_error = attachment_error(attachment.pose, radius_of(checker.world().outer(item)));

@@ -8,53 +8,12 @@
 #include <algorithm>
 
 namespace kaboum::world::detail {
-
-MovingPairs::MovingPairs(const Checker& checker, const WorldState& state, std::size_t robot,
-                         const robot::Path& path, Scratch* scratch, const std::vector<Item>* things)
-    : checker_(checker), world_(checker.world()), model_(world_.robots[robot]), path_(path) {
-  WorldState start = state;
-  start.q[robot] = path_.front();
-  // A path that leaves the limits makes pairs count that are proved apart within them.
-  for (const std::vector<double>& q : path_)
-    if (!checker_.is_within_limits(robot, q)) start.q[robot] = q;
-  const auto is_looked_at = [&](const Item& item) {
-    return things == nullptr || std::ranges::find(*things, item) != things->end();
-  };
-  std::vector<Item> resting;
-  for (const auto& [a, b] : checker_.pairs(start, {})) {
-    const bool first = is_moved_by(robot, a, state), second = is_moved_by(robot, b, state);
-    if (!first && !second) continue;
-    if (first && second ? things != nullptr : !is_looked_at(first ? b : a)) continue;
-    Pair pair;
-    pair.mover = mover_of(first ? a : b, state);
-    pair.margin = margin_between(world_, state, a, b);
-    if (first && second) {
-      pair.other = mover_of(b, state);
-    } else {
-      const Item& item = first ? b : a;
-      pair.rest = static_cast<std::size_t>(std::ranges::find(resting, item) - resting.begin());
-      if (pair.rest == resting.size()) resting.push_back(item);
-    }
-    pairs_.push_back(pair);
-  }
-  start.q[robot] = path_.front();
-  std::optional<Scratch> own;
-  resting_ = checker_.places(start, resting, scratch != nullptr ? *scratch : own.emplace());
-  memory_.resize(pairs_.size());
-}
-
-std::size_t MovingPairs::mover_of(const Item& item, const WorldState& state) {
-  for (std::size_t i = 0; i < movers_.size(); ++i)
-    if (movers_[i].item == item) return i;
-  movers_.push_back(detail::mover_of(checker_, state, item));
-  places_.emplace_back(world_.outer(item));
-  return movers_.size() - 1;
-}
+namespace {
 
 /// The links from the root to one, itself included.
-std::vector<std::uint32_t> MovingPairs::chain(std::uint32_t link) const {
+std::vector<std::uint32_t> chain(const robot::Robot& robot, std::uint32_t link) {
   std::vector<std::uint32_t> out;
-  for (;; link = model_.kinematics.joints[link - 1].parent) {
+  for (;; link = robot.joints[link - 1].parent) {
     out.push_back(link);
     if (link == 0) break;
   }
@@ -64,13 +23,12 @@ std::vector<std::uint32_t> MovingPairs::chain(std::uint32_t link) const {
 
 /// Ends of the segment with the variables held that move what both links hang from, so that only
 /// their motion relative to it counts. Unchanged where such a variable moves one of them as well.
-std::vector<double> MovingPairs::held(std::uint32_t a, std::uint32_t b,
-                                      const std::vector<double>& from,
-                                      const std::vector<double>& to) const {
-  const auto x = chain(a), y = chain(b);
+std::vector<double> held(const robot::Robot& robot, std::uint32_t a, std::uint32_t b,
+                         const std::vector<double>& from, const std::vector<double>& to) {
+  const auto x = chain(robot, a), y = chain(robot, b);
   std::size_t common = 0;
   while (common < x.size() && common < y.size() && x[common] == y[common]) ++common;
-  const auto& joints = model_.kinematics.joints;
+  const auto& joints = robot.joints;
   std::vector<double> out = to;
   const auto moved_by = [&](std::uint32_t link) {
     return joints[link - 1].type == robot::JointType::Fixed ? out.size()
@@ -88,29 +46,93 @@ std::vector<double> MovingPairs::held(std::uint32_t a, std::uint32_t b,
   return out;
 }
 
+}  // namespace
+
+MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
+                         std::vector<MovingRobot> robots, Scratch* scratch,
+                         const std::vector<Item>* things)
+    : checker_(checker), world_(checker.world()), robots_(std::move(robots)) {
+  WorldState start = state;
+  for (const auto& [robot, path] : robots_) {
+    start.q[robot] = path->front();
+    // A path that leaves the limits makes pairs count that are proved apart within them.
+    for (const std::vector<double>& q : *path)
+      if (!checker_.is_within_limits(robot, q)) start.q[robot] = q;
+  }
+  const auto moves = [&](const Item& item) {
+    return std::ranges::any_of(
+        robots_, [&](const MovingRobot& m) { return is_moved_by(m.robot, item, state); });
+  };
+  const auto is_looked_at = [&](const Item& item) {
+    return things == nullptr || std::ranges::find(*things, item) != things->end();
+  };
+  std::vector<Item> resting;
+  for (const auto& [a, b] : checker_.pairs(start, {})) {
+    const bool first = moves(a), second = moves(b);
+    if (!first && !second) continue;
+    if (first && second ? things != nullptr : !is_looked_at(first ? b : a)) continue;
+    Pair pair;
+    pair.mover = mover_of(first ? a : b, state);
+    pair.margin = margin_between(world_, state, a, b);
+    if (first && second) {
+      pair.other = mover_of(b, state);
+    } else {
+      const Item& item = first ? b : a;
+      pair.rest = static_cast<std::size_t>(std::ranges::find(resting, item) - resting.begin());
+      if (pair.rest == resting.size()) resting.push_back(item);
+    }
+    pairs_.push_back(pair);
+  }
+  for (const auto& [robot, path] : robots_) start.q[robot] = path->front();
+  std::optional<Scratch> own;
+  resting_ = checker_.places(start, resting, scratch != nullptr ? *scratch : own.emplace());
+  memory_.resize(pairs_.size());
+}
+
+const robot::Path& MovingPairs::path_of(const Mover& m) const {
+  return *std::ranges::find(robots_, m.robot, &MovingRobot::robot)->path;
+}
+
+std::size_t MovingPairs::mover_of(const Item& item, const WorldState& state) {
+  for (std::size_t i = 0; i < movers_.size(); ++i)
+    if (movers_[i].item == item) return i;
+  movers_.push_back(detail::mover_of(checker_, state, item));
+  places_.emplace_back(world_.outer(item));
+  return movers_.size() - 1;
+}
+
 double MovingPairs::speed_of(const Mover& m, const std::vector<double>& from,
                              const std::vector<double>& to) const {
-  const sweep::LinkMotion motion(model_.kinematics, m.link, from, to);
+  const sweep::LinkMotion motion(model_of(m).kinematics, m.link, from, to);
   return motion.moves() ? sweep::MotionBounds(motion, m.reach).derivative(1) : 0;
 }
 
 void MovingPairs::prepare(std::size_t segment) {
-  const std::vector<double>&from = path_[segment],
-        &to = path_[std::min(segment + 1, path_.size() - 1)];
+  const auto ends_of = [&](const Mover& m) {
+    const robot::Path& path = path_of(m);
+    return std::pair<const std::vector<double>&, const std::vector<double>&>(
+        path[segment], path[std::min(segment + 1, path.size() - 1)]);
+  };
   motions_.clear();
   errors_.clear();
   std::vector<double> speed;
   for (const Mover& m : movers_) {
-    motions_.emplace_back(model_.kinematics, m.link, from, to);
+    const auto [from, to] = ends_of(m);
+    motions_.emplace_back(model_of(m).kinematics, m.link, from, to);
     const sweep::MotionBounds bounds(motions_.back(), m.reach);
     speed.push_back(motions_.back().moves() ? bounds.derivative(1) : 0);
-    errors_.push_back(error_of_motion(m, bounds, speed.back(), model_.base));
+    errors_.push_back(error_of_motion(m, bounds, speed.back(), model_of(m).base));
   }
   for (Pair& pair : pairs_) {
     pair.speed = speed[pair.mover];
     if (!pair.other) continue;
     const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
-    const std::vector<double> end = held(a.link, b.link, from, to);
+    if (a.robot != b.robot) {
+      pair.speed = (speed[pair.mover] + speed[*pair.other]) * kUp;
+      continue;
+    }
+    const auto [from, to] = ends_of(a);
+    const std::vector<double> end = held(model_of(a).kinematics, a.link, b.link, from, to);
     pair.speed = speed_of(a, from, end) + speed_of(b, from, end);
   }
 }
@@ -120,7 +142,8 @@ void MovingPairs::place(double at, const std::vector<std::size_t>& pairs) {
   const auto place = [&](std::size_t m) {
     if (placed_[m] != 0) return;
     placed_[m] = 1;
-    places_[m].place(model_.base * motions_[m].at(at) * movers_[m].on_link, errors_[m]);
+    places_[m].place(model_of(movers_[m]).base * motions_[m].at(at) * movers_[m].on_link,
+                     errors_[m]);
   };
   for (const std::size_t k : pairs) {
     place(pairs_[k].mover);

@@ -8,8 +8,14 @@
 
 namespace kaboum::world::detail {
 
-/// The pairs of things of which at least one moves while a robot goes along a path, placed at
-/// instants of one segment after another.
+/// The path of a robot, where somebody else keeps it.
+struct MovingRobot {
+  std::size_t robot = 0;
+  const robot::Path* path = nullptr;
+};
+
+/// The pairs of things of which at least one moves while robots go along paths of equally many
+/// waypoints, placed at instants of one segment after another.
 class MovingPairs {
  public:
   struct Pair {
@@ -22,8 +28,8 @@ class MovingPairs {
 
   /// @param scratch  that is used; may be null.
   /// @param things  only pairs with one of these that rest; all pairs where it is null.
-  MovingPairs(const Checker& checker, const WorldState& state, std::size_t robot,
-              const robot::Path& path, Scratch* scratch, const std::vector<Item>* things = nullptr);
+  MovingPairs(const Checker& checker, const WorldState& state, std::vector<MovingRobot> robots,
+              Scratch* scratch, const std::vector<Item>* things = nullptr);
 
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
   [[nodiscard]] const Item& mover(const Pair& pair) const { return movers_[pair.mover].item; }
@@ -50,17 +56,14 @@ class MovingPairs {
 
  private:
   std::size_t mover_of(const Item& item, const WorldState& state);
-  [[nodiscard]] std::vector<std::uint32_t> chain(std::uint32_t link) const;
-  [[nodiscard]] std::vector<double> held(std::uint32_t a, std::uint32_t b,
-                                         const std::vector<double>& from,
-                                         const std::vector<double>& to) const;
+  [[nodiscard]] const RobotModel& model_of(const Mover& m) const { return world_.robots[m.robot]; }
+  [[nodiscard]] const robot::Path& path_of(const Mover& m) const;
   [[nodiscard]] double speed_of(const Mover& m, const std::vector<double>& from,
                                 const std::vector<double>& to) const;
 
   const Checker& checker_;
   const World& world_;
-  const RobotModel& model_;
-  const robot::Path& path_;
+  std::vector<MovingRobot> robots_;
   std::vector<Mover> movers_;
   std::vector<collide::PosedSet> places_;  ///< of the movers
   std::vector<char> placed_;

@@ -489,7 +489,7 @@ class World:
     ) -> NDArray[np.bool_]: ...
     def check_motion(
         self,
-        path: ArrayLike,
+        path: ArrayLike | Mapping[str, ArrayLike],
         *,
         robot: str | None = None,
         # options of check_motion

@@ -221,6 +221,28 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
   return out;
 }
 
+/// The path of a robot, or those of a dict by the robots' names.
+std::vector<world::RobotPath> paths_of(const world::World& world, const py::object& path,
+                                       const std::optional<std::string>& robot) {
+  std::vector<world::RobotPath> out;
+  const auto add = [&](std::size_t index, const py::object& rows, const std::string& name) {
+    bool one = false;
+    out.push_back(
+        {index, rows_of(rows, world.robots[index].kinematics.variables.size(), name.c_str(), one)});
+  };
+  if (!py::isinstance<py::dict>(path)) {
+    add(robot_index(world, robot), path, "path");
+    return out;
+  }
+  if (robot)
+    throw Error(ErrorCode::InvalidArgument, "robot: a dict of paths names the robots itself");
+  for (const auto& [key, rows] : path.cast<py::dict>()) {
+    const std::string name = py::str(key).cast<std::string>();
+    add(robot_index(world, name), py::reinterpret_borrow<py::object>(rows), "path['" + name + "']");
+  }
+  return out;
+}
+
 MotionValue check_motion(const WorldValue& in, const py::object& path,
                          const std::optional<std::string>& robot, const py::kwargs& given) {
   world::MotionOptions options;
@@ -230,20 +252,21 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   take_options(motion::keep_options(), keywords, keep);
   const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
   require_all_taken("check_motion", keywords, motion_keywords(), Runs::Alone);
-  const std::size_t index = robot_index(in.world(), robot);
-  bool one = false;
-  const robot::Path rows =
-      rows_of(path, in.world().robots[index].kinematics.variables.size(), "path", one);
+  const std::vector<world::RobotPath> paths = paths_of(in.world(), path, robot);
+  if (paths.size() > 1 && !keep.keep.empty())
+    throw Error(ErrorCode::InvalidArgument, "keep is for one robot that moves, not for several");
   Watch watch(running.progress);
   options.progress = watch.hook();
   return run(0, [&] {
     MotionValue out{in, {}, {}, {}};
     const world::WorldState state = initial_state(in.world());
-    if (!rows.empty())
+    out.answer = world::check_motions(*in.checker, state, paths, options);
+    for (const auto& [index, rows] : paths) {
       out.constraints =
           constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep);
-    out.answer = world::check_motion(*in.checker, state, index, rows, options);
-    out.kept = check_constraints(in.world().robots[index], rows, out.constraints);
+      out.kept = check_constraints(in.world().robots[index], rows, out.constraints);
+      if (out.kept.outcome != motion::ConstraintAnswer::Outcome::Kept) break;
+    }
     return out;
   });
 }
@@ -729,8 +752,9 @@ Limits of joints are not looked at.
 
 Parameters
 ----------
-path : array
-    n x k, a row for each waypoint.
+path : array or dict
+    n x k, a row for each waypoint. Of robots that move at once: a dict of such arrays by their
+    names, with equally many rows.
 robot : str, optional
 {keywords}
 )";

@@ -164,7 +164,26 @@ expect 1 "the goal breaks a constraint: 'off-wall' is off by" "$M" kept.json --f
 expect 7 'no configuration within the limits puts .*the search for them is numeric' "$M" kept.json --from=0.6,1 --to-pose=3,0,0 -o none.csv
 expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep of-wall -o none.csv
 expect 3 "there is no feature 'arm/ende.origin'; did you mean 'arm/end.origin'?" "$M" misspelt.json --from=0.6,1 "--to-pose=$POSE" -o none.csv
-expect 2 'CSV is written' "$M" kept.json --from=0.6,1 --to=0.3,0 -o none.json
+expect 2 'CSV is written' "$M" kept.json --from=0.6,1 --to=0.3,0 -o wrong.json
 expect 2 'keep needs --path' "$BIN/kaboum-check" kept.json --keep level
-absent none.csv
+absent none.csv wrong.json
+# Two robots at once: each alone is free, together they meet half way; one that waits lets the other pass.
+expect 0 '' "$BIN/kaboum-scene" make two.json --robot left=arm.urdf --robot right=arm.urdf --at right=2.5,0,0,0,0,3.14159265 --no-cache
+printf 'j1,j2\n0.8,0\n-0.8,0\n' >down.csv
+printf 'j1,j2\n1.5,0\n1.5,0\n' >up.csv
+printf 'j1,j2\n-1.5,0\n-1.5,0\n' >wait.csv
+printf 'j1,j2\n1.5,0\n0.8,0\n' >come.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" two.json --path left=down.csv --path right=wait.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" two.json --path left=up.csv --path right=down.csv
+shows 1 'left/.* and right/' "$BIN/kaboum-check" two.json --path left=down.csv --path right=down.csv --report two-report.json --preview two.png
+shows 0 'free at every instant' "$BIN/kaboum-check" two.json --path left=come.csv --path right=come.csv
+grep -q '"robots"' two-report.json || fail "no robots in the report"
+[ -s two.png ] || fail "no picture of two robots"
+expect 2 'names its robot' "$BIN/kaboum-check" two.json --path left=down.csv --path down.csv
+expect 2 "'left' has two paths" "$BIN/kaboum-check" two.json --path left=down.csv --path left=up.csv
+expect 2 'for one robot that moves' "$BIN/kaboum-check" two.json --path left=down.csv --path right=wait.csv --keep level
+printf 'j1,j2\n0.8,0\n' >one.csv
+expect 2 "equally many waypoints: 'right' has 1, 'left' has 2" "$BIN/kaboum-check" two.json --path left=down.csv --path right=one.csv
+shows 0 'free at every instant' "$BIN/kaboum-check" two.json --path right=come.csv
+expect 2 'names another robot' "$BIN/kaboum-check" two.json --robot left --path right=come.csv
 finish

@@ -297,6 +297,27 @@ def test_motions_keep_what_is_asked_for(cell):
             world.check_motion([home, home], **wrong)
 
 
+def test_robots_that_move_at_once(tmp_path):
+    arm = """<robot name="arm"><link name="base"/><link name="bar"><collision><origin xyz="0.5 0 0"/><geometry><box
+size="1 0.1 0.1"/></geometry></collision></link><joint name="j" type="revolute"><parent link="base"/><child link="bar"/><axis
+xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
+    (tmp_path / "arm.urdf").write_text(arm)
+    scene = str(tmp_path / "two.json")
+    kaboum.make_scene(scene, robots={"left": str(tmp_path / "arm.urdf"), "right": str(tmp_path / "arm.urdf")},
+                      at={"right": [1.5, 0, 0]})
+    world = kaboum.World(scene)
+    swing, follow, wait = [[1.5], [0.0]], [[1.0], [-0.5]], [[3.0], [3.0]]
+    assert world.check_motion({"left": swing, "right": follow})
+    met = world.check_motion({"left": swing, "right": wait})
+    assert not met and sorted(met.contact["pair"]) == ["left/bar", "right/bar"]
+    for wrong, words in (({"left": swing, "right": [[3.0]]}, "equally many waypoints"), ({"up": swing}, "no robot 'up'"),
+                         ({}, "no robot")):
+        with pytest.raises(kaboum.Error, match=words):
+            world.check_motion(wrong)
+    with pytest.raises(kaboum.Error, match="names the robots itself"):
+        world.check_motion({"left": swing}, robot="left")
+
+
 def test_margins_keep_things_apart(cell):
     world = kaboum.World(cell)
     home = world.home()

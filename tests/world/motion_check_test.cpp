@@ -198,5 +198,121 @@ TEST(MotionInclusion, IsThatOfEveryInstant) {
   EXPECT_EQ(inside({{-1.2, 0, 0}, {1.2, 0, 0}}, l1).answer, Inclusion::Undecided);
 }
 
+/// Two arms of three links that face each other.
+World two_arms(const SceneFiles& files) {
+  World world = files.world(files.scene());
+  world.robots.push_back(world.robots[0]);
+  world.robots[1].name = "other";
+  world.robots[1].base.translation = Vec3(3.2, 0.3, 0);
+  return world;
+}
+
+TEST(CheckMotions, SeveralRobotsAreApartAtEachInstantNotEachAlone) {
+  const SceneFiles files;
+  const World world = two_arms(files);
+  const Checker checker(world);
+  Scratch scratch;
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> turn(-3, 3), step(-1.2, 1.2);
+  int free = 0, contact = 0, free_only_together = 0, free_only_alone = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::vector<RobotPath> paths(2);
+    for (std::size_t r = 0; r < 2; ++r) {
+      paths[r].robot = r;
+      paths[r].path.assign(3, std::vector<double>(3));
+      for (double& q : paths[r].path[0]) q = turn(random);
+      for (int k = 1; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) paths[r].path[k][j] = paths[r].path[k - 1][j] + step(random);
+    }
+    const MotionAnswer answer = check_motions(checker, initial_state(world), paths, {});
+    ASSERT_NE(answer.outcome, Outcome::Undecided);
+    const auto state_at = [&](std::size_t segment, double share) {
+      WorldState state = initial_state(world);
+      for (const RobotPath& p : paths) state.q[p.robot] = at(p.path, segment, share);
+      return state;
+    };
+    // Either order of the paths is the same motion.
+    std::swap(paths[0], paths[1]);
+    const MotionAnswer again = check_motions(checker, initial_state(world), paths, {});
+    EXPECT_EQ(answer.outcome, again.outcome);
+    std::swap(paths[0], paths[1]);
+    if (answer.outcome == Outcome::Free) {
+      ++free;
+      for (std::size_t segment = 0; segment < 2; ++segment)
+        for (int k = 0; k <= 200; ++k)
+          ASSERT_TRUE(checker.is_free(state_at(segment, k / 200.0), scratch)) << i;
+    } else if (answer.meets) {
+      ++contact;
+      EXPECT_FALSE(checker.is_free(state_at(answer.contact_segment, answer.contact_share), scratch))
+          << i;
+      // All before is free.
+      for (int k = 0; answer.share > 0 && k < 100; ++k) {
+        const double share = answer.share * (k / 100.0);
+        ASSERT_TRUE(checker.is_free(state_at(answer.segment, share), scratch)) << i;
+      }
+    }
+    // One after the other is another question.
+    bool alone = true;
+    WorldState state = initial_state(world);
+    state.q[1] = paths[1].path.front();
+    alone = check_motion(checker, state, 0, paths[0].path, {}).outcome == Outcome::Free;
+    state.q[0] = paths[0].path.back();
+    alone = alone && check_motion(checker, state, 1, paths[1].path, {}).outcome == Outcome::Free;
+    free_only_together += answer.outcome == Outcome::Free && !alone ? 1 : 0;
+    free_only_alone += answer.outcome != Outcome::Free && alone ? 1 : 0;
+  }
+  EXPECT_GT(free, 60);
+  EXPECT_GT(contact, 60);
+  EXPECT_GT(free_only_together, 3);
+  EXPECT_GT(free_only_alone, 0);
+}
+
+TEST(CheckMotions, WhatOneCarriesMeetsTheOther) {
+  const SceneFiles files;
+  World world = two_arms(files);
+  const World with_box = files.world(
+      files.scene(R"("objects": [{"name": "box", "pose": {"position": [0, 9, 0]}, "outer": )" +
+                  files.ref("box.glb") + "}]"));
+  world.objects = with_box.objects;
+  world.attachments = with_box.attachments;
+  const Checker checker(world);
+  WorldState state = initial_state(world);
+  Attachment held;
+  held.robot = 1;
+  held.link = 3;
+  held.pose.translation = {1.6, 0, 0};
+  state.attachments[0] = held;
+  // Both swing up in step; the box at the end of the other one is where the first one is, or not.
+  const double kHalf = std::acos(-1.0) / 2;
+  std::vector<RobotPath> paths{{0, {{0.9, 0.3, 0.1}, {1.4, 0.3, 0.1}}},
+                               {1, {{kHalf, 0, 0}, {kHalf + 0.4, 0, 0}}}};
+  EXPECT_EQ(check_motions(checker, state, paths, {}).outcome, Outcome::Free);
+  paths[1].path = {{kHalf, 0, 0}, {kHalf + 1.6, 0, 0}};
+  const MotionAnswer answer = check_motions(checker, state, paths, {});
+  ASSERT_EQ(answer.outcome, Outcome::Contact);
+}
+
+TEST(CheckMotions, WhatDoesNotFitIsRefused) {
+  const SceneFiles files;
+  const World world = two_arms(files);
+  const Checker checker(world);
+  const WorldState state = initial_state(world);
+  const robot::Path two{{0, 0, 0}, {0.1, 0, 0}}, three{{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}};
+  const auto refused = [&](const std::vector<RobotPath>& paths, const std::string& words) {
+    try {
+      static_cast<void>(check_motions(checker, state, paths, {}));
+      ADD_FAILURE() << "accepted: " << words;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refused({}, "no robot");
+  refused({{0, two}, {1, three}}, "'other' has 3, 'arm' has 2");
+  refused({{0, two}, {0, two}}, "'arm' has two paths");
+  refused({{2, two}}, "no such robot");
+  refused({{0, {{0, 0}}}}, "another robot");
+}
+
 }  // namespace
 }  // namespace kaboum::world

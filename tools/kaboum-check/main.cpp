@@ -61,31 +61,31 @@ std::vector<double> configuration_at(const robot::Path& path, std::size_t segmen
   return out;
 }
 
-/// Whether the motion keeps what is asked for: an exit code.
-int check_kept(const tools::CheckOptions& o, const world::World& world, std::size_t robot,
-               const robot::Path& path, tools::Json& report) {
+/// Whether a robot's motion keeps what is asked for, and what it carries upright: an exit code.
+int check_kept(const tools::CheckOptions& o, const world::World& world,
+               const world::RobotPath& motion, tools::Json& report) {
+  const auto& [robot, path] = motion;
   const std::vector<motion::PathConstraint> constraints =
       constraints_of(world, initial_state(world), robot, path.front(), {&path.back(), 1}, o.keep);
   if (constraints.empty()) return tools::kDone;
   const motion::ConstraintAnswer answer = check_constraints(world.robots[robot], path, constraints);
   using Outcome = motion::ConstraintAnswer::Outcome;
-  tools::Json& kept =
-      report["kept"] = {{"answer", answer.outcome == Outcome::Kept     ? "kept"
-                                   : answer.outcome == Outcome::Broken ? "broken"
-                                                                       : "undecided"},
-                        {"instants", answer.instants},
-                        {"constraints", tools::Json::array()}};
+  report = {{"answer", answer.outcome == Outcome::Kept     ? "kept"
+                       : answer.outcome == Outcome::Broken ? "broken"
+                                                           : "undecided"},
+            {"instants", answer.instants},
+            {"constraints", tools::Json::array()}};
   for (std::size_t i = 0; i < constraints.size(); ++i) {
-    kept["constraints"].push_back(tools::to_json(world.robots[robot].kinematics, constraints[i]));
-    if (answer.outcome == Outcome::Kept) kept["constraints"].back()["used"] = answer.parts[i];
+    report["constraints"].push_back(tools::to_json(world.robots[robot].kinematics, constraints[i]));
+    if (answer.outcome == Outcome::Kept) report["constraints"].back()["used"] = answer.parts[i];
   }
   if (answer.outcome == Outcome::Kept) {
     say(o, "kept at every instant: " + words_of(constraints, answer.parts));
     return tools::kDone;
   }
-  kept["segment"] = answer.segment;
-  kept["share"] = answer.share;
-  kept["deviation"] = answer.deviation;
+  report["segment"] = answer.segment;
+  report["share"] = answer.share;
+  report["deviation"] = answer.deviation;
   std::ostringstream line;
   line << (answer.outcome == Outcome::Broken ? "not kept: " : "undecided: ")
        << describe(answer, constraints) << ", " << 100 * answer.share
@@ -94,23 +94,55 @@ int check_kept(const tools::CheckOptions& o, const world::World& world, std::siz
   return answer.outcome == Outcome::Broken ? tools::kNo : tools::kLimit;
 }
 
-int check_path(const tools::CheckOptions& o, const world::SceneFile& scene, std::size_t robot,
-               const robot::Path& path, tools::Json& report) {
+/// The worse of two exit codes of answers: no, undecided, yes.
+int worse(int a, int b) {
+  if (a == tools::kNo || b == tools::kNo) return tools::kNo;
+  return a == tools::kDone ? b : a;
+}
+
+/// What is asked of one robot that moves alone: where it stays, and what it keeps; of several, what
+/// each carries upright.
+int check_wishes(const tools::CheckOptions& o, const world::Checker& checker,
+                 const std::vector<world::RobotPath>& paths, tools::Json& report) {
+  const world::World& world = checker.world();
+  int code = tools::kDone;
+  for (const world::RobotPath& one : paths) {
+    tools::Json kept;
+    code = worse(code, check_kept(o, world, one, kept));
+    if (kept.is_null()) continue;
+    if (paths.size() == 1)
+      report["kept"] = std::move(kept);
+    else
+      report["kept"][world.robots[one.robot].name] = std::move(kept);
+  }
+  if (paths.size() > 1) return code;
+  const collide::Inclusion inside = tools::decide_inside(
+      checker, initial_state(world), paths.front().robot, paths.front().path, o.motion,
+      tools::parse_inside(world, o.inside), [&](const std::string& line) { say(o, line); }, report);
+  using collide::Inclusion;
+  return worse(code, inside == Inclusion::NotIncluded ? tools::kNo
+                     : inside == Inclusion::Undecided ? tools::kLimit
+                                                      : tools::kDone);
+}
+
+int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
+                const std::vector<world::RobotPath>& paths, tools::Json& report) {
   const world::Checker checker(scene.world);
-  const std::vector<tools::Inside> wanted = tools::parse_inside(scene.world, o.inside);
+  static_cast<void>(tools::parse_inside(scene.world, o.inside));  // errors come first
   world::MotionAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
-    return check_motion(checker, initial_state(scene.world), robot, path, told);
+    return check_motions(checker, initial_state(scene.world), paths, told);
   }();
-  report["waypoints"] = path.size();
+  report["waypoints"] = paths.front().path.size();
   report["resolution"] = o.motion.resolution;
   world::WorldState at = initial_state(scene.world);
-  at.q[robot] = path.back();
+  for (const auto& [robot, path] : paths) at.q[robot] = path.back();
   std::vector<world::Contact> contacts;
   if (answer.contact) {
-    at.q[robot] = configuration_at(path, answer.contact_segment, answer.contact_share);
+    for (const auto& [robot, path] : paths)
+      at.q[robot] = configuration_at(path, answer.contact_segment, answer.contact_share);
     if (answer.meets) {
       world::Scratch scratch;
       checker.measure_depth(*answer.contact, at, scratch);
@@ -121,20 +153,45 @@ int check_path(const tools::CheckOptions& o, const world::SceneFile& scene, std:
   say(o, tools::describe(scene.world, answer) +
              (answer.outcome == world::MotionAnswer::Outcome::Free ? kept_apart(o) : ""));
   if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
-  const collide::Inclusion inside = tools::decide_inside(
-      checker, initial_state(scene.world), robot, path, o.motion, wanted,
-      [&](const std::string& line) { say(o, line); }, report);
-  const int kept = check_kept(o, scene.world, robot, path, report);
+  const int wishes = check_wishes(o, checker, paths, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
                      : answer.outcome == Outcome::Undecided                      ? "undecided"
                      : answer.contact && answer.contact->certain && answer.meets ? "colliding"
                                                                                  : "within epsilon";
-  using collide::Inclusion;
-  if (answer.outcome == Outcome::Contact || inside == Inclusion::NotIncluded || kept == tools::kNo)
-    return tools::kNo;
-  return answer.outcome == Outcome::Undecided || inside == Inclusion::Undecided ? tools::kLimit
-                                                                                : kept;
+  return worse(wishes, answer.outcome == Outcome::Free        ? tools::kDone
+                       : answer.outcome == Outcome::Undecided ? tools::kLimit
+                                                              : tools::kNo);
+}
+
+/// A path's file, and the robot whose it is where that is stated: "left=path.csv".
+struct StatedPath {
+  std::optional<std::size_t> robot;
+  std::string file;
+};
+
+std::vector<StatedPath> stated_paths(const tools::CheckOptions& o, const world::World& world) {
+  std::vector<StatedPath> out;
+  for (const std::string& text : o.paths) {
+    const std::size_t equals = text.find('=');
+    const auto robot =
+        equals == std::string::npos ? std::nullopt : world.find_robot(text.substr(0, equals));
+    out.push_back(robot ? StatedPath{robot, text.substr(equals + 1)} : StatedPath{{}, text});
+    if (o.paths.size() == 1) continue;
+    if (!robot)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--path " + text +
+                      ": of several paths each names its robot, as in --path left=left.csv --path "
+                      "right=right.csv");
+    for (std::size_t i = 0; i + 1 < out.size(); ++i)
+      if (out[i].robot == robot)
+        throw Error(ErrorCode::InvalidArgument,
+                    "--path: robot '" + text.substr(0, equals) + "' has two paths");
+  }
+  if (out.size() > 1 && (!o.robot.empty() || !o.inside.empty() || !o.keep.keep.empty()))
+    throw Error(ErrorCode::InvalidArgument,
+                "--robot, --inside and --keep are for one robot that moves, not for several");
+  return out;
 }
 
 int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
@@ -194,35 +251,44 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
 }
 
 int check(const tools::CheckOptions& o) {
-  if (!o.path.empty() && (o.state.resting || o.distance))
+  if (!o.paths.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
   world::SceneFile scene = world::read_scene(o.scene);
   scene.world.margins = world::margins_of(scene.world, o.margin);
+  const std::vector<StatedPath> stated = stated_paths(o, scene.world);
   std::vector<std::string> inputs = scene.inputs;
-  inputs.insert(inputs.end(), {o.path, o.configurations});
+  inputs.push_back(o.configurations);
+  for (const StatedPath& path : stated) inputs.push_back(path.file);
   tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}}, inputs);
   std::vector<std::string> notes = scene.notes;
   tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   std::optional<std::size_t> robot;
-  const bool moves = !o.path.empty() || !o.configuration.empty() || !o.configurations.empty();
-  if (moves || !o.robot.empty()) robot = world::robot_named(scene.world, o.robot);
-  robot::Path values;
-  if (robot) {
+  const bool moves = !o.paths.empty() || !o.configuration.empty() || !o.configurations.empty();
+  if (stated.size() <= 1 && (moves || !o.robot.empty())) {
+    const bool named = stated.size() == 1 && stated[0].robot;
+    robot = named && o.robot.empty() ? *stated[0].robot : world::robot_named(scene.world, o.robot);
+    if (named && robot != stated[0].robot)
+      throw Error(ErrorCode::InvalidArgument, "--path names another robot than --robot");
+    report["robot"] = scene.world.robots[*robot].name;
+  }
+  std::vector<world::RobotPath> paths;
+  for (const StatedPath& path : stated) {
+    const std::size_t index = robot ? *robot : *path.robot;
+    if (!robot) report["robots"].push_back(scene.world.robots[index].name);
+    paths.push_back({index, robot::read_path(path.file, scene.world.robots[index].kinematics,
+                                             o.reading, notes)});
+  }
+  robot::Path values{{}};
+  if (robot && paths.empty()) {
     const world::RobotModel& model = scene.world.robots[*robot];
-    report["robot"] = model.name;
-    const std::string file = o.path.empty() ? o.configurations : o.path;
-    if (!file.empty())
-      values = robot::read_path(file, model.kinematics, o.reading, notes);
-    else if (!o.configuration.empty())
-      values = parse_configuration(o, model.kinematics);
-    else
-      values = {model.home};
-  } else {
-    values = {{}};
+    values = !o.configurations.empty()
+                 ? robot::read_path(o.configurations, model.kinematics, o.reading, notes)
+             : !o.configuration.empty() ? parse_configuration(o, model.kinematics)
+                                        : robot::Path{model.home};
   }
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
-  const int code = o.path.empty() ? check_states(o, scene, robot, values, report)
-                                  : check_path(o, scene, *robot, values, report);
+  const int code = paths.empty() ? check_states(o, scene, robot, values, report)
+                                 : check_paths(o, scene, paths, report);
   if (!notes.empty()) report["notes"] = notes;
   if (!o.margin.margins.empty()) report["margins"] = words_of(o.margin);
   tools::write_report(o.common, "kaboum-check", report);
@@ -238,7 +304,7 @@ void require_meaning(const tools::CheckOptions& o) {
                   "--" + option.name + " needs " + others +
                       "; without, what is looked at are the robots at home");
   };
-  const bool moves = !o.path.empty();
+  const bool moves = !o.paths.empty();
   const bool given = moves || !o.configuration.empty() || !o.configurations.empty();
   for (const auto& option : robot::path_options())
     require(option, given, "--path, --configuration or --configurations");

@@ -15,9 +15,13 @@ namespace kaboum::tools {
 void describe(CLI::App& app, CheckOptions& o) {
   app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
   app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
-  auto* path = app.add_option("--path", o.path,
-                              "Decide a whole motion, at every instant: waypoints, CSV or JSON")
-                   ->type_name("FILE");
+  auto* path = app.add_option("--path", o.paths,
+                              "Decide a whole motion, at every instant: waypoints, CSV or JSON. "
+                              "Repeated, with the robots' names: of robots that move at once, from "
+                              "waypoint to waypoint together")
+                   ->expected(1)
+                   ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                   ->type_name("[ROBOT=]FILE");
   auto* one = app.add_option("--configuration", o.configuration,
                              "Decide the robot at these joint values, separated by commas [home]")
                   ->type_name("Q1,Q2,…")

@@ -19,8 +19,8 @@ class App;
 namespace kaboum::tools {
 
 struct CheckOptions {
-  std::string scene, robot, path, configuration, configurations, preview;
-  std::vector<std::string> inside;
+  std::string scene, robot, configuration, configurations, preview;
+  std::vector<std::string> paths, inside;
   robot::PathOptions reading;
   world::Checker::Options state;
   world::MotionOptions motion;

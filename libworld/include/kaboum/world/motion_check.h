@@ -40,6 +40,12 @@ struct MotionAnswer {
   std::size_t intervals = 0, queries = 0;
 };
 
+/// A robot and the waypoints that it goes along, a value per variable at each.
+struct RobotPath {
+  std::size_t robot = 0;
+  robot::Path path;
+};
+
 /// Decides whether a robot may move along a path of straight segments of joint values while all
 /// else stays: at every instant, not at samples. A stretch of time is free when its middle is, with
 /// all bodies enlarged by as much as they move in half of it: LinkMotion's bounds (docs/algorithms/
@@ -53,6 +59,14 @@ struct MotionAnswer {
 ///   fit, and a resolution that is not above 0.
 MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                           const robot::Path& path, const MotionOptions& options);
+
+/// The same of several robots that move at once: at each share of a segment, all are at that share
+/// of their own segments. Pairs of which both move are apart by as much as both may move.
+/// @param paths  of different robots, with equally many waypoints.
+/// @throws as check_motion; Error{InvalidArgument} for no paths, a robot that has two, and numbers
+///   of waypoints that differ.
+MotionAnswer check_motions(const Checker& checker, const WorldState& state,
+                           const std::vector<RobotPath>& paths, const MotionOptions& options);
 
 /// Things that are in the way of a path: not certainly apart, at every instant, from the robot and
 /// what it carries. Each is decided about by itself, so that what is said of it depends on nothing
