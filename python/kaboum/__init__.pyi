@@ -561,6 +561,15 @@ class World:
         seed: int = 1,
         progress: _Progress | None = None,
     ) -> NDArray[np.float64]: ...
+    def constraint_goals(
+        self,
+        name: str,
+        *,
+        start: ArrayLike | None = None,
+        tool: str | None = None,
+        robot: str | None = None,
+        seed: int = 1,
+    ) -> NDArray[np.float64]: ...
     def stays_inside(
         self,
         what: str,

@@ -1,8 +1,8 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
+#include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
-#include <kaboum/motion/pose_goals.h>
 #include <kaboum/motion/sampled_path.h>
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
@@ -312,9 +312,32 @@ py::array pose_goals(const WorldValue& in, const py::object& pose, const py::obj
   }
   const geom::Transform target = pose_from(pose);
   Watch watch(progress);
-  const motion::PoseGoals goals = run(0, [&] {
+  const motion::Goals goals = run(0, [&] {
     return motion::pose_goals(model, motion::moving_frame(model, tool.value_or("")), target,
                               from.front(), seed, watch.hook());
+  });
+  if (goals.configurations.empty())
+    return py::array_t<double>(std::vector<py::ssize_t>{0, static_cast<py::ssize_t>(variables)});
+  return rows_array(goals.configurations);
+}
+
+py::array constraint_goals(const WorldValue& in, const std::string& name, const py::object& start,
+                           const std::optional<std::string>& tool,
+                           const std::optional<std::string>& robot, std::uint64_t seed) {
+  const std::size_t index = robot_index(in.world(), robot);
+  const world::RobotModel& model = in.world().robots[index];
+  const std::size_t variables = model.kinematics.variables.size();
+  robot::Path from{model.home};
+  if (!start.is_none()) {
+    bool one = false;
+    from = rows_of(start, variables, "start", one);
+    if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
+  }
+  const motion::Goals goals = run(0, [&] {
+    const std::vector<motion::PathConstraint> constraints = motion::path_constraints(
+        in.world(), initial_state(in.world()), index, in.world().constraint_set(name));
+    return motion::constraint_goals(model, motion::moving_frame(model, tool.value_or("")),
+                                    constraints, from.front(), seed);
   });
   if (goals.configurations.empty())
     return py::array_t<double>(std::vector<py::ssize_t>{0, static_cast<py::ssize_t>(variables)});
@@ -702,7 +725,11 @@ void bind_path(py::module_& module) {
           },
           "What start or goal touches, or None.")
       .def_property_readonly(
-          "kept", [](const PathValue& p) { return words_of(p.constraints, p.answer.deviations); },
+          "kept",
+          [](const PathValue& p) {
+            if (p.answer.outcome != motion::PathAnswer::Outcome::Found) return std::string();
+            return words_of(p.constraints, p.answer.deviations);
+          },
           "The constraints that it keeps and how far it is off, in words; empty: none were asked "
           "for.")
       .def_property_readonly(
@@ -814,6 +841,21 @@ Returns
 -------
 array
     n x k, a row for each; none where none was found.)";
+
+constexpr const char* kConstraintGoalsDoc =
+    R"(Configurations that meet constraints of the scene, drawn at random: goals of `find_path`.
+
+Parameters
+----------
+name : str
+    Of the constraints.
+start, tool, robot, seed
+    As of `pose_goals`.
+
+Returns
+-------
+array
+    n x k, a row for each, at most 16; none where none was found.)";
 
 constexpr const char* kStaysDoc =
     R"(Whether a thing stays in a region along a path, at every instant.
@@ -928,7 +970,10 @@ void bind_questions(WorldClass& world) {
            kInsideDoc)
       .def("pose_goals", &pose_goals, py::arg("pose"), py::kw_only(), py::arg("start") = py::none(),
            py::arg("tool") = py::none(), py::arg("robot") = py::none(), py::arg("seed") = 1,
-           py::arg("progress") = py::none(), kPoseGoalsDoc);
+           py::arg("progress") = py::none(), kPoseGoalsDoc)
+      .def("constraint_goals", &constraint_goals, py::arg("name"), py::kw_only(),
+           py::arg("start") = py::none(), py::arg("tool") = py::none(),
+           py::arg("robot") = py::none(), py::arg("seed") = 1, kConstraintGoalsDoc);
   bind_questions_with_options(world);
 }
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/motion/find_path.h>
+#include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
-#include <kaboum/motion/pose_goals.h>
 
 #include <cmath>
 #include <random>
@@ -544,7 +544,7 @@ TEST(PoseGoals, ReachThePoseWithTheOtherJointsAsTheyAre) {
   const world::ToolFrame tool = moving_frame(robot, "");
   const std::vector<double> known{0.4, 0.7, -0.3}, start{0, 0, -0.3};
   const WidePose wanted = pose_of(robot, values_at(known, known, 0), 2) * wide(tool.pose);
-  const PoseGoals goals = pose_goals(
+  const Goals goals = pose_goals(
       robot, tool, {wanted.linear.cast<double>(), wanted.translation.cast<double>()}, start, 1);
   ASSERT_FALSE(goals.configurations.empty()) << goals.why;
   for (const std::vector<double>& q : goals.configurations) {
@@ -555,6 +555,38 @@ TEST(PoseGoals, ReachThePoseWithTheOtherJointsAsTheyAre) {
   }
   EXPECT_TRUE(pose_goals(robot, tool, {Eigen::Matrix3d::Identity(), Vec3(5, 0, 0)}, start, 1)
                   .configurations.empty());
+}
+
+TEST(ConstraintGoals, MeetTheConstraintsWithinTheLimits) {
+  const test::SceneFiles files;
+  const world::World world = files.world(files.scene(
+      R"("constraints": [
+        {"name": "on-wall", "all": [{"relation": "coincident", "first": "world.yz", "second": "arm/flange.origin"},
+                                    {"relation": "parallel", "first": "arm/flange.x", "second": "world.y"}]},
+        {"name": "elbow", "all": [{"relation": "distance", "first": "arm/l2.origin", "second": "world.zx", "value": 0.5}]},
+        {"name": "nowhere", "all": [{"relation": "coincident", "first": "arm/flange.origin", "second": "world.xy"},
+                                    {"relation": "distance", "first": "arm/flange.origin", "second": "world.origin", "value": 9}]}])",
+      R"("tools": [{"name": "flange", "link": "l3", "position": [1, 0, 0]}])"));
+  const world::RobotModel& robot = world.robots[0];
+  const auto goals_of = [&](const char* name, std::uint64_t seed) {
+    return constraint_goals(
+        robot, robot.tools[0],
+        path_constraints(world, initial_state(world), 0, world.constraint_set(name)), {0, 0, 0},
+        seed);
+  };
+  const Goals wall = goals_of("on-wall", 1), elbow = goals_of("elbow", 1);
+  EXPECT_GT(wall.configurations.size(), 4U);
+  EXPECT_GT(elbow.configurations.size(), 4U);
+  for (const std::vector<double>& q : wall.configurations) {
+    EXPECT_NEAR(std::cos(q[0]) + std::cos(q[0] + q[1]) + std::cos(q[0] + q[1] + q[2]), 0, 1e-3);
+    EXPECT_NEAR(std::cos(q[0] + q[1] + q[2]), 0, 0.021);
+    for (const double x : q) EXPECT_LE(std::abs(x), 3);
+  }
+  for (const std::vector<double>& q : elbow.configurations)
+    EXPECT_NEAR(std::abs(std::sin(q[0])), 0.5, 2e-3);
+  EXPECT_TRUE(goals_of("nowhere", 1).configurations.empty());
+  EXPECT_EQ(goals_of("on-wall", 1).configurations, wall.configurations);
+  EXPECT_NE(goals_of("on-wall", 2).configurations, wall.configurations);
 }
 
 }  // namespace

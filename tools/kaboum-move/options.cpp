@@ -48,6 +48,12 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("POSE");
+  app.add_option("--reach", o.reach,
+                 "Constraints of the scene to meet at the end, by their name; may be repeated. One "
+                 "of 16 configurations that do, drawn at random, is gone to")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("NAME");
   app.add_option("-o,--output", o.output, "The path's waypoints, CSV; - is stdout")
       ->check(csv_name())
       ->capture_default_str()

@@ -3,7 +3,7 @@
 #include "request.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/motion/pose_goals.h>
+#include <kaboum/motion/goals.h>
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path_file.h>
@@ -36,7 +36,7 @@ std::vector<double> configuration(const std::string& text, const char* option, c
 /// The goals of a file. Those beyond the joints' limits are left out with a note: others may do.
 void add_goals(MoveRequest& r, robot::Path goals, const MoveOptions& o) {
   const std::string& file = o.goals;
-  const std::size_t given = o.to.size() + o.to_pose.size();
+  const std::size_t given = o.to.size() + o.to_pose.size() + o.reach.size();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     if (const auto bad = find_out_of_limits(r.kinematics(), goals[i])) {
       r.notes.push_back(file + ": goal " + std::to_string(i + 1) + " is left out: joint '" +
@@ -57,8 +57,7 @@ void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
   for (const std::string& text : o.to_pose) {
     ++number;
     const geom::Transform pose = robot::parse_pose(text, "--to-pose");
-    const motion::PoseGoals goals =
-        motion::pose_goals(r.model(), tool, pose, r.start, o.search.seed);
+    const motion::Goals goals = motion::pose_goals(r.model(), tool, pose, r.start, o.search.seed);
     for (const std::vector<double>& q : goals.configurations) {
       r.goals.push_back(q);
       r.numbers.push_back(number);
@@ -69,6 +68,28 @@ void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
                             (goals.complete ? "" : ", as far as was found: " + goals.why);
     r.unreached.push_back(why);
     r.out_of_reach = r.out_of_reach && goals.complete;
+  }
+}
+
+/// Configurations that meet the constraints that are asked for.
+void add_constraint_goals(MoveRequest& r, const MoveOptions& o) {
+  std::size_t number = o.to.size() + o.to_pose.size();
+  for (const std::string& name : o.reach) {
+    ++number;
+    const std::vector<motion::PathConstraint> constraints = motion::path_constraints(
+        r.scene.world, initial_state(r.scene.world), r.robot, r.scene.world.constraint_set(name));
+    const motion::Goals goals =
+        motion::constraint_goals(r.model(), motion::moving_frame(r.model(), o.keep.tool),
+                                 constraints, r.start, o.search.seed);
+    for (const std::vector<double>& q : goals.configurations) {
+      r.goals.push_back(q);
+      r.numbers.push_back(number);
+    }
+    if (!goals.configurations.empty()) continue;
+    r.unreached.push_back("--reach " + name +
+                          ": no configuration was found that meets these constraints, which does "
+                          "not say that there is none");
+    r.out_of_reach = false;
   }
 }
 
@@ -100,9 +121,11 @@ MoveRequest read_request(const MoveOptions& o) {
     r.numbers.push_back(r.goals.size());
   }
   add_pose_goals(r, o);
+  add_constraint_goals(r, o);
   if (!o.goals.empty()) add_goals(r, read(o.goals, false), o);
   if (r.goals.empty()) {
-    if (r.unreached.empty()) usage("where to? Give --to Q1,Q2,…, --to-pose POSE or --goals FILE");
+    if (r.unreached.empty())
+      usage("where to? Give --to Q1,Q2,…, --to-pose POSE, --reach NAME or --goals FILE");
     return r;
   }
   r.notes.insert(r.notes.end(), r.unreached.begin(), r.unreached.end());
