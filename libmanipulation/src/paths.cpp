@@ -21,6 +21,10 @@ constexpr double kMoreWork = 2;
 /// Goals that straight paths and those along the tool are tried for.
 constexpr std::size_t kNear = 4;
 
+bool is_certain(const motion::ConstraintAnswer& broken) {
+  return broken.outcome == motion::ConstraintAnswer::Outcome::Broken;
+}
+
 std::string name_of(const world::World& world, const std::array<world::Item, 2>& items) {
   return world.name_of(items[0]) + " and " + world.name_of(items[1]);
 }
@@ -122,8 +126,8 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals,
       return true;
     case Outcome::GoalInContact:
     case Outcome::GoalBreaksConstraint: {
-      const bool all = goals.all && goals.alone;
       const bool meets = answer.outcome == Outcome::GoalInContact;
+      const bool all = goals.all && goals.alone && (meets || is_certain(*answer.broken));
       std::string where = meets ? "blocked at its end" : "not upright at its end";
       if (!goals.listed.empty())
         where = (all ? goals.none() : "no configuration that was tried for " + goals.listed) +
@@ -138,7 +142,8 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals,
       return none(true, "the robot cannot start: contact of " +
                             name_of(geometry_.world, answer.contact->items));
     case Outcome::StartBreaksConstraint:
-      return none(true, "the robot cannot start: " + describe(*answer.broken, options.constraints));
+      return none(is_certain(*answer.broken),
+                  "the robot cannot start: " + describe(*answer.broken, options.constraints));
     case Outcome::StartOutsideLimits:
     case Outcome::GoalOutsideLimits:
       return none(true, "outside the limits of a joint");

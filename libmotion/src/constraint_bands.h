@@ -39,10 +39,17 @@ std::vector<ConstraintBand> bands_of(std::span<const PathConstraint> constraints
                                      const world::RobotModel& robot, std::span<const double> start);
 
 /// Decides a straight segment; the answer is added to.
+/// @param options  its limit is of all instants of the answer
 /// @return whether all bands are kept all along it
 bool check_segment(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
                    std::span<const double> from, std::span<const double> to,
-                   ConstraintAnswer& answer);
+                   const world::MotionOptions& options, ConstraintAnswer& answer);
+
+/// Decides all segments of a path.
+/// @pre the path has a waypoint
+ConstraintAnswer check_bands(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
+                             std::size_t constraints, const robot::Path& path,
+                             const world::MotionOptions& options);
 
 /// Moves configurations onto constraints: Gauss–Newton with the least change of the variables,
 /// damped, within their limits.

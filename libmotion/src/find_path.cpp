@@ -73,7 +73,9 @@ class PathSearch {
       } else if (auto met = space_.find_contact(goals_[g])) {
         if (!contact) contact = std::move(met);
       } else if (auto not_kept = space_.find_broken({goals_[g]})) {
-        if (!broken) broken = std::move(not_kept);
+        // One that is not certain is told of: then nothing is known of all.
+        if (!broken || not_kept->outcome == ConstraintAnswer::Outcome::Undecided)
+          broken = std::move(not_kept);
       } else {
         order_.push_back(g);
       }

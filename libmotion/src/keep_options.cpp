@@ -7,11 +7,13 @@
 #include <kaboum/kinematics/inverse.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/features.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <sstream>
 
 namespace kaboum::motion {
 namespace {
@@ -22,6 +24,8 @@ using kinematics::Line;
 using kinematics::Plane;
 using kinematics::Point;
 
+/// So many tolerances apart, start and goal of a line tell its direction.
+constexpr double kLeastWay = 10;
 constexpr double kUsualAngle = 0.05, kUsualLength = 0.002;
 
 [[noreturn]] void refuse_keep(const std::string& what) {
@@ -81,7 +85,12 @@ class UsualConstraints {
       if (!end) end = there;
     }
     const Vec3 way = end.value_or(begin) - begin;
-    if (way.norm() <= 0.5 * within) return Point{begin};
+    if (way.norm() <= 1e-9 * within) return Point{begin};
+    if (way.norm() < kLeastWay * within)
+      refuse_keep("'line': the tool goes " + number_text(way.norm()) + ", less than " +
+                  number_text(kLeastWay) +
+                  " tolerances, which gives no direction; state a smaller tolerance: line=" +
+                  number_text(way.norm() / (2 * kLeastWay)));
     return Line{begin, way.normalized()};
   }
 
@@ -90,6 +99,17 @@ class UsualConstraints {
   std::span<const std::vector<double>> goals_;
   Transform at_start_;
 };
+
+/// Names that are stated together: "upright,line=0.001".
+std::vector<std::string> split(const std::vector<std::string>& texts) {
+  std::vector<std::string> out;
+  for (const std::string& text : texts) {
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');)
+      if (!part.empty()) out.push_back(part);
+  }
+  return out;
+}
 
 double tolerance_of(const std::string& name, const std::string& text) {
   const std::optional<std::vector<double>> number = parse_numbers(text);
@@ -105,7 +125,8 @@ std::vector<Option<KeepRequest>> keep_table() {
            .text =
                "What the motion keeps at every instant, certified: upright (what of the tool "
                "points up at the start goes on doing so), orientation (the tool does not "
-               "turn), line (the tool's origin stays on the straight line to the goal), level "
+               "turn), line (the tool's origin stays on the straight line through start and goal), "
+               "level "
                "(it stays at its height), each perhaps with a tolerance (upright=0.1 [0.05 rad], "
                "line=0.001 [0.002, in the scene's unit]); or constraints of the scene by their "
                "name",
@@ -114,7 +135,7 @@ std::vector<Option<KeepRequest>> keep_table() {
           [](auto& r) -> auto& { return r.keep; }),
       option<KeepRequest>(
           {.name = "tool",
-           .text = "Tool of the robot that is meant: its origin and its axes",
+           .text = "Tool or link of the robot that is meant: its origin and its axes",
            .values = "NAME",
            .otherwise = "the only one; of a robot without tools its last link"},
           [](auto& r) -> auto& { return r.tool; })};
@@ -128,9 +149,30 @@ const std::vector<Option<KeepRequest>>& keep_options() {
 }
 
 world::ToolFrame moving_frame(const world::RobotModel& robot, const std::string& name) {
-  if (!robot.tools.empty() || !name.empty()) return world::tool_named(robot, name);
-  const std::string tip = kinematics::only_tip(robot.kinematics);
-  return {tip, *robot.kinematics.find_link(tip), {}};
+  const robot::Robot& kinematics = robot.kinematics;
+  std::vector<std::string> names;
+  for (const world::ToolFrame& tool : robot.tools) {
+    if (tool.name == name || (name.empty() && robot.tools.size() == 1)) return tool;
+    names.push_back(tool.name);
+  }
+  for (std::uint32_t i = 0; i < kinematics.links.size(); ++i) {
+    if (kinematics.links[i].name == name) return {name, i, {}};
+    names.push_back(kinematics.links[i].name);
+  }
+  if (!name.empty())
+    throw Error(ErrorCode::InvalidArgument, "«tool»: robot '" + robot.name +
+                                                "' has no tool or link '" + name + "'" +
+                                                did_you_mean(name, names));
+  if (!robot.tools.empty()) return world::tool_named(robot, name);
+  try {
+    const std::string tip = kinematics::only_tip(kinematics);
+    return {tip, *kinematics.find_link(tip), {}};
+  } catch (const Error&) {
+    throw Error(ErrorCode::InvalidArgument,
+                "«tool»: robot '" + robot.name +
+                    "' has no tools and several last links: name the link that is meant, or state "
+                    "tools in the scene");
+  }
 }
 
 std::vector<PathConstraint> constraints_of(const world::World& world,
@@ -138,14 +180,14 @@ std::vector<PathConstraint> constraints_of(const world::World& world,
                                            const std::vector<double>& start,
                                            std::span<const std::vector<double>> goals,
                                            const KeepRequest& request) {
-  static const std::vector<std::string> kUsual{"upright", "orientation", "line", "level"};
   std::vector<PathConstraint> out = carried_constraints(world, state, robot);
   const world::RobotModel& model = world.robots.at(robot);
-  for (const std::string& text : request.keep) {
+  if (!request.tool.empty()) static_cast<void>(moving_frame(model, request.tool));
+  for (const std::string& text : split(request.keep)) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     std::vector<PathConstraint> more;
-    if (std::ranges::find(kUsual, name) != kUsual.end()) {
+    if (world::is_usual_constraint(name)) {
       const bool angle = name == "upright" || name == "orientation";
       const double within = equals != std::string::npos
                                 ? tolerance_of(name, text.substr(equals + 1))
@@ -153,7 +195,8 @@ std::vector<PathConstraint> constraints_of(const world::World& world,
       const world::ToolFrame tool = moving_frame(model, request.tool);
       more = UsualConstraints(model, tool, start, goals).make(name, within);
     } else {
-      std::vector<std::string> names = kUsual;
+      std::vector<std::string> names(world::kUsualConstraints.begin(),
+                                     world::kUsualConstraints.end());
       bool known = false;
       for (const world::ConstraintSet& set : world.constraints) {
         names.push_back(set.name);
@@ -188,8 +231,7 @@ std::string words_of(std::span<const PathConstraint> constraints,
     };
     for (; i < constraints.size() && constraints[i].name == name; ++i) {
       const PathConstraint& c = constraints[i];
-      const kinematics::Measures measures =
-          measures_of(kinematics::Constraint{c.relation, {{}, c.moving}, {{}, c.resting}, c.value});
+      const kinematics::Measures measures = measures_of(kinematics_constraint(c));
       if (measures.length) add(c.within, "");
       if (measures.angle) add(c.within_angle, " rad");
       if (i < deviations.size()) deviation = std::max(deviation, deviations[i]);

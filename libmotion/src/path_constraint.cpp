@@ -32,6 +32,10 @@ constexpr double kOutward = 1 + 0x1p-40;
 /// given up: the motion touches the tolerance.
 constexpr double kLeastRoom = 1e-6;
 
+/// No unit vectors are farther apart.
+constexpr double kAnyChord = 2 + 0x1p-20;
+constexpr std::size_t kInstantsTold = 256;  // instants
+
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
 
 enum Kind : std::size_t { kPoint, kLine, kPlane };
@@ -43,12 +47,6 @@ Vec3 position_of(const kinematics::Feature& f) {
 Vec3 direction_of(const kinematics::Feature& f) {
   if (const auto* line = std::get_if<kinematics::Line>(&f)) return line->direction.normalized();
   return std::get<kinematics::Plane>(f).normal.normalized();
-}
-
-kinematics::Constraint plain(const PathConstraint& c) {
-  using FrameKind = kinematics::FrameId::Kind;
-  return {
-      c.relation, {{FrameKind::Link, 0, 0}, c.moving}, {{FrameKind::World}, c.resting}, c.value};
 }
 
 Eigen::Matrix3d along(const Vec3& d) { return d * d.transpose(); }
@@ -82,7 +80,7 @@ class Bands {
       case Relation::Perpendicular:
         return mixed ? add_parallel(c) : add_sine(c);
       case Relation::Angle:
-        return add_chord(c, direction_of(c.resting), mixed ? kPi / 2 - c.value : c.value);
+        return add_angle(c, direction_of(c.resting), mixed ? kPi / 2 - c.value : c.value);
     }
   }
 
@@ -114,14 +112,22 @@ class Bands {
     band.is_direction = true;
     band.own = direction_of(c.moving);
     band.across = along(direction_of(c.resting));
-    band.high = c.within_angle < kPi / 2 ? std::sin(c.within_angle) / kOutward : 2;
+    band.high = c.within_angle < kPi / 2 ? std::sin(c.within_angle) / kOutward : kAnyChord;
   }
 
   /// In the sense that it has at the start.
   void add_parallel(const PathConstraint& c) {
     const Vec3 d = direction_of(c.resting);
     const Vec3 u = robot_.base.linear * (links_[c.link].linear * direction_of(c.moving));
-    add_chord(c, u.dot(d) < 0 ? Vec3(-d) : d, 0);
+    add_angle(c, u.dot(d) < 0 ? Vec3(-d) : d, 0);
+  }
+
+  /// Chords tell small angles apart, not those near half a turn: these are seen from behind.
+  void add_angle(const PathConstraint& c, const Vec3& d, double value) {
+    if (value > kPi / 2)
+      add_chord(c, -d, kPi - value);
+    else
+      add_chord(c, d, value);
   }
 
   void add_chord(const PathConstraint& c, const Vec3& center, double value) {
@@ -131,7 +137,7 @@ class Bands {
     band.center = center;
     const double least = value - c.within_angle, most = value + c.within_angle;
     band.low = least > 0 ? 2 * std::sin(least / 2) * kOutward : 0;
-    band.high = most < kPi ? 2 * std::sin(most / 2) / kOutward : 3;
+    band.high = most < kPi ? 2 * std::sin(most / 2) / kOutward : kAnyChord;
   }
 
   std::span<const PathConstraint> constraints_;
@@ -141,20 +147,23 @@ class Bands {
   std::vector<ConstraintBand> bands_;
 };
 
-/// The least norm on the straight line between two vectors.
-double least_norm(const Vec3& a, const Vec3& b) {
+/// Where on the straight line between two vectors the norm is least, as a share of it.
+double least_share(const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double length = d.squaredNorm();
-  const double s = length > 0 ? std::clamp(-a.dot(d) / length, 0.0, 1.0) : 0;
-  return (a + s * d).norm();
+  return length > 0 ? std::clamp(-a.dot(d) / length, 0.0, 1.0) : 0;
 }
+
+/// The least norm on the straight line between two vectors.
+double least_norm(const Vec3& a, const Vec3& b) { return (a + least_share(a, b) * (b - a)).norm(); }
 
 /// One band along one segment.
 class BandCheck {
  public:
   BandCheck(const world::RobotModel& robot, const ConstraintBand& band,
-            const sweep::LinkMotion& motion, ConstraintAnswer& answer)
-      : base_(robot.base), band_(band), motion_(motion), answer_(answer) {
+            const sweep::LinkMotion& motion, const world::MotionOptions& options,
+            ConstraintAnswer& answer)
+      : base_(robot.base), band_(band), motion_(motion), options_(options), answer_(answer) {
     const std::array<Vec3, 2> points{band.is_direction ? Vec3(Vec3::Zero()) : band.own, band.own};
     const sweep::MotionBounds bounds(motion, points);
     second_ = !motion.moves()     ? 0
@@ -173,7 +182,8 @@ class BandCheck {
 
  private:
   Vec3 residual(double share) {
-    ++answer_.instants;
+    if (answer_.instants++ % kInstantsTold == kInstantsTold - 1 && options_.progress)
+      options_.progress(std::to_string(answer_.instants) + " instants of what is to be kept");
     const Vec3 g = band_.residual(base_ * motion_.at(share));
     double& part = answer_.parts[band_.constraint];
     part = std::max(part, band_.deviation(g.norm()) / band_.within);
@@ -183,9 +193,10 @@ class BandCheck {
   bool is_kept(double share, const Vec3& g) {
     const double norm = g.norm();
     if (norm + error_ <= band_.high && (band_.low == 0 || norm - error_ >= band_.low)) return true;
-    return fail(norm - error_ > band_.high || norm + error_ < band_.low ? Certainty::Broken
-                                                                        : Certainty::Undecided,
-                share, norm);
+    // The limits themselves are a little within the tolerance.
+    const bool outside = norm - error_ > band_.high * kOutward * kOutward ||
+                         norm + error_ < band_.low / (kOutward * kOutward);
+    return fail(outside ? Certainty::Broken : Certainty::Undecided, share, norm);
   }
 
   /// @pre both ends are kept
@@ -199,11 +210,18 @@ class BandCheck {
         (band_.low == 0 || least_norm(first, last) - room - error_ >= band_.low))
       return true;
     const double middle = 0.5 * begin + 0.5 * end;
+    const bool given_up = room < kLeastRoom * (band_.high - band_.low) ||
+                          !(begin < middle && middle < end) ||
+                          answer_.instants >= options_.most_intervals;
+    if (given_up) {
+      // What fails here is where the norm is least, or nowhere for certain.
+      const double at = begin + least_share(first, last) * length;
+      const Vec3 there = residual(at);
+      return is_kept(at, there) && fail(Certainty::Undecided, at, there.norm());
+    }
     const Vec3 between = residual(middle);
-    if (!is_kept(middle, between)) return false;
-    if (room < kLeastRoom * (band_.high - band_.low) || !(begin < middle && middle < end))
-      return fail(Certainty::Undecided, middle, between.norm());
-    return stays(begin, middle, first, between) && stays(middle, end, between, last);
+    return is_kept(middle, between) && stays(begin, middle, first, between) &&
+           stays(middle, end, between, last);
   }
 
   bool fail(Certainty outcome, double share, double norm) {
@@ -218,6 +236,7 @@ class BandCheck {
   const Transform& base_;
   const ConstraintBand& band_;
   const sweep::LinkMotion& motion_;
+  const world::MotionOptions& options_;
   ConstraintAnswer& answer_;
   double second_ = 0, error_ = 0;
 };
@@ -238,14 +257,40 @@ std::vector<ConstraintBand> bands_of(std::span<const PathConstraint> constraints
 
 bool check_segment(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
                    std::span<const double> from, std::span<const double> to,
-                   ConstraintAnswer& answer) {
+                   const world::MotionOptions& options, ConstraintAnswer& answer) {
   std::optional<sweep::LinkMotion> motion;
   std::uint32_t link = 0;
   for (const ConstraintBand& band : bands) {
     if (!motion || link != band.link) motion.emplace(robot.kinematics, link = band.link, from, to);
-    if (!BandCheck(robot, band, *motion, answer).run()) return false;
+    if (!BandCheck(robot, band, *motion, options, answer).run()) return false;
   }
   return true;
+}
+
+ConstraintAnswer check_bands(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
+                             std::size_t constraints, const robot::Path& path,
+                             const world::MotionOptions& options) {
+  ConstraintAnswer answer;
+  answer.parts.assign(constraints, 0);
+  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
+    answer.segment = i;
+    if (!check_segment(robot, bands, path[i], path[std::min(i + 1, path.size() - 1)], options,
+                       answer))
+      break;
+  }
+  return answer;
+}
+
+kinematics::Constraint kinematics_constraint(const PathConstraint& c) {
+  using FrameKind = kinematics::FrameId::Kind;
+  return {
+      c.relation, {{FrameKind::Link, 0, 0}, c.moving}, {{FrameKind::World}, c.resting}, c.value};
+}
+
+const char* name_of(ConstraintAnswer::Outcome outcome) {
+  return outcome == Certainty::Kept     ? "kept"
+         : outcome == Certainty::Broken ? "broken"
+                                        : "undecided";
 }
 
 std::vector<PathConstraint> path_constraints(const world::World& world,
@@ -314,7 +359,7 @@ std::vector<PathConstraint> carried_constraints(const world::World& world,
 }
 
 void require_keepable(const PathConstraint& c, const robot::Robot& robot) {
-  require_valid(plain(c));
+  require_valid(kinematics_constraint(c));
   if (c.link >= robot.links.size()) refuse("a constraint of a link that the robot lacks");
   if (!(c.within > 0) || !(c.within_angle > 0)) refuse("a tolerance must be above 0");
   const std::size_t moving = c.moving.index(), resting = c.resting.index();
@@ -326,17 +371,12 @@ void require_keepable(const PathConstraint& c, const robot::Robot& robot) {
 }
 
 ConstraintAnswer check_constraints(const world::RobotModel& robot, const robot::Path& path,
-                                   std::span<const PathConstraint> constraints) {
-  ConstraintAnswer answer;
-  answer.parts.assign(constraints.size(), 0);
-  if (constraints.empty() || path.empty()) return answer;
-  const std::vector<ConstraintBand> bands = bands_of(constraints, robot, path.front());
-  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
-    answer.segment = i;
-    if (!check_segment(robot, bands, path[i], path[std::min(i + 1, path.size() - 1)], answer))
-      break;
-  }
-  return answer;
+                                   std::span<const PathConstraint> constraints,
+                                   const world::MotionOptions& options) {
+  if (constraints.empty() || path.empty())
+    return check_bands(robot, {}, constraints.size(), {{}}, options);
+  return check_bands(robot, bands_of(constraints, robot, path.front()), constraints.size(), path,
+                     options);
 }
 
 std::string describe(const ConstraintAnswer& answer, std::span<const PathConstraint> constraints) {
@@ -371,7 +411,7 @@ bool ConstraintProjection::project(std::vector<double>& q, double share) const {
     Eigen::VectorXd values(0);
     for (const PathConstraint& c : constraints_) {
       const kinematics::Cost cost =
-          kinematics::cost(plain(c), robot_.base * links[c.link], Transform{}, 1);
+          kinematics::cost(kinematics_constraint(c), robot_.base * links[c.link], Transform{}, 1);
       Eigen::Matrix<double, 6, Eigen::Dynamic> twist =
           robot::jacobian(robot, q, c.link, Vec3::Zero());
       twist.topRows<3>() = robot_.base.linear * twist.topRows<3>();

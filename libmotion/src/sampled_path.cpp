@@ -35,8 +35,8 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
   const world::MotionAnswer motion =
       check_motion(moving.checker, moving.state, moving.robot, path, options);
   if (motion.outcome == world::MotionAnswer::Outcome::Free) {
-    const ConstraintAnswer kept =
-        check_constraints(moving.checker.world().robots[moving.robot], path, moving.constraints);
+    const ConstraintAnswer kept = check_constraints(moving.checker.world().robots[moving.robot],
+                                                    path, moving.constraints, options);
     if (kept.outcome == ConstraintAnswer::Outcome::Kept) return;
     throw Error(ErrorCode::LimitReached,
                 what + ", rounded, do not keep a constraint for certain: " +

@@ -17,7 +17,7 @@ using Outcome = PathAnswer::Outcome;
 
 // Steps in about seconds of one core; only their ratio matters to what is found.
 constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9,
-                 kInstant = 0.3e-6, kProjection = 20e-6;
+                 kInstant = 0.5e-6, kProjection = 35e-6;
 
 /// A configuration is on the constraints where no deviation is more than this part of what is
 /// allowed: the rest is for the lines between such configurations.
@@ -167,20 +167,16 @@ bool SearchSpace::project(Values& q) {
 }
 
 bool SearchSpace::keeps(const Values& from, const Values& to) {
-  const std::size_t before = kept_.instants;
-  const bool kept = check_segment(checker_.world().robots[robot_], bands_, from, to, kept_);
-  spent_.work += kInstant * static_cast<double>(kept_.instants - before);
+  kept_.instants = 0;
+  const bool kept = check_segment(kinematic_model(), bands_, from, to, check_, kept_);
+  spent_.work += kInstant * static_cast<double>(kept_.instants);
   return kept;
 }
 
 std::optional<ConstraintAnswer> SearchSpace::find_broken(const robot::Path& path) {
-  kept_ = {};
-  kept_.parts.resize(options_.constraints.size());
-  for (std::size_t i = 0; i == 0 || i + 1 < path.size(); ++i) {
-    kept_.segment = i;
-    if (!keeps(path[i], path[std::min(i + 1, path.size() - 1)])) return kept_;
-  }
-  return std::nullopt;
+  kept_ = check_bands(kinematic_model(), bands_, options_.constraints.size(), path, check_);
+  spent_.work += kInstant * static_cast<double>(kept_.instants);
+  return kept_.outcome == ConstraintAnswer::Outcome::Kept ? std::nullopt : std::optional(kept_);
 }
 
 std::optional<robot::Path> SearchSpace::way(const Values& from, const Values& to) {
@@ -244,8 +240,10 @@ std::vector<Blocker> SearchSpace::blockers() const {
   return out;
 }
 
-const robot::Robot& SearchSpace::kinematics() const {
-  return checker_.world().robots[robot_].kinematics;
+const world::RobotModel& SearchSpace::kinematic_model() const {
+  return checker_.world().robots[robot_];
 }
+
+const robot::Robot& SearchSpace::kinematics() const { return kinematic_model().kinematics; }
 
 }  // namespace kaboum::motion

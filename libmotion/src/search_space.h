@@ -59,6 +59,7 @@ class SearchSpace {
 
  private:
   void note(const std::optional<world::Contact>& contact);
+  [[nodiscard]] const world::RobotModel& kinematic_model() const;
   bool keeps(const Values& from, const Values& to);
   bool trace(const Values& from, const Values& to, int depth, robot::Path& out);
 

@@ -125,6 +125,10 @@ FixedFeature at_state(const World& world, const WorldState& state, const FixedFe
   return {To::World, 0, 0, moved(feature.feature, state.poses[object])};
 }
 
+bool is_usual_constraint(std::string_view name) {
+  return std::ranges::find(kUsualConstraints, name) != kUsualConstraints.end();
+}
+
 kinematics::Feature kinematics_feature(const Feature& f) {
   if (f.kind == Feature::Kind::Point) return kinematics::Point{f.point};
   if (f.kind == Feature::Kind::Line) return kinematics::Line{f.point, f.direction};

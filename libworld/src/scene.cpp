@@ -73,7 +73,9 @@ class Parser : detail::SceneRobot {
     if (const Located* upright = find(o, "upright")) {
       out.upright = number(*upright);
       if (!(*out.upright > 0) || *out.upright > std::numbers::pi)
-        fail(*upright, "an angle above 0 is expected, in radians: most that the object may lean");
+        fail(*upright,
+             "an angle above 0 and at most pi is expected, in radians: most that the object may "
+             "lean");
     }
     for (const Located& g : list(o, "grasps")) {
       known(g, {"name", "position", "rpy", "quaternion"});
@@ -184,6 +186,8 @@ class Parser : detail::SceneRobot {
     const Located& name = need(c, "name");
     for (const ConstraintSet& other : world_.constraints)
       if (other.name == string(name)) fail(name, "the name '" + name.text + "' is used twice");
+    if (is_usual_constraint(name.text))
+      fail(name, "'" + name.text + "' is what a motion keeps of its start: another name is needed");
     if (name.text.find_first_of(",=") != std::string::npos)
       fail(name, "a name of constraints with ',' or '='");
     ConstraintSet out{name.text, {}};
@@ -244,7 +248,9 @@ class Parser : detail::SceneRobot {
 
   FixedFeature feature_named(const Located& value) const {
     try {
-      return find_feature(world_, string(value));
+      FixedFeature out = find_feature(world_, string(value));
+      out.feature.name = value.text;
+      return out;
     } catch (const Error& error) {
       fail(value, error.what());
     }

@@ -80,7 +80,8 @@ std::string text_of_texts(const OptionDescription& option, const py::object& val
     return *text + '\n';
   };
   if (const auto one = line(value)) return *one;
-  if (py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value))
+  if (py::isinstance<py::str>(value) || py::isinstance<py::dict>(value) ||
+      !py::isinstance<py::iterable>(value))
     refuse(option, what, value);
   std::string out;
   for (const py::handle one : value) {

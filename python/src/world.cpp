@@ -260,11 +260,18 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   return run(0, [&] {
     MotionValue out{in, {}, {}, {}};
     const world::WorldState state = initial_state(in.world());
-    out.answer = world::check_motions(*in.checker, state, paths, options);
+    std::vector<std::vector<motion::PathConstraint>> constraints;  // errors come first
     for (const auto& [index, rows] : paths) {
-      out.constraints =
-          constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep);
-      out.kept = check_constraints(in.world().robots[index], rows, out.constraints);
+      if (rows.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");
+      constraints.push_back(
+          constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep));
+    }
+    out.answer = world::check_motions(*in.checker, state, paths, options);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const auto& [index, rows] = paths[i];
+      if (constraints[i].empty()) continue;
+      out.constraints = constraints[i];
+      out.kept = check_constraints(in.world().robots[index], rows, out.constraints, options);
       if (out.kept.outcome != motion::ConstraintAnswer::Outcome::Kept) break;
     }
     return out;
@@ -599,11 +606,8 @@ void bind_answers(py::module_& module) {
       .def_property_readonly(
           "kept",
           [](const MotionValue& m) -> py::object {
-            using Kept = motion::ConstraintAnswer::Outcome;
             if (m.constraints.empty()) return py::none();
-            return py::str(m.kept.outcome == Kept::Kept     ? "kept"
-                           : m.kept.outcome == Kept::Broken ? "broken"
-                                                            : "undecided");
+            return py::str(name_of(m.kept.outcome));
           },
           "Of what was to be kept: 'kept', 'broken' or 'undecided'; None: nothing was.")
       .def_property_readonly(
@@ -618,7 +622,9 @@ void bind_answers(py::module_& module) {
           },
           "What was not kept, in words, or None.")
       .def("__repr__", [](const MotionValue& m) {
-        return std::string("<kaboum.MotionCheck: ") + outcome_of(m.answer) + ">";
+        const std::string kept =
+            m.constraints.empty() ? "" : std::string(", ") + name_of(m.kept.outcome);
+        return std::string("<kaboum.MotionCheck: ") + outcome_of(m.answer) + kept + ">";
       });
 }
 

@@ -163,6 +163,8 @@ expect 0 'kept: off-wall within 0.5' "$M" kept.json --from=0.6,1 "--to-pose=$POS
 expect 0 'kept: upright' "$M" kept.json --from=0.6,1 --reach off-wall --keep upright -o wall.csv
 tail -1 wall.csv | python3 -c "from math import *; a, b = map(float, input().split(',')); y = sin(a) + sin(a + b); assert 1 <= abs(y) <= 2, y" || fail "not where it should be"
 expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 --reach off-wal -o none.csv
+expect 0 'kept: upright' "$M" kept.json --from=0.6,1 --to=0.3,0 --tool tip --keep upright -o tip.csv
+expect 2 "no tool or link 'tipp'; did you mean 'tip'" "$M" kept.json --from=0.6,1 --to=0.3,0 --tool tipp -o none.csv
 expect 1 "the goal breaks a constraint: 'off-wall' is off by" "$M" kept.json --from=0.6,1 --to=0.3,0 --keep off-wall -o none.csv
 expect 7 'no configuration within the limits puts .*the search for them is numeric' "$M" kept.json --from=0.6,1 --to-pose=3,0,0 -o none.csv
 expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep of-wall -o none.csv

@@ -133,7 +133,8 @@ for bearing in o1 o2; do
 done
 # Pages: what is needed; nothing is written where something is missing.
 expect 2 'needs --scene' "$P" show "$D" bimanual-assembly/problem.kpl --plan again.json --html none.html
-expect 2 'would overwrite the input' "$P" show "$@" --plan again.json --html again.json
+cp again.json again.html
+expect 2 'would overwrite the input' "$P" show "$@" --plan again.html --html again.html
 expect 2 'output' "$P" show "$@" --plan again.json --html none.html -o none.svg
 expect 4 'no folder none' "$P" show "$@" --plan again.json --html none/page.html
 rm bimanual-assembly/pipe.off

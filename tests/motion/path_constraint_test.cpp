@@ -329,6 +329,50 @@ TEST(PathConstraints, EachIsOfItsOwnLink) {
   EXPECT_EQ(check_constraints(robot, {from, to}, constraints).outcome, Kept::Broken);
 }
 
+TEST(PathConstraints, NothingCertainIsLeftUndecided) {
+  // A slide through the middle of a ring that it is to keep away from: no second derivative.
+  world::RobotModel robot;
+  robot.kinematics.links.resize(2);
+  robot.kinematics.joints.push_back(
+      {"j", robot::JointType::Prismatic, 0, {}, Vec3::UnitX(), 0, 1, 0});
+  robot.kinematics.variables.push_back({"j", {}, {}, {}});
+  robot.home = {0};
+  PathConstraint c;
+  c.name = "ring";
+  c.relation = Relation::Distance;
+  c.link = 1;
+  c.value = 1;
+  c.within = 0.9;
+  const ConstraintAnswer through = check_constraints(robot, {{-1.0}, {1.8}}, {&c, 1});
+  EXPECT_EQ(through.outcome, Kept::Broken);
+  EXPECT_NEAR(through.deviation, 1, 1e-6);
+  // At the very value, and nearer to its limit than rounding tells.
+  c.value = 1000;
+  c.within = 1e-10;
+  EXPECT_NE(check_constraints(robot, {{1000.0}}, {&c, 1}).outcome, Kept::Broken);
+  c.within = 0.001;
+  EXPECT_EQ(check_constraints(robot, {{1000.0009}}, {&c, 1}).outcome, Kept::Kept);
+  EXPECT_EQ(check_constraints(robot, {{1000.0010001}}, {&c, 1}).outcome, Kept::Broken);
+  // A direction opposite to another one, as nearly as parallel ones.
+  robot.kinematics.joints[0].type = robot::JointType::Revolute;
+  c.relation = Relation::Angle;
+  c.moving = Line{Vec3::Zero(), Vec3::UnitY()};
+  c.resting = Line{Vec3::Zero(), -Vec3::UnitY()};
+  c.value = std::acos(-1.0);
+  c.within_angle = 1e-4;
+  EXPECT_EQ(check_constraints(robot, {{0.0}, {0.9e-4}}, {&c, 1}).outcome, Kept::Kept);
+  EXPECT_EQ(check_constraints(robot, {{0.0}, {1.1e-4}}, {&c, 1}).outcome, Kept::Broken);
+  // A limit ends the work.
+  c.resting = Line{Vec3::Zero(), Vec3::UnitY()};
+  c.value = 1.5;
+  c.within_angle = 1.6415;
+  world::MotionOptions few;
+  few.most_intervals = 50;
+  const ConstraintAnswer long_way = check_constraints(robot, {{0.0}, {1e6}}, {&c, 1}, few);
+  EXPECT_EQ(long_way.outcome, Kept::Undecided);
+  EXPECT_LT(long_way.instants, 200U);
+}
+
 TEST(PathConstraints, WhatCannotBeKeptIsRefused) {
   std::mt19937_64 random(1);
   const world::RobotModel robot = random_robot(random);
@@ -529,9 +573,11 @@ TEST_F(UsualNames, AreRefusedWithWhatWouldHelp) {
   expect_refused({{"on-wal"}, ""}, "did you mean 'on-wall'?");
   expect_refused({{"upright=0"}, ""}, "a tolerance is a number above 0");
   expect_refused({{"upright=nan"}, ""}, "a tolerance is a number above 0");
-  expect_refused({{"upright=0.1,2"}, ""}, "a tolerance is a number above 0");
+  expect_refused({{"line=2"}, ""}, "less than 10 tolerances");
+  expect_refused({{"on-wall"}, "flang"}, "did you mean 'flange'?");
   expect_refused({{"on-wall=2"}, ""}, "the scene states the tolerances");
   expect_refused({{"upright"}, "flang"}, "did you mean 'flange'?");
+  EXPECT_EQ(make({{"upright,on-wall"}, "l2"}).size(), 2U);
   expect_refused({{"fixed"}, ""}, "no part that moves with robot 'arm'");
   expect_refused({{"within"}, ""}, "between two parts of robot 'arm'");
 }

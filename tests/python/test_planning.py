@@ -291,6 +291,9 @@ def test_motions_keep_what_is_asked_for(cell):
     assert world.check_motion(plain.waypoints).kept is None and plain.kept == ""
     far = world.pose_goals(np.diag([1, 1, 1, 1]) + 99 * np.eye(4, k=3), start=home)
     assert far.shape == (0, len(home))
+    assert path.kept == "" and "broken" in repr(motion)
+    with pytest.raises(kaboum.Error, match="keep"):
+        world.check_motion([home, home], keep={"upright": 0.1})
     for wrong, words in ((dict(keep="uprigt"), "did you mean 'upright'"), (dict(keep="upright=0"), "above 0"),
                          (dict(keep="line", tool="nobody"), "tool")):
         with pytest.raises(kaboum.Error, match=words):

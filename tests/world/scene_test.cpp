@@ -568,6 +568,8 @@ TEST(Scene, StatesConstraintsBetweenFeatures) {
   const std::string whole = "{\"name\": \"c\", \"all\": [" + one + "]}";
   expect_refused(files, scene("[" + whole + ", " + whole + "]"), {"'c' is used twice"});
   expect_refused(files, scene("[" + replaced(whole, "\"c\"", "\"c=1\"") + "]"), {"',' or '='"});
+  expect_refused(files, scene("[" + replaced(whole, "\"c\"", "\"line\"") + "]"),
+                 {"another name is needed"});
   EXPECT_THROW(static_cast<void>(world.constraint_set("on-to")), Error);
 }
 

@@ -97,13 +97,12 @@ Json to_json(const world::World& world, const world::MotionAnswer& answer) {
 }
 
 Json to_json(const robot::Robot& robot, const motion::PathConstraint& c) {
-  const kinematics::Constraint plain{c.relation, {{}, c.moving}, {{}, c.resting}, c.value};
   Json out = {
       {"name", c.name}, {"relation", name_of(c.relation)}, {"link", robot.links[c.link].name}};
   const bool has_value =
       c.relation == kinematics::Relation::Distance || c.relation == kinematics::Relation::Angle;
   if (has_value) out["value"] = c.value;
-  const kinematics::Measures measures = measures_of(plain);
+  const kinematics::Measures measures = measures_of(kinematics_constraint(c));
   if (measures.length) out["within"] = c.within;
   if (measures.angle) out["within_angle"] = c.within_angle;
   return out;

@@ -61,18 +61,22 @@ std::vector<double> configuration_at(const robot::Path& path, std::size_t segmen
   return out;
 }
 
+using Constraints = std::vector<motion::PathConstraint>;
+
 /// Whether a robot's motion keeps what is asked for, and what it carries upright: an exit code.
 int check_kept(const tools::CheckOptions& o, const world::World& world,
-               const world::RobotPath& motion, tools::Json& report) {
+               const world::RobotPath& motion, const Constraints& constraints,
+               tools::Json& report) {
   const auto& [robot, path] = motion;
-  const std::vector<motion::PathConstraint> constraints =
-      constraints_of(world, initial_state(world), robot, path.front(), {&path.back(), 1}, o.keep);
   if (constraints.empty()) return tools::kDone;
-  const motion::ConstraintAnswer answer = check_constraints(world.robots[robot], path, constraints);
+  const motion::ConstraintAnswer answer = [&] {
+    tools::Progress progress(o.common.quiet);
+    world::MotionOptions told = o.motion;
+    told.progress = [&](const std::string& stage) { progress.show(stage); };
+    return check_constraints(world.robots[robot], path, constraints, told);
+  }();
   using Outcome = motion::ConstraintAnswer::Outcome;
-  report = {{"answer", answer.outcome == Outcome::Kept     ? "kept"
-                       : answer.outcome == Outcome::Broken ? "broken"
-                                                           : "undecided"},
+  report = {{"answer", name_of(answer.outcome)},
             {"instants", answer.instants},
             {"constraints", tools::Json::array()}};
   for (std::size_t i = 0; i < constraints.size(); ++i) {
@@ -88,8 +92,10 @@ int check_kept(const tools::CheckOptions& o, const world::World& world,
   report["deviation"] = answer.deviation;
   std::ostringstream line;
   line << (answer.outcome == Outcome::Broken ? "not kept: " : "undecided: ")
-       << describe(answer, constraints) << ", " << 100 * answer.share
-       << " % of the way from waypoint " << answer.segment + 1 << " to " << answer.segment + 2;
+       << describe(answer, constraints);
+  if (path.size() > 1)
+    line << ", " << 100 * answer.share << " % of the way from waypoint " << answer.segment + 1
+         << " to " << answer.segment + 2;
   say(o, line.str());
   return answer.outcome == Outcome::Broken ? tools::kNo : tools::kLimit;
 }
@@ -103,17 +109,18 @@ int worse(int a, int b) {
 /// What is asked of one robot that moves alone: where it stays, and what it keeps; of several, what
 /// each carries upright.
 int check_wishes(const tools::CheckOptions& o, const world::Checker& checker,
-                 const std::vector<world::RobotPath>& paths, tools::Json& report) {
+                 const std::vector<world::RobotPath>& paths,
+                 const std::vector<Constraints>& constraints, tools::Json& report) {
   const world::World& world = checker.world();
   int code = tools::kDone;
-  for (const world::RobotPath& one : paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
     tools::Json kept;
-    code = worse(code, check_kept(o, world, one, kept));
+    code = worse(code, check_kept(o, world, paths[i], constraints[i], kept));
     if (kept.is_null()) continue;
     if (paths.size() == 1)
       report["kept"] = std::move(kept);
     else
-      report["kept"][world.robots[one.robot].name] = std::move(kept);
+      report["kept"][world.robots[paths[i].robot].name] = std::move(kept);
   }
   if (paths.size() > 1) return code;
   const collide::Inclusion inside = tools::decide_inside(
@@ -128,7 +135,12 @@ int check_wishes(const tools::CheckOptions& o, const world::Checker& checker,
 int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
                 const std::vector<world::RobotPath>& paths, tools::Json& report) {
   const world::Checker checker(scene.world);
-  static_cast<void>(tools::parse_inside(scene.world, o.inside));  // errors come first
+  // Errors come first.
+  static_cast<void>(tools::parse_inside(scene.world, o.inside));
+  std::vector<Constraints> constraints;
+  for (const auto& [robot, path] : paths)
+    constraints.push_back(constraints_of(scene.world, initial_state(scene.world), robot,
+                                         path.front(), {&path.back(), 1}, o.keep));
   world::MotionAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
@@ -153,7 +165,7 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
   say(o, tools::describe(scene.world, answer) +
              (answer.outcome == world::MotionAnswer::Outcome::Free ? kept_apart(o) : ""));
   if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
-  const int wishes = check_wishes(o, checker, paths, report);
+  const int wishes = check_wishes(o, checker, paths, constraints, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
                      : answer.outcome == Outcome::Undecided                      ? "undecided"

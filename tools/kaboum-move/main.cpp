@@ -30,7 +30,7 @@ int move(const MoveOptions& o) {
     report["outcome"] = "goal out of reach";
     report["unreached"] = r.unreached;
     tools::write_report(o.common, "kaboum-move", report);
-    return r.out_of_reach ? tools::kNo : tools::kLimit;
+    return r.all_known ? tools::kNo : tools::kLimit;
   }
   const world::Checker checker(r.scene.world);
   const PathAnswer answer = [&] {
@@ -45,7 +45,7 @@ int move(const MoveOptions& o) {
   if (answer.outcome != Outcome::Found) {
     std::cerr << "kaboum-move: " << tools::reason(r, answer) << '\n';
     tools::write_report(o.common, "kaboum-move", report);
-    return answer.contact || answer.broken ? tools::kNo : tools::kLimit;
+    return tools::exit_code(r, answer);
   }
   const tools::WrittenPath written = tools::write_path(r, answer.path, o, checker);
   report["waypoints"] = written.path;

@@ -58,6 +58,7 @@ void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
     ++number;
     const geom::Transform pose = robot::parse_pose(text, "--to-pose");
     const motion::Goals goals = motion::pose_goals(r.model(), tool, pose, r.start, o.search.seed);
+    r.all_known = r.all_known && goals.complete;
     for (const std::vector<double>& q : goals.configurations) {
       r.goals.push_back(q);
       r.numbers.push_back(number);
@@ -67,7 +68,6 @@ void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
                             tool.name + "' there" +
                             (goals.complete ? "" : ", as far as was found: " + goals.why);
     r.unreached.push_back(why);
-    r.out_of_reach = r.out_of_reach && goals.complete;
   }
 }
 
@@ -89,8 +89,11 @@ void add_constraint_goals(MoveRequest& r, const MoveOptions& o) {
     r.unreached.push_back("--reach " + name +
                           ": no configuration was found that meets these constraints, which does "
                           "not say that there is none");
-    r.out_of_reach = false;
   }
+}
+
+bool is_certain(const PathAnswer& answer) {
+  return answer.broken->outcome == motion::ConstraintAnswer::Outcome::Broken;
 }
 
 Json blockers_json(const world::World& world, const PathAnswer& answer) {
@@ -172,14 +175,20 @@ std::string reason(const MoveRequest& r, const PathAnswer& answer) {
   const world::World& world = r.scene.world;
   if (answer.outcome == Outcome::StartInContact)
     return "the start is not free: " + describe(world, *answer.contact);
+  const std::string tried =
+      r.all_known ? "" : "; these need not be all configurations that reach what is asked for";
   if (answer.outcome == Outcome::GoalInContact)
     return std::string(r.goals.size() > 1 ? "no goal is free: " : "the goal is not free: ") +
-           describe(world, *answer.contact);
-  if (answer.broken)
-    return std::string(answer.outcome == Outcome::StartBreaksConstraint ? "the start"
-                       : r.goals.size() > 1                             ? "every goal that is free"
-                                                                        : "the goal") +
-           " breaks a constraint: " + describe(*answer.broken, r.constraints);
+           describe(world, *answer.contact) + tried;
+  if (answer.broken) {
+    const bool start = answer.outcome == Outcome::StartBreaksConstraint;
+    return std::string(start                ? "the start"
+                       : r.goals.size() > 1 ? "every goal that is free"
+                                            : "the goal") +
+           (is_certain(answer) ? " breaks a constraint: "
+                               : " does not certainly keep a constraint: ") +
+           describe(*answer.broken, r.constraints) + (start ? "" : tried);
+  }
   std::string out = "no path found, which does not say that there is none: the search ended by ";
   out += answer.outcome == Outcome::WorkEnded    ? "--max-work"
          : answer.outcome == Outcome::NodesEnded ? "--max-nodes"
@@ -190,6 +199,15 @@ std::string reason(const MoveRequest& r, const PathAnswer& answer) {
            world.name_of(b.items[1]);
   }
   return out;
+}
+
+int exit_code(const MoveRequest& r, const PathAnswer& answer) {
+  const bool start =
+      answer.outcome == Outcome::StartInContact || answer.outcome == Outcome::StartBreaksConstraint;
+  const bool goal =
+      answer.outcome == Outcome::GoalInContact || answer.outcome == Outcome::GoalBreaksConstraint;
+  const bool certain = !answer.broken || is_certain(answer);
+  return certain && (start || (goal && r.all_known)) ? kNo : kLimit;
 }
 
 }  // namespace kaboum::tools

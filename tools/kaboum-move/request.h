@@ -21,7 +21,7 @@ struct MoveRequest {
   std::vector<motion::PathConstraint> constraints;
   std::vector<std::string> notes;
   std::vector<std::string> unreached;  ///< poses that no configuration reaches, and why
-  bool out_of_reach = true;            ///< all of these are, for certain
+  bool all_known = true;               ///< there are no other goals than these, for certain
 
   [[nodiscard]] const world::RobotModel& model() const { return scene.world.robots[robot]; }
   [[nodiscard]] const robot::Robot& kinematics() const { return model().kinematics; }
@@ -36,5 +36,7 @@ Json answer_json(const MoveRequest& r, const motion::PathAnswer& answer, const M
 
 /// Why there is no path.
 std::string reason(const MoveRequest& r, const motion::PathAnswer& answer);
+/// Whether that is certain: an exit code.
+int exit_code(const MoveRequest& r, const motion::PathAnswer& answer);
 
 }  // namespace kaboum::tools

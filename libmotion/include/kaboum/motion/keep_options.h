@@ -14,17 +14,16 @@ struct KeepRequest {
   /// "upright", "orientation", "line", "level", each perhaps with "=TOLERANCE"; or the name of
   /// constraints of the scene.
   std::vector<std::string> keep = {};
-  std::string tool = {};  ///< that the first four are of; empty: the only one
+  std::string tool = {};  ///< or link, that the first four are of; empty: the only tool
 };
 
 /// The options of such a request: keep, tool.
 const std::vector<Option<KeepRequest>>& keep_options();
 
-/// A frame of a robot that goals and constraints are about: a tool or, of a robot without tools,
-/// its last link.
-/// @param name  of a tool; empty: the only one
-/// @throws Error{InvalidArgument} as world::tool_named; for a robot without tools that has several
-///   last links
+/// A frame of a robot that goals and constraints are about: a tool, or a link.
+/// @param name  of either, the tool first; empty: the only tool or, of a robot without tools, the
+///   only last link
+/// @throws Error{InvalidArgument} where there is no such one, or several for no name
 world::ToolFrame moving_frame(const world::RobotModel& robot, const std::string& name);
 
 /// The constraints that are asked for, and those of what the robot carries (carried_constraints).
@@ -39,7 +38,7 @@ std::vector<PathConstraint> constraints_of(const world::World& world,
                                            std::span<const std::vector<double>> goals,
                                            const KeepRequest& request);
 
-/// The constraints that were kept, in one line: "upright within 0.05 rad (0.0312 seen)".
+/// The constraints that were kept, in one line: "upright within 0.05 rad (62 % of it seen)".
 /// @param deviations  ConstraintAnswer::parts
 std::string words_of(std::span<const PathConstraint> constraints,
                      std::span<const double> deviations);

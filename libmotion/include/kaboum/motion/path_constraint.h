@@ -1,8 +1,7 @@
 #pragma once
 
 #include <kaboum/kinematics/constraint.h>
-#include <kaboum/robot/path.h>
-#include <kaboum/world/world.h>
+#include <kaboum/world/motion_check.h>
 
 #include <span>
 #include <string>
@@ -25,7 +24,8 @@ struct PathConstraint {
   double within_angle = 0.02;   ///< [rad]
 };
 
-/// The constraints of a set, for motions of one robot while all else stays.
+/// The constraints of a set, for motions of one robot while all else stays. Of two lines or planes
+/// that coincide, the one that moves has its point within the tolerance of the other.
 /// @throws Error{InvalidArgument} unless of each constraint's features one moves with the robot and
 ///   the other stays, and as require_keepable.
 std::vector<PathConstraint> path_constraints(const world::World& world,
@@ -46,12 +46,15 @@ std::vector<PathConstraint> carried_constraints(const world::World& world,
 ///   and is to hold a point that stays, or a plane a line: these are not decided.
 void require_keepable(const PathConstraint& constraint, const robot::Robot& robot);
 
+/// A constraint between frames: of a link, and of the world.
+kinematics::Constraint kinematics_constraint(const PathConstraint& constraint);
+
 /// Answer to whether constraints are kept at every instant of a path.
 struct ConstraintAnswer {
   enum class Outcome {
     Kept,      ///< by all, for certain
     Broken,    ///< by `constraint` at the place, for certain
-    Undecided  ///< there: it comes so near to its tolerance that rounding matters
+    Undecided  ///< there: it touches its tolerance, or a limit was reached
   };
   Outcome outcome = Outcome::Kept;
   std::size_t segment = 0;  ///< from waypoint i to i + 1
@@ -64,13 +67,18 @@ struct ConstraintAnswer {
       parts{};  ///< largest deviation seen of each constraint, in parts of what is allowed
 };
 
+/// "kept", "broken", "undecided".
+const char* name_of(ConstraintAnswer::Outcome outcome);
+
 /// Decides whether a robot keeps constraints at every instant of a path of straight segments of
 /// joint values. A stretch of a segment keeps one when its ends do with the room that the second
 /// derivative of the motion may take between them; other stretches are halved.
+/// @param options  its progress is told, and undecided is the answer at most_intervals instants
 /// @pre path_constraints made the constraints, or require_keepable was asked of them; each waypoint
 ///   has a finite value per variable.
 ConstraintAnswer check_constraints(const world::RobotModel& robot, const robot::Path& path,
-                                   std::span<const PathConstraint> constraints);
+                                   std::span<const PathConstraint> constraints,
+                                   const world::MotionOptions& options = {});
 
 /// One line of what breaks a constraint: "'upright' is off by 0.3 rad, 0.05 rad are allowed".
 std::string describe(const ConstraintAnswer& answer, std::span<const PathConstraint> constraints);

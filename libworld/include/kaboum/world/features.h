@@ -2,7 +2,9 @@
 
 #include <kaboum/world/world.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 
 namespace kaboum::world {
 
@@ -22,6 +24,12 @@ Feature moved(const Feature& feature, const Transform& pose);
 /// the link of a robot. Objects that are carried are fixed to the link.
 /// @param state  of this world: what is carried, and where objects that are not are
 FixedFeature at_state(const World& world, const WorldState& state, const FixedFeature& feature);
+
+/// Names of constraints that every robot has, and no set of a scene may have: of a motion from its
+/// start on (motion::KeepRequest).
+inline constexpr std::array<std::string_view, 4> kUsualConstraints{"upright", "orientation", "line",
+                                                                   "level"};
+bool is_usual_constraint(std::string_view name);
 
 /// The feature as kinematics has it.
 kinematics::Feature kinematics_feature(const Feature& feature);
