@@ -176,6 +176,7 @@ class BandCheck {
   }
 
   bool run() {
+    if (band_.low == 0 && band_.high >= kAnyChord && band_.is_direction) return true;
     const Vec3 begin = residual(0), end = residual(1);
     return is_kept(0, begin) && is_kept(1, end) && stays(0, 1, begin, end);
   }

@@ -362,13 +362,18 @@ TEST(PathConstraints, NothingCertainIsLeftUndecided) {
   c.within_angle = 1e-4;
   EXPECT_EQ(check_constraints(robot, {{0.0}, {0.9e-4}}, {&c, 1}).outcome, Kept::Kept);
   EXPECT_EQ(check_constraints(robot, {{0.0}, {1.1e-4}}, {&c, 1}).outcome, Kept::Broken);
-  // A limit ends the work.
-  c.resting = Line{Vec3::Zero(), Vec3::UnitY()};
-  c.value = 1.5;
-  c.within_angle = 1.6415;
+  c.within_angle = 1e-6;
+  EXPECT_EQ(check_constraints(robot, {{0.0}, {0.9e-6}}, {&c, 1}).outcome, Kept::Kept);
+  // A limit ends the work: of a point on a circle that is nearly as large as it may be.
+  c.relation = Relation::Distance;
+  c.moving = Point{Vec3::UnitY()};
+  c.resting = Point{};
+  c.value = 0;
+  c.within = 1.0001;
+  EXPECT_EQ(check_constraints(robot, {{0.0}, {1e3}}, {&c, 1}).outcome, Kept::Kept);
   world::MotionOptions few;
   few.most_intervals = 50;
-  const ConstraintAnswer long_way = check_constraints(robot, {{0.0}, {1e6}}, {&c, 1}, few);
+  const ConstraintAnswer long_way = check_constraints(robot, {{0.0}, {1e3}}, {&c, 1}, few);
   EXPECT_EQ(long_way.outcome, Kept::Undecided);
   EXPECT_LT(long_way.instants, 200U);
 }
