@@ -185,7 +185,7 @@ class BandCheck {
   Vec3 residual(double share) {
     if (answer_.instants++ % kInstantsTold == kInstantsTold - 1 && options_.progress)
       options_.progress(std::to_string(answer_.instants) + " instants of what is to be kept");
-    const Vec3 g = band_.residual(base_ * motion_.at(share));
+    Vec3 g = band_.residual(base_ * motion_.at(share));
     double& part = answer_.parts[band_.constraint];
     part = std::max(part, band_.deviation(g.norm()) / band_.within);
     return g;

@@ -67,20 +67,21 @@ using Constraints = std::vector<motion::PathConstraint>;
 int check_kept(const tools::CheckOptions& o, const world::World& world,
                const world::RobotPath& motion, const Constraints& constraints,
                tools::Json& report) {
-  const auto& [robot, path] = motion;
+  const world::RobotModel& robot = world.robots[motion.robot];
+  const robot::Path& path = motion.path;
   if (constraints.empty()) return tools::kDone;
   const motion::ConstraintAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
-    return check_constraints(world.robots[robot], path, constraints, told);
+    return check_constraints(robot, path, constraints, told);
   }();
   using Outcome = motion::ConstraintAnswer::Outcome;
   report = {{"answer", name_of(answer.outcome)},
             {"instants", answer.instants},
             {"constraints", tools::Json::array()}};
   for (std::size_t i = 0; i < constraints.size(); ++i) {
-    report["constraints"].push_back(tools::to_json(world.robots[robot].kinematics, constraints[i]));
+    report["constraints"].push_back(tools::to_json(robot.kinematics, constraints[i]));
     if (answer.outcome == Outcome::Kept) report["constraints"].back()["used"] = answer.parts[i];
   }
   if (answer.outcome == Outcome::Kept) {
