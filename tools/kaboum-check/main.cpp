@@ -139,6 +139,7 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
   // Errors come first.
   static_cast<void>(tools::parse_inside(scene.world, o.inside));
   std::vector<Constraints> constraints;
+  constraints.reserve(paths.size());
   for (const auto& [robot, path] : paths)
     constraints.push_back(constraints_of(scene.world, initial_state(scene.world), robot,
                                          path.front(), {&path.back(), 1}, o.keep));
