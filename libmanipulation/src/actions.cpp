@@ -288,6 +288,60 @@ Answer collides(Geometry& geometry, const Question& question) {
   return Answer::holds(false, "they are apart");
 }
 
+/// Table II of the workshop paper. The arguments may come in either order, as in the thesis.
+Answer is_reachable(Geometry& geometry, const Question& question) {
+  const bool robot_first = geometry.world.find_robot(question.arguments[0]).has_value();
+  const std::size_t r = robot_named(geometry, question.arguments[robot_first ? 0 : 1]);
+  const std::size_t o = object_named(geometry, question.arguments[robot_first ? 1 : 0]);
+  if (geometry.world.objects[o].grasps.empty())
+    throw Error(ErrorCode::InvalidInput, "object '" + geometry.world.objects[o].name +
+                                             "' of the scene has no grasps, which isReachable "
+                                             "looks for");
+  if (auto no = out_of_reach(geometry, question, r, o)) return *no;
+  return Answer::holds(true);
+}
+
+/// Table I of the workshop paper: one motion that fetches an object is found among the things that
+/// nobody grasps; then it is tried against the other one.
+Answer grasp_motion_collides(Geometry& geometry, const Question& question) {
+  const world::World& world = geometry.world;
+  const std::size_t skip = question.arguments.size() - 2;
+  if (skip == 0 && world.robots.size() != 1)
+    throw Error(ErrorCode::InvalidInput,
+                "graspMotionCollides(object, object) is of the only robot, and the scene has " +
+                    std::to_string(world.robots.size()) +
+                    ": graspMotionCollides(robot, object, object)");
+  const std::size_t r = skip == 0 ? 0 : robot_named(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[skip]);
+  const std::size_t other = object_named(geometry, question.arguments[skip + 1]);
+  if (other == o) return Answer::holds(false, "it is what is grasped");
+  CallState asked(geometry, question);
+  for (std::size_t robot = 0; robot < world.robots.size(); ++robot)
+    if (!asked.state.read_robot(robot)) return asked.not_known();
+  for (std::size_t i = 0; i < world.objects.size(); ++i)
+    if ((i == o || i == other || world.objects[i].grasps.empty()) && !asked.state.read_object(i))
+      return asked.not_known();
+  world::WorldState state = asked.state.world();
+  if (state.absent[other]) return Answer::holds(false, question.arguments[skip + 1] + " is away");
+  state.absent[other] = true;
+  const std::vector<double> back = state.q[r];
+  Sequence sequence(geometry, question, state, asked.state.mounted());
+  if (!sequence.reach(r, o) || !sequence.take(r, o) || !sequence.go(r, back)) {
+    // Impossible would mean that nothing collides.
+    const Answer failure = sequence.failure();
+    return failure.kind == Answer::Kind::NotFound ? failure : Answer::holds(true, failure.reason);
+  }
+  state.absent[other] = false;
+  const std::vector<world::Item> things{{world::Item::kObject, other}};
+  for (const Motion& motion : sequence.motions()) {
+    world::WorldState then = state;
+    for (const auto& [object, held] : motion.holds) then.attachments[object] = held;
+    if (!find_obstacles(geometry.checker, then, r, motion.path, things, geometry.check).empty())
+      return Answer::holds(true);
+  }
+  return Answer::holds(false, "the motion is free of it");
+}
+
 Answer swept_collides(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::vector<double> to = configuration_of(question.arguments[1], geometry.world.robots[r]);

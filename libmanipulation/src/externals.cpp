@@ -15,6 +15,7 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
     std::size_t arguments;
     plan::Answer (*function)(Geometry&, const plan::Question&);
     bool refuses_early = false;
+    std::size_t more = 0;  ///< arguments that may be left out, the robot
   };
   constexpr Entry kEntries[] = {{"reach", 2, reach, true},
                                 {"grasp", 3, grasp},
@@ -31,15 +32,20 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"move", 2, move},
                                 {"inside", 2, is_inside},
                                 {"collides", 2, collides},
+                                {"isReachable", 2, is_reachable},
+                                {"graspMotionCollides", 2, grasp_motion_collides, false, 1},
                                 {"sweptCollides", 3, swept_collides}};
   plan::ExternalBindings out;
   for (const Entry& entry : kEntries) {
     plan::ExternalBinding& binding = out[entry.name];
     binding = [geometry, entry](const plan::Question& question) {
-      if (question.arguments.size() != entry.arguments)
-        throw Error(ErrorCode::InvalidInput, std::string(entry.name) + " takes " +
-                                                 std::to_string(entry.arguments) +
-                                                 " arguments in the library of the scene");
+      const std::size_t given = question.arguments.size();
+      if (given < entry.arguments || given > entry.arguments + entry.more)
+        throw Error(
+            ErrorCode::InvalidInput,
+            std::string(entry.name) + " takes " + std::to_string(entry.arguments) +
+                (entry.more > 0 ? " or " + std::to_string(entry.arguments + entry.more) : "") +
+                " arguments in the library of the scene");
       return entry.function(*geometry, question);
     };
     if (entry.refuses_early) binding.refuse_early();

@@ -336,6 +336,33 @@ TEST_F(Actions, WhatTheSceneWantsUprightIsCarriedSoByEveryAction) {
   }
 }
 
+TEST_F(Actions, TablesIAndII) {
+  Words words = {
+      {"pose(block)", "start"}, {"pose(socket)", "start"}, {"pose(wall)", "at 5 5 5 0 0 0 1"}};
+  for (std::size_t r = 0; r < 2; ++r) words["conf(" + arms_.world.robots[r].name + ")"] = "home";
+  const auto holds = [&](const std::string& function, const std::vector<std::string>& arguments) {
+    return ask(all_, function, arguments, words).kind == Answer::Kind::Value;
+  };
+  EXPECT_TRUE(holds("isReachable", {"block", "left"}));
+  EXPECT_TRUE(holds("isReachable", {"left", "block"}));
+  EXPECT_FALSE(holds("graspMotionCollides", {"left", "block", "wall"}));
+  EXPECT_FALSE(holds("graspMotionCollides", {"left", "block", "block"}));
+  // The wall through the block.
+  const Vec3 at = arms_.world.objects[TwoArms::kBlock].pose.translation;
+  words["pose(wall)"] = manipulation::word_of(Transform{Eigen::Matrix3d::Identity(), at});
+  EXPECT_TRUE(holds("graspMotionCollides", {"left", "block", "wall"}));
+  words["pose(wall)"] = "away";
+  EXPECT_FALSE(holds("graspMotionCollides", {"left", "block", "wall"}));
+  // Out of reach: nothing fetches it freely either.
+  words["pose(block)"] = "at 9 9 9 0 0 0 1";
+  words["pose(wall)"] = "at 5 5 5 0 0 0 1";
+  EXPECT_FALSE(holds("isReachable", {"block", "left"}));
+  EXPECT_TRUE(holds("graspMotionCollides", {"left", "block", "wall"}));
+  EXPECT_THROW(holds("graspMotionCollides", {"block", "wall"}), Error);
+  EXPECT_THROW(holds("isReachable", {"wall", "left"}), Error);
+  EXPECT_THROW(holds("isReachable", {"left"}), Error);
+}
+
 /// A wall stands across the socket's middle; beside it there is room for the block.
 TEST_F(Actions, WhatFindsNoRoomAtAPointStandsElsewhereOnItsFace) {
   Words words = holding(0, 0, kDown);

@@ -41,6 +41,9 @@ struct ExternalOptions {
 ///                                           places, lets go and goes to a configuration
 ///     putUpright(robot, object, support, conf) : pose
 ///                                           the same, upright until it stands
+///     isReachable(object, robot)            a grasp of it is within the joints' limits
+///     graspMotionCollides([robot,] object, object)
+///                                           fetching the first is not certainly free of the other
 ///     lift(robot, object) : conf            straight up with what is held, upright
 ///     join(robot, object, onto, conf) : pose
 ///                                           mounts a held object on another one, lets go,
