@@ -7,6 +7,8 @@
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/regions.h>
 
+#include <algorithm>
+
 #include "involved.h"
 #include "sequence.h"
 
@@ -286,6 +288,26 @@ Answer collides(Geometry& geometry, const Question& question) {
         (contact.items[0] == b && contact.items[1] == a))
       return Answer::holds(true);
   return Answer::holds(false, "they are apart");
+}
+
+Answer satisfy(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const world::ConstraintSet* set = nullptr;
+  try {
+    set = &geometry.world.constraint_set(question.arguments[1]);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::InvalidInput, error.what());
+  }
+  std::vector<std::size_t> objects;
+  for (const world::ToleratedConstraint& c : set->constraints)
+    for (const world::FixedFeature* feature : {&c.first, &c.second})
+      if (feature->to == world::FixedFeature::To::Object &&
+          std::ranges::find(objects, feature->index) == objects.end())
+        objects.push_back(feature->index);
+  return perform(
+      geometry, question, {"satisfy", {r}, objects},
+      [&](Sequence& s) { return s.satisfy(r, *set); },
+      [&](const Sequence& s) { return configuration(s, r); });
 }
 
 /// Table II of the workshop paper. The arguments may come in either order, as in the thesis.

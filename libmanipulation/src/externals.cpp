@@ -32,6 +32,7 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"move", 2, move},
                                 {"inside", 2, is_inside},
                                 {"collides", 2, collides},
+                                {"satisfy", 2, satisfy},
                                 {"isReachable", 2, is_reachable},
                                 {"graspMotionCollides", 2, grasp_motion_collides, false, 1},
                                 {"sweptCollides", 3, swept_collides}};

@@ -1,7 +1,10 @@
-// Motions to places that are found at random: where one robot takes what another one holds, and
-// anywhere.
+// Motions to places that are found at random: where one robot takes what another one holds, where
+// constraints are met, and anywhere.
+#include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/motion/goals.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <Eigen/Geometry>
 
@@ -17,6 +20,8 @@ using world::Transform;
 /// Places at which a thing may be handed over, and configurations to wander to, that are tried;
 /// more with each attempt.
 constexpr int kMeetings = 60, kWanderings = 100;
+/// Configurations that meet constraints, of which one is gone to; more with each attempt.
+constexpr std::size_t kSatisfying = 16;
 /// Ways to take a thing at such a place that are enough.
 constexpr std::size_t kEnough = 4;
 
@@ -111,6 +116,34 @@ bool Sequence::wander(std::size_t robot) {
     }
   }
   return fail(Answer::Kind::NotFound, "no configuration to move to was found");
+}
+
+bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set) {
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  std::vector<motion::PathConstraint> constraints;
+  try {
+    constraints = motion::path_constraints(geometry_.world, state_, robot, set);
+  } catch (const Error& error) {  // as things are now: it may hold what they are about later
+    return fail(Answer::Kind::Impossible, error.what());
+  }
+  const std::uint32_t link = constraints.front().link;
+  const motion::Goals drawn = motion::constraint_goals(
+      model, {model.kinematics.links[link].name, link, {}}, constraints, state_.q[robot],
+      question_.seed + question_.attempt, kSatisfying * (question_.attempt + 1));
+  Goals goals;
+  goals.all = false;
+  for (const std::vector<double>& q : drawn.configurations) {
+    std::vector<double> word = configuration_of(manipulation::word_of(q), model);
+    if (!find_out_of_limits(model.kinematics, word) &&
+        motion::check_constraints(model, {word}, constraints).outcome ==
+            motion::ConstraintAnswer::Outcome::Kept)
+      goals.configurations.push_back(std::move(word));
+  }
+  if (goals.configurations.empty())
+    return fail(Answer::Kind::NotFound, "no configuration was found that meets '" + set.name + "'");
+  if (!go(robot, goals)) return false;
+  chosen_ = true;
+  return true;
 }
 
 }  // namespace kaboum::manipulation

@@ -34,6 +34,9 @@ class Sequence : public MotionSequence {
   bool hand_over(std::size_t from, std::size_t object, std::size_t to);
   /// To some configuration, at random.
   bool wander(std::size_t robot);
+  /// To where constraints of the scene are met, between features that move with the robot or what
+  /// it carries and features of things where they are.
+  bool satisfy(std::size_t robot, const world::ConstraintSet& constraints);
 
  private:
   /// A held object, as it is about to be let go.

@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/judge/placement.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/features.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -334,6 +335,44 @@ TEST_F(Actions, WhatTheSceneWantsUprightIsCarriedSoByEveryAction) {
                          : std::vector<std::string>{"left", "block", "right"};
     EXPECT_NE(ask(upright, name, arguments, leaning).kind, Answer::Kind::Value) << name;
   }
+}
+
+TEST_F(Actions, SatisfyGoesToAMateWhereverItIs) {
+  world::World world = arms_.world;
+  const auto feature = [&](const std::string& name) { return world::find_feature(world, name); };
+  using kinematics::Relation;
+  world::ConstraintSet mate{"above-socket", {}};
+  mate.constraints.push_back(
+      {Relation::Distance, feature("block.origin"), feature("socket.xy"), 0.25, 1e-3, 0.02});
+  mate.constraints.push_back(
+      {Relation::Coincident, feature("block.origin"), feature("socket.z"), 0, 1e-3, 0.02});
+  mate.constraints.push_back(
+      {Relation::Angle, feature("socket.z"), feature("block.z"), 0, 1e-3, 0.02});
+  world.constraints.push_back(mate);
+  const plan::ExternalBindings bindings = manipulation::bind_externals(world, {});
+  Words words = holding(0, 0, kDown);
+  for (const char* socket : {"start", "at 0.45 0.2 0.02 0 0 0 1"}) {
+    words = holding(0, 0, kDown);
+    words["pose(socket)"] = socket;
+    const Answer answer = ask(bindings, "satisfy", {"left", "above-socket"}, words, 3);
+    ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+    EXPECT_TRUE(answer.chosen);
+    for (const Motion& m : motions_of(answer))
+      for (const std::vector<double>& q : m.path) state_.q[0] = q;
+    EXPECT_EQ(answer.value, manipulation::word_of(state_.q[0]));
+    const Vec3 at = std::string(socket) == "start"
+                        ? Vec3(arms_.world.objects[TwoArms::kSocket].pose.translation)
+                        : Vec3(0.45, 0.2, 0.02);
+    EXPECT_LT((block().translation - at).head<2>().norm(), 1.1e-3);
+    EXPECT_NEAR(std::abs(block().translation.z() - at.z()), 0.25, 1.1e-3);
+    EXPECT_GT(block().linear(2, 2), std::cos(0.021));
+  }
+  // Without the block there is nothing that could be there.
+  words["pose(block)"] = "start";
+  const Answer none = ask(bindings, "satisfy", {"left", "above-socket"}, words);
+  EXPECT_EQ(none.kind, Answer::Kind::Impossible);
+  EXPECT_NE(none.reason.find("no part that moves with robot 'left'"), std::string::npos);
+  EXPECT_THROW(ask(bindings, "satisfy", {"left", "above-sockets"}, words), Error);
 }
 
 TEST_F(Actions, TablesIAndII) {

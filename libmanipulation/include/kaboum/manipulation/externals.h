@@ -41,6 +41,7 @@ struct ExternalOptions {
 ///                                           places, lets go and goes to a configuration
 ///     putUpright(robot, object, support, conf) : pose
 ///                                           the same, upright until it stands
+///     satisfy(robot, constraints) : conf    where constraints of the scene are met
 ///     isReachable(object, robot)            a grasp of it is within the joints' limits
 ///     graspMotionCollides([robot,] object, object)
 ///                                           fetching the first is not certainly free of the other
