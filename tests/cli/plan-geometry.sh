@@ -23,6 +23,48 @@ for task in 'stacked 3' 'remove 5'; do
   python3 "$HERE/execute_boxes.py" "$name" "$name/plan1.json" >said.txt 2>&1 || fail "$name: $(tail -1 said.txt)"
   grep -q 'actions, [0-9]* samples' said.txt || fail "$name: $(cat said.txt)"
 done
+# A mate by constraints of the scene: no pose of it is listed anywhere.
+cat >mate.kpl <<'END'
+-- A block is put where constraints of the scene say, by itself.
+domain mate
+
+types: robot, thing, constraints, conf handle, pose handle
+constants: robot arm; thing o1, o2, o3; constraints above; conf home; pose start
+predicates: isEmpty, isHeld(thing), isMated(thing)
+functions: conf(robot) : conf; pose(thing) : pose
+externals: reach(robot, thing) : conf; grasp(robot, thing, conf) : pose; satisfy(robot, constraints) : conf
+           release(robot, thing, conf) : pose
+
+action take(?o : thing)
+  preconds:
+    K(isEmpty) & let ?q = extern(reach(arm, ?o)) & let ?p = extern(grasp(arm, ?o, ?q))
+  effects:
+    add(Kf, !isEmpty), add(Kf, isHeld(?o)), add(Kf, conf(arm) = ?q), add(Kf, pose(?o) = ?p)
+
+action mate(?o : thing, ?c : constraints)
+  preconds:
+    K(isHeld(?o)) & let ?q = extern(satisfy(arm, ?c)) & let ?p = extern(release(arm, ?o, ?q))
+  effects:
+    add(Kf, isEmpty), add(Kf, !isHeld(?o)), add(Kf, isMated(?o)),
+    add(Kf, conf(arm) = ?q), add(Kf, pose(?o) = ?p)
+
+init: K(isEmpty), K(conf(arm) = home), K(pose(o1) = start), K(pose(o2) = start), K(pose(o3) = start)
+goal: K(isMated(o1)) & K(isEmpty)
+END
+python3 - <<'END' || fail "scene with a mate"
+import json
+cell = json.load(open("stacked/cell.json"))
+cell["constraints"] = [{"name": "above", "all": [
+    {"relation": "angle", "first": "o1.z", "second": "place3.z", "value": 0},
+    {"relation": "coincident", "first": "o1/bottom", "second": "place3.z"},
+    {"relation": "distance", "first": "o1/bottom", "second": "place3.xy", "value": 0.013, "within": 0.0005}]}]
+json.dump(cell, open("stacked/mate.json", "w"))
+END
+expect 0 solved "$P" solve mate.kpl --scene stacked/mate.json -o mate-plan.json
+shows 0 valid "$P" check mate.kpl --scene stacked/mate.json --plan mate-plan.json
+shows 0 '^good: 1 branch, .* 0 collisions, 0 limit violations, 0 jumps' "$P" run mate.kpl --scene stacked/mate.json --plan mate-plan.json --rate 250
+sed 's/constraints above/constraints abov/' mate.kpl >abov.kpl
+expect 3 "no constraints 'abov'; did you mean 'above'" "$P" solve abov.kpl --scene stacked/mate.json -o none.json
 # A scene may be YAML for exact meshes, too.
 {
   echo '# a cell'
