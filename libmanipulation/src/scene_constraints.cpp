@@ -1,8 +1,8 @@
 // Constraints between named features of a scene, for kinematics::ConstraintSampler.
 #include <kaboum/base/error.h>
-#include <kaboum/base/similar_name.h>
 #include <kaboum/manipulation/scene_constraints.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/features.h>
 
 #include <algorithm>
 
@@ -11,30 +11,7 @@ namespace {
 
 using Kind = kinematics::FrameId::Kind;
 
-/// In a frame in which the feature's own has this pose.
-kinematics::Feature placed_feature(const world::Feature& f, const geom::Transform& pose) {
-  const geom::Vec3 point = pose * f.point;
-  if (f.kind == world::Feature::Kind::Point) return kinematics::Point{point};
-  const geom::Vec3 direction = (pose.linear * f.direction).normalized();
-  if (f.kind == world::Feature::Kind::Line) return kinematics::Line{point, direction};
-  return kinematics::Plane{point, direction};
-}
-
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
-
-/// The only one of that name.
-template <typename Features, typename NameOf>
-const auto& only_feature(const Features& features, const std::string& name, const NameOf& name_of) {
-  std::vector<std::string> names;
-  names.reserve(features.size());
-  for (const auto& f : features) names.push_back(name_of(f));
-  const auto first = std::find(names.begin(), names.end(), name);
-  if (first == names.end())
-    refuse("there is no feature '" + name + "'" + did_you_mean(name, names));
-  if (std::find(first + 1, names.end(), name) != names.end())
-    refuse("the feature '" + name + "' is there in two kinds: give them different names");
-  return features[static_cast<std::size_t>(first - names.begin())];
-}
 
 template <typename T>
 std::size_t index_in(const std::vector<T>& list, const T& value) {
@@ -77,39 +54,31 @@ std::size_t SceneConstraints::robot_named(const std::string& name) const {
 }
 
 kinematics::PlacedFeature SceneConstraints::on_link(std::size_t robot, std::uint32_t link,
-                                                    const geom::Transform& pose,
                                                     const world::Feature& feature) {
   const world::RobotModel& model = world_.robots[robot];
   const std::size_t arm = index_in(arms_, robot);
   if (arm == arms_.size())
     return {{},
-            placed_feature(feature,
-                           model.base * robot::forward(model.kinematics, model.home)[link] * pose)};
+            kinematics_feature(
+                moved(feature, model.base * robot::forward(model.kinematics, model.home)[link]))};
   kinematics::PlacedArm& placed = problem_.robots[arm];
   placed.links.push_back(kinematics::frame_of(model.kinematics, placed.arm,
                                               model.kinematics.links.front().name,
                                               model.kinematics.links[link].name));
-  return {{Kind::Link, arm, placed.links.size() - 1}, placed_feature(feature, pose)};
+  return {{Kind::Link, arm, placed.links.size() - 1}, kinematics_feature(feature)};
 }
 
 kinematics::PlacedFeature SceneConstraints::feature(const std::string& name) {
-  const auto slash = name.find('/');
-  if (slash == std::string::npos)
-    refuse("'" + name + "': a feature is named ROBOT/FEATURE or OBJECT/FEATURE");
-  const std::string owner = name.substr(0, slash), own = name.substr(slash + 1);
-  if (const auto object = world_.find_object(owner)) {
-    const world::Object& o = world_.objects[*object];
-    const auto& f = only_feature(o.features, own, [](const auto& x) { return x.name; });
-    const std::size_t sought = index_in(objects_, *object);
-    if (sought < objects_.size()) return {{Kind::Object, sought}, placed_feature(f, {})};
-    if (const auto& held = world_.attachments[*object])
-      return on_link(held->robot, held->link, held->pose, f);
-    return {{}, placed_feature(f, o.pose)};
+  using To = world::FixedFeature::To;
+  const world::FixedFeature found = world::find_feature(world_, name);
+  if (found.to == To::Object) {
+    const std::size_t sought = index_in(objects_, found.index);
+    if (sought < objects_.size())
+      return {{Kind::Object, sought}, kinematics_feature(found.feature)};
   }
-  const std::size_t robot = robot_named(owner);
-  const world::LinkFeature& f = only_feature(world_.robots[robot].features, own,
-                                             [](const auto& x) { return x.feature.name; });
-  return on_link(robot, f.link, {}, f.feature);
+  const world::FixedFeature here = at_state(world_, initial_state(world_), found);
+  if (here.to == To::Link) return on_link(here.index, here.link, here.feature);
+  return {{}, kinematics_feature(here.feature)};
 }
 
 }  // namespace kaboum::manipulation

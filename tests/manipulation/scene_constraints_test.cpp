@@ -92,9 +92,9 @@ TEST(SceneConstraints, WhatTheSceneDoesNotHaveIsRefused) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   };
-  refused([&] { scene.feature("table"); }, "ROBOT/FEATURE or OBJECT/FEATURE");
-  refused([&] { scene.feature("table/tap"); }, "did you mean 'top'");
-  refused([&] { scene.feature("arn/tip"); }, "no robot 'arn'");
+  refused([&] { scene.feature("nothing"); }, "OBJECT/FEATURE or ROBOT/FEATURE");
+  refused([&] { scene.feature("table/tap"); }, "did you mean 'table/top'");
+  refused([&] { scene.feature("arn/tip"); }, "did you mean 'arm/tip'");
   refused([&] { scene.feature("arm/tip"); }, "two kinds");
   refused([&] { scene.feature("arm/front"); }, "which is not the arm's");  // beyond the chain
   refused([&] { SceneConstraints(world, {}, {"tag"}); }, "is carried");

@@ -23,9 +23,10 @@ class SceneConstraints {
                    const std::vector<std::pair<std::string, std::string>>& arms,
                    const std::vector<std::string>& objects);
 
-  /// "ROBOT/FEATURE" or "OBJECT/FEATURE", wherever it is fixed to.
-  /// @throws Error{InvalidArgument} when there is no such feature, two kinds have the name, or it
-  ///   moves with joints that are not those of the robot's chain.
+  /// The feature of a name (world::find_feature), wherever it is fixed to.
+  /// @throws Error{InvalidArgument} as find_feature, and when it moves with joints that are not
+  /// those
+  ///   of the robot's chain.
   kinematics::PlacedFeature feature(const std::string& name);
 
   /// To which constraints between features are added. Robots and objects are in the order above.
@@ -33,9 +34,9 @@ class SceneConstraints {
 
  private:
   [[nodiscard]] std::size_t robot_named(const std::string& name) const;
-  /// A feature that moves with a link, with a pose in the link's frame.
+  /// A feature that moves with a link, in the link's frame.
   kinematics::PlacedFeature on_link(std::size_t robot, std::uint32_t link,
-                                    const geom::Transform& pose, const world::Feature& feature);
+                                    const world::Feature& feature);
 
   const world::World& world_;
   std::vector<std::size_t> arms_, objects_;  ///< their numbers in the world
