@@ -33,7 +33,7 @@ shows 0 '^verified: 3 of 3 links' "$V" robot robot/r.urdf drawn/r.urdf --visual 
 grep -q '<b>wrist_1</b>' page.html && grep -q 'every triangle of 3 links is inside' page.html || fail "the page says nothing of a link"
 [ "$(grep -o 'data:image/png;base64,iVBOR' page.html | wc -l)" = 6 ] || fail "pictures"
 expect 2 'for robots' "$D" robot/meshes/t.off -o x.glb --from visual
-expect 2 'overwrite the input' "$D" robot/r.urdf -o x --html-report robot/r.urdf
+expect 2 'give a name that ends with .html' "$D" robot/r.urdf -o x --html-report robot/r.urdf
 
 # Meshes round the meshes: few vertices, verified, the same from the cache and on one thread.
 expect 0 '2 meshes of 3 links' "$S" robot/r.urdf -o round --from visual --epsilon 2% --effort fast --report round.json \
