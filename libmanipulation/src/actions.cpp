@@ -102,6 +102,32 @@ std::optional<Answer> out_of_reach(Geometry& geometry, const Question& question,
   return found->second;
 }
 
+/// Motions that fetch an object and go back, or why there are none.
+struct Fetched {
+  std::vector<Motion> motions;
+  Answer failure;
+};
+
+/// The first that is found, of all attempts up to the question's. A question's own seed is made of
+/// its arguments: what is found here is the same whatever else is asked about.
+Fetched fetch_alone(Geometry& geometry, const Question& question, const world::WorldState& state,
+                    const std::vector<std::optional<std::size_t>>& mounted, std::size_t robot,
+                    std::size_t object) {
+  Fetched out;
+  for (unsigned attempt = 0; attempt <= question.attempt; ++attempt) {
+    const Question same{question.arguments, question.state, 1, attempt, 0};
+    Sequence sequence(geometry, same, state, mounted);
+    if (sequence.reach(robot, object) && sequence.take(robot, object) &&
+        sequence.go(robot, state.q[robot])) {
+      out.motions = sequence.motions();
+      break;
+    }
+    out.failure = sequence.failure();
+    if (out.failure.kind == Answer::Kind::Impossible) break;
+  }
+  return out;
+}
+
 std::string configuration(const Sequence& s, std::size_t robot) {
   return word_of(s.state().q[robot]);
 }
@@ -346,16 +372,16 @@ Answer grasp_motion_collides(Geometry& geometry, const Question& question) {
   world::WorldState state = asked.state.world();
   if (state.absent[other]) return Answer::holds(false, question.arguments[skip + 1] + " is away");
   state.absent[other] = true;
-  const std::vector<double> back = state.q[r];
-  Sequence sequence(geometry, question, state, asked.state.mounted());
-  if (!sequence.reach(r, o) || !sequence.take(r, o) || !sequence.go(r, back)) {
+  const Fetched fetched = fetch_alone(geometry, question, state, asked.state.mounted(), r, o);
+  if (fetched.motions.empty()) {
     // Impossible would mean that nothing collides.
-    const Answer failure = sequence.failure();
-    return failure.kind == Answer::Kind::NotFound ? failure : Answer::holds(true, failure.reason);
+    return fetched.failure.kind == Answer::Kind::NotFound
+               ? fetched.failure
+               : Answer::holds(true, fetched.failure.reason);
   }
   state.absent[other] = false;
   const std::vector<world::Item> things{{world::Item::kObject, other}};
-  for (const Motion& motion : sequence.motions()) {
+  for (const Motion& motion : fetched.motions) {
     world::WorldState then = state;
     for (const auto& [object, held] : motion.holds) then.attachments[object] = held;
     if (!find_obstacles(geometry.checker, then, r, motion.path, things, geometry.check).empty())

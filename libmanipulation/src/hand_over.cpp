@@ -1,6 +1,5 @@
 // Motions to places that are found at random: where one robot takes what another one holds, where
 // constraints are met, and anywhere.
-#include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/motion/goals.h>
@@ -71,7 +70,7 @@ bool Sequence::meet_somewhere(std::size_t from, std::size_t object, std::size_t 
             .normalized();
     const geom::Vec3 offset(share(-0.25, 0.25), share(-0.25, 0.25), share(0.1, 0.6));
     Transform pose{turn.toRotationMatrix(), middle + offset};
-    // What is to stay upright is only turned about the vertical.
+    // Objects that stay upright are turned about the vertical alone.
     const world::Object& thing = geometry_.world.objects[object];
     if (thing.upright)
       pose.linear = robot::rotation_about(geom::Vec3::UnitZ(), 2 * std::atan2(turn.z(), turn.w())) *
@@ -120,12 +119,11 @@ bool Sequence::wander(std::size_t robot) {
 
 bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set) {
   const world::RobotModel& model = geometry_.world.robots[robot];
-  std::vector<motion::PathConstraint> constraints;
-  try {
-    constraints = motion::path_constraints(geometry_.world, state_, robot, set);
-  } catch (const Error& error) {  // as things are now: it may hold what they are about later
-    return fail(Answer::Kind::Impossible, error.what());
-  }
+  if (!motion::is_of_motion(geometry_.world, state_, robot, set))
+    return fail(Answer::Kind::Impossible, "'" + set.name + "' is not between what moves with " +
+                                              model.name + " now and what stays");
+  const std::vector<motion::PathConstraint> constraints =
+      motion::path_constraints(geometry_.world, state_, robot, set);
   const std::uint32_t link = constraints.front().link;
   const motion::Goals drawn = motion::constraint_goals(
       model, {model.kinematics.links[link].name, link, {}}, constraints, state_.q[robot],

@@ -47,7 +47,7 @@ class MotionSequence {
   /// How a robot holds an object with the tool that is at one of its grasps; nullopt: none is.
   [[nodiscard]] std::optional<world::Attachment> find_grasp(std::size_t robot,
                                                             std::size_t object) const;
-  /// Whether a path is certainly free, and keeps upright what the robot carries.
+  /// True if a path is certainly free, and keeps upright what the robot carries.
   [[nodiscard]] bool may_follow(std::size_t robot, const robot::Path& path) const;
   [[nodiscard]] bool is_free(const world::WorldState& state) const;
   [[nodiscard]] bool is_free_at(std::size_t robot, const std::vector<double>& q) const;

@@ -126,8 +126,8 @@ std::vector<Option<KeepRequest>> keep_table() {
                "What the motion keeps at every instant, certified: upright (what of the tool "
                "points up at the start goes on doing so), orientation (the tool does not "
                "turn), line (the tool's origin stays on the straight line through start and goal), "
-               "level "
-               "(it stays at its height), each perhaps with a tolerance (upright=0.1 [0.05 rad], "
+               "level (it stays at its height), each perhaps with a tolerance (upright=0.1 [0.05 "
+               "rad], "
                "line=0.001 [0.002, in the scene's unit]); or constraints of the scene by their "
                "name",
            .values = "NAME[=TOLERANCE],…",

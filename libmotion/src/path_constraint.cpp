@@ -49,6 +49,10 @@ Vec3 direction_of(const kinematics::Feature& f) {
   return std::get<kinematics::Plane>(f).normal.normalized();
 }
 
+bool moves_with(const world::FixedFeature& feature, std::size_t robot) {
+  return feature.to == To::Link && feature.index == robot;
+}
+
 Eigen::Matrix3d along(const Vec3& d) { return d * d.transpose(); }
 
 class Bands {
@@ -294,6 +298,14 @@ const char* name_of(ConstraintAnswer::Outcome outcome) {
                                         : "undecided";
 }
 
+bool is_of_motion(const world::World& world, const world::WorldState& state, std::size_t robot,
+                  const world::ConstraintSet& set) {
+  return std::ranges::all_of(set.constraints, [&](const world::ToleratedConstraint& c) {
+    return moves_with(at_state(world, state, c.first), robot) !=
+           moves_with(at_state(world, state, c.second), robot);
+  });
+}
+
 std::vector<PathConstraint> path_constraints(const world::World& world,
                                              const world::WorldState& state, std::size_t robot,
                                              const world::ConstraintSet& set) {
@@ -302,9 +314,7 @@ std::vector<PathConstraint> path_constraints(const world::World& world,
   for (const world::ToleratedConstraint& c : set.constraints) {
     std::array<world::FixedFeature, 2> features{at_state(world, state, c.first),
                                                 at_state(world, state, c.second)};
-    const auto moves = [&](const world::FixedFeature& f) {
-      return f.to == To::Link && f.index == robot;
-    };
+    const auto moves = [&](const world::FixedFeature& f) { return moves_with(f, robot); };
     const std::string which = "the constraint of '" + c.first.feature.name + "' and '" +
                               c.second.feature.name + "' in '" + set.name + "'";
     if (moves(features[0]) == moves(features[1]))

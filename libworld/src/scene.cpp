@@ -7,8 +7,6 @@
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numbers>
 #include <set>
 

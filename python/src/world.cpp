@@ -278,6 +278,15 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   });
 }
 
+/// A configuration of a robot; None: its home.
+std::vector<double> start_of(const world::RobotModel& robot, const py::object& start) {
+  if (start.is_none()) return robot.home;
+  bool one = false;
+  robot::Path rows = rows_of(start, robot.kinematics.variables.size(), "start", one);
+  if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
+  return rows.front();
+}
+
 PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
                     const std::optional<std::string>& robot, const py::kwargs& given) {
   motion::PathOptions options;
@@ -289,43 +298,40 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   require_all_taken("find_path", keywords, path_keywords(), Runs::Alone);
   const std::size_t index = robot_index(in.world(), robot);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
+  const std::vector<double> from = start_of(in.world().robots[index], start);
   bool one = false;
-  const robot::Path from = rows_of(start, variables, "start", one);
-  if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
   const robot::Path to = rows_of(goals, variables, "goals", one);
   Watch watch(running.progress);
   options.check.progress = watch.hook();
   return run(0, [&] {
     const world::WorldState state = initial_state(in.world());
-    options.constraints = constraints_of(in.world(), state, index, from.front(), to, keep);
+    options.constraints = constraints_of(in.world(), state, index, from, to, keep);
     return PathValue{in, index, options.check.resolution,
-                     motion::find_path(*in.checker, state, index, from.front(), to, options),
+                     motion::find_path(*in.checker, state, index, from, to, options),
                      options.constraints};
   });
+}
+
+py::array goals_array(const motion::Goals& goals, const world::RobotModel& robot) {
+  const auto columns = static_cast<py::ssize_t>(robot.kinematics.variables.size());
+  if (goals.configurations.empty())
+    return py::array_t<double>(std::vector<py::ssize_t>{0, columns});
+  return rows_array(goals.configurations);
 }
 
 py::array pose_goals(const WorldValue& in, const py::object& pose, const py::object& start,
                      const std::optional<std::string>& tool,
                      const std::optional<std::string>& robot, std::uint64_t seed,
                      const py::object& progress) {
-  const std::size_t index = robot_index(in.world(), robot);
-  const world::RobotModel& model = in.world().robots[index];
-  const std::size_t variables = model.kinematics.variables.size();
-  robot::Path from{model.home};
-  if (!start.is_none()) {
-    bool one = false;
-    from = rows_of(start, variables, "start", one);
-    if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
-  }
+  const world::RobotModel& model = in.world().robots[robot_index(in.world(), robot)];
+  const std::vector<double> from = start_of(model, start);
   const geom::Transform target = pose_from(pose);
   Watch watch(progress);
   const motion::Goals goals = run(0, [&] {
-    return motion::pose_goals(model, motion::moving_frame(model, tool.value_or("")), target,
-                              from.front(), seed, watch.hook());
+    return motion::pose_goals(model, motion::moving_frame(model, tool.value_or("")), target, from,
+                              seed, watch.hook());
   });
-  if (goals.configurations.empty())
-    return py::array_t<double>(std::vector<py::ssize_t>{0, static_cast<py::ssize_t>(variables)});
-  return rows_array(goals.configurations);
+  return goals_array(goals, model);
 }
 
 py::array constraint_goals(const WorldValue& in, const std::string& name, const py::object& start,
@@ -333,22 +339,14 @@ py::array constraint_goals(const WorldValue& in, const std::string& name, const 
                            const std::optional<std::string>& robot, std::uint64_t seed) {
   const std::size_t index = robot_index(in.world(), robot);
   const world::RobotModel& model = in.world().robots[index];
-  const std::size_t variables = model.kinematics.variables.size();
-  robot::Path from{model.home};
-  if (!start.is_none()) {
-    bool one = false;
-    from = rows_of(start, variables, "start", one);
-    if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
-  }
+  const std::vector<double> from = start_of(model, start);
   const motion::Goals goals = run(0, [&] {
     const std::vector<motion::PathConstraint> constraints = motion::path_constraints(
         in.world(), initial_state(in.world()), index, in.world().constraint_set(name));
     return motion::constraint_goals(model, motion::moving_frame(model, tool.value_or("")),
-                                    constraints, from.front(), seed);
+                                    constraints, from, seed);
   });
-  if (goals.configurations.empty())
-    return py::array_t<double>(std::vector<py::ssize_t>{0, static_cast<py::ssize_t>(variables)});
-  return rows_array(goals.configurations);
+  return goals_array(goals, model);
 }
 
 TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
@@ -798,7 +796,7 @@ constexpr const char* kPathDoc =
 Parameters
 ----------
 start : array
-    k values.
+    k values; None: home.
 goals : array
     k values, or n x k.
 robot : str, optional

@@ -14,7 +14,7 @@ namespace kaboum::geom {
 
 /// A search structure over a fixed set of triangles that finds the nearest one.
 ///
-/// What branch and bound needs; DistanceQuery is the library's own, others may be given instead.
+/// Branch and bound takes any of them; DistanceQuery is the library's own.
 class TriangleSearch {
  public:
   struct Nearest {

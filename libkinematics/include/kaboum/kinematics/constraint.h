@@ -71,7 +71,7 @@ struct Cost {
 Cost cost(const Constraint& constraint, const Transform& first, const Transform& second,
           double length);
 
-/// What a constraint is about: it may be off by lengths, by angles, or by both.
+/// The kinds of deviation that a constraint may have.
 struct Measures {
   bool length = false, angle = false;
 };

@@ -24,9 +24,8 @@ class SceneConstraints {
                    const std::vector<std::string>& objects);
 
   /// The feature of a name (world::find_feature), wherever it is fixed to.
-  /// @throws Error{InvalidArgument} as find_feature, and when it moves with joints that are not
-  /// those
-  ///   of the robot's chain.
+  /// @throws Error{InvalidArgument} as find_feature, and when it moves with
+  ///   joints that are not those of the robot's chain.
   kinematics::PlacedFeature feature(const std::string& name);
 
   /// To which constraints between features are added. Robots and objects are in the order above.

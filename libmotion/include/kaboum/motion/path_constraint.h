@@ -24,16 +24,20 @@ struct PathConstraint {
   double within_angle = 0.02;   ///< [rad]
 };
 
+/// True if of each constraint's features one moves with the robot, or with what it carries, and the
+/// other stays.
+bool is_of_motion(const world::World& world, const world::WorldState& state, std::size_t robot,
+                  const world::ConstraintSet& set);
+
 /// The constraints of a set, for motions of one robot while all else stays. Of two lines or planes
 /// that coincide, the one that moves has its point within the tolerance of the other.
-/// @throws Error{InvalidArgument} unless of each constraint's features one moves with the robot and
-///   the other stays, and as require_keepable.
+/// @throws Error{InvalidArgument} unless is_of_motion, and as require_keepable.
 std::vector<PathConstraint> path_constraints(const world::World& world,
                                              const world::WorldState& state, std::size_t robot,
                                              const world::ConstraintSet& set);
 
-/// Of an object that a link carries: it leans by no more than an angle from how it stands in the
-/// scene.
+/// The constraint of an object that a link carries: it leans by no more than an angle from how it
+/// stands in the scene.
 PathConstraint upright_constraint(const world::World& world, const world::Attachment& held,
                                   std::size_t object, double within_angle);
 
