@@ -959,28 +959,120 @@ TEST(Handles, WhereAChoiceLeadsNoFurtherAnotherOneIsMade) {
     const Model m = bound(text, {{"take", take}, {"put", put("right")}});
     const Solution s = with(m, a);
     ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
-    EXPECT_EQ(s.plan.choice, 2U);
-    EXPECT_EQ(s.plan.attempts, 1U);
+    EXPECT_EQ(s.plan.choices, (Choices{{"take(home)", 2}}));
     const CheckResult r = check(m, s.plan);
     EXPECT_TRUE(r.valid) << r.violation;
     const std::string written = write_plan(m, s.plan);
-    expect_says(written, "\"choice\": 2");
+    expect_says(written, "\"take(home)\": 2");
     EXPECT_EQ(read_plan(m, written, "p.json"), s.plan);
     Plan other = s.plan;
-    other.choice = 1;
+    other.choices["take(home)"] = 1;
     EXPECT_FALSE(check(m, other).valid);
     // The first choice does; nothing is chosen anew.
     const Model first = bound(text, {{"take", take}, {"put", put("top")}});
-    EXPECT_EQ(with(first, a).plan.choice, 0U);
+    EXPECT_TRUE(with(first, a).plan.choices.empty());
     EXPECT_EQ(write_plan(first, with(first, a).plan).find("choice"), std::string::npos);
     // None does.
     calls = 0;
     const Solution none = with(bound(text, {{"take", take}, {"put", put("none")}}), a);
     EXPECT_EQ(none.outcome, Outcome::Limit);
     expect_says(none.limit, "top does not fit");
-    expect_says(none.limit, "nor with 3 other choices");
+    expect_says(none.limit, "nor with 3 sets of other choices (");
     EXPECT_EQ(calls, 4);
   }
+}
+
+/// Each of several things is to be taken in a way of its own. What nothing fails by stays chosen:
+/// the ways are found one after the other, not among all combinations.
+TEST(Handles, OnlyWhatFailuresRestOnIsChosenAnew) {
+  constexpr unsigned kThings = 5, kWays = 6;
+  std::string things;
+  for (unsigned i = 0; i < kThings; ++i) things += (i > 0 ? ", o" : "o") + std::to_string(i);
+  const std::string text =
+      "types: thing, way handle\nconstants: thing " + things +
+      "; way none\npredicates: done(thing)\nfunctions: way(thing) : way\n"
+      "externals: take(thing) : way; put(thing, way) : way\n"
+      "action take(?o : thing) preconds: let ?w = extern(take(?o)) effects: add(Kf, way(?o) = ?w)\n"
+      "action put(?o : thing) preconds: let ?p = extern(put(?o, way(?o)))\n"
+      "effects: add(Kf, done(?o))\ngoal: forallK(?o : thing) (K(done(?o)))";
+  const auto way = [](const std::string& thing, unsigned choice) {
+    return thing + "-" + std::to_string(choice);
+  };
+  const auto good = [](const std::string& thing) {
+    return (static_cast<unsigned>(thing.back() - '0') * 3 + 2) % (kWays + 1);  // 2, 5, 1, 4, 0
+  };
+  const ExternalBindings bindings = {
+      {"take",
+       [&](const Question& q) {
+         Answer a = Answer::found(way(q.arguments[0], q.choice));
+         a.chosen = true;
+         a.choices = kWays;
+         return a;
+       }},
+      {"put", [&](const Question& q) {
+         return q.arguments[1] == way(q.arguments[0], good(q.arguments[0]))
+                    ? Answer::found("none")
+                    : Answer::not_found(q.arguments[1] + " does not fit");
+       }}};
+  for (const Algorithm a : {Algorithm::Greedy, Algorithm::DepthFirst}) {
+    const Model m = bound(text, bindings);
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    for (const auto& [call, choice] : s.plan.choices)
+      EXPECT_EQ(choice, good(call.substr(5, 2))) << call;
+    EXPECT_EQ(s.plan.choices.size(), kThings - 1);
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+    EXPECT_EQ(read_plan(m, write_plan(m, s.plan), "p.json"), s.plan);
+  }
+}
+
+/// Two choices that do only together: no change of one alone helps, nor of both alike.
+TEST(Handles, ChoicesThatDoOnlyTogetherAreFound) {
+  const std::string text =
+      "types: way handle\nconstants: way none\npredicates: done\n"
+      "functions: left : way; right : way\nexternals: takeLeft : way; takeRight : way; "
+      "join(way, way) : way\n"
+      "action left preconds: let ?w = extern(takeLeft) effects: add(Kf, left = ?w)\n"
+      "action right preconds: let ?w = extern(takeRight) effects: add(Kf, right = ?w)\n"
+      "action join preconds: let ?w = extern(join(left, right)) effects: add(Kf, done)\n"
+      "goal: K(done)";
+  const auto take = [](const Question& q) {
+    Answer a = Answer::found(std::to_string(q.choice));
+    a.chosen = true;
+    a.choices = 4;
+    return a;
+  };
+  int joined = 0;
+  const auto join = [&](const Question& q) {
+    ++joined;
+    return q.arguments[0] == "3" && q.arguments[1] == "1" ? Answer::found("none")
+                                                          : Answer::impossible("they clash");
+  };
+  for (const Algorithm a : kAll) {
+    joined = 0;
+    const Model m = bound(text, {{"takeLeft", take}, {"takeRight", take}, {"join", join}});
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    EXPECT_EQ(s.plan.choices, (Choices{{"takeLeft", 3}, {"takeRight", 1}}));
+    EXPECT_LE(joined, 5 * 5 + 3);  // each pair once, and what is confirmed
+    const CheckResult r = check(m, s.plan);
+    EXPECT_TRUE(r.valid) << r.violation;
+  }
+  // None does: every pair was tried, and no more.
+  joined = 0;
+  const Solution none = with(
+      bound(text, {{"takeLeft", take},
+                   {"takeRight", take},
+                   {"join",
+                    [&](const Question&) {
+                      ++joined;
+                      return Answer::impossible("they clash");
+                    }}}),
+      Algorithm::Greedy);
+  EXPECT_EQ(none.outcome, Outcome::Limit);
+  expect_says(none.limit, "nor with 24 sets of other choices (25 conflicts)");
+  EXPECT_EQ(joined, 25);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "check/derived_facts.h"
+#include "task/call_text.h"
 
 namespace kaboum::plan {
 
@@ -51,7 +52,7 @@ QueryEvaluator::QueryEvaluator(const Model& model, const Plan& plan)
     : model_(model),
       seed_(plan.seed),
       attempts_(std::max(plan.attempts, 1U)),
-      choice_(plan.choice),
+      choices_(plan.choices),
       handles_(static_cast<Index>(model.objects.size())) {}
 
 std::optional<bool> QueryEvaluator::truth(const Query& q, std::vector<Index>& slots,
@@ -374,9 +375,14 @@ ExternalResult QueryEvaluator::call(const Query& q, const std::vector<Index>& sl
 ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arguments,
                                    const RuntimeKnowledge& k) const {
   ExternalResult result;
+  unsigned choice = 0;
+  if (!choices_.empty()) {
+    const auto chosen = choices_.find(call_text(model_, handles_, external, arguments));
+    if (chosen != choices_.end()) choice = chosen->second;
+  }
   for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
     KnowledgeReader reader(k, noted_);
-    ExternalContext context{reader, handles_, seed_, attempt, choice_};
+    ExternalContext context{reader, handles_, seed_, attempt, choice};
     try {
       result = model_.external_functions[external].call(arguments, context);
     } catch (const LeftOpen&) {

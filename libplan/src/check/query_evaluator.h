@@ -92,7 +92,8 @@ class QueryEvaluator {
 
   const Model& model_;
   std::uint64_t seed_;
-  unsigned attempts_, choice_;
+  unsigned attempts_;
+  Choices choices_;
   mutable HandleTable handles_;
   /// Of functions that do not read the state.
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;

@@ -97,7 +97,7 @@ bool Plan::operator==(const Plan& other) const {
            std::equal(a.branch.cases.begin(), a.branch.cases.end(), b.branch.cases.begin(),
                       b.branch.cases.end(), same_case);
   };
-  return root == other.root && choice == other.choice &&
+  return root == other.root && choices == other.choices &&
          std::equal(nodes.begin(), nodes.end(), other.nodes.begin(), other.nodes.end(), same_node);
 }
 

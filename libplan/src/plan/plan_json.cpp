@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMaximumAttempts = 1000;
+constexpr std::uint64_t kMaximumAttempts = 1000, kMaximumChoice = 1'000'000;
 
 Json names(const Model& model, const std::vector<Index>& objects) {
   Json list = Json::array();
@@ -50,12 +50,9 @@ class Reader {
              std::to_string(kMaximumAttempts));
       plan.seed = seed.get<std::uint64_t>();
       plan.attempts = attempts.get<unsigned>();
-      if (json.contains("choice")) {
-        const Json& choice = member(json, "choice");
-        if (!choice.is_number_unsigned() || choice.get<std::uint64_t>() > kMaximumAttempts)
-          fail("'choice' is a whole number, at most " + std::to_string(kMaximumAttempts));
-        plan.choice = choice.get<unsigned>();
-      }
+      if (json.contains("choice"))
+        fail("'choice', one for all calls, is of an older version: plan again");
+      if (json.contains("choices")) plan.choices = choices(member(json, "choices"));
     }
     const Json& nodes = member(json, "nodes");
     if (!nodes.is_array()) fail("'nodes' is not a list");
@@ -124,6 +121,18 @@ class Reader {
              model_.types[types[i]].name);
     }
     return result;
+  }
+
+  [[nodiscard]] Choices choices(const Json& json) const {
+    Choices out;
+    if (!json.is_object()) fail("'choices' is no object of calls");
+    for (const auto& [call, choice] : json.items()) {
+      if (!choice.is_number_unsigned() || choice.get<std::uint64_t>() > kMaximumChoice)
+        fail("'choices': that of '" + call + "' is no whole number of at most " +
+             std::to_string(kMaximumChoice));
+      out.emplace(call, choice.get<unsigned>());
+    }
+    return out;
   }
 
   [[nodiscard]] Plan::Node node(const Json& json) const {
@@ -238,7 +247,7 @@ std::string write_plan(const Model& model, const Plan& plan) {
   if (plan.attempts > 0) {
     json["seed"] = plan.seed;
     json["attempts"] = plan.attempts;
-    if (plan.choice > 0) json["choice"] = plan.choice;
+    if (!plan.choices.empty()) json["choices"] = plan.choices;
   }
   json["root"] = link(plan.root);
   json["nodes"] = std::move(nodes);

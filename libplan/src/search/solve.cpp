@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "search/choices.h"
 #include "search/contingent.h"
 #include "search/fact_table.h"
 #include "search/reachability.h"
@@ -104,50 +105,107 @@ Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& 
   }
 }
 
-/// Searches, and again with more samples while that fails and some call found nothing.
-void search(Task& task, const SolveOptions& options, unsigned choice, Limits& limits,
-            Solution& solution) {
-  ExternalCalls& calls = task.calls();
-  calls.seed(options.seed, choice);
-  const Assumptions assumptions(task, options.assumed);
-  while (true) {
+/// Whether a search that has failed may succeed with more attempts, or with other choices.
+struct Remedies {
+  bool attempts = false, choices = false;
+};
+
+/// A task that is searched with some choices of external functions.
+class ChosenSearch {
+ public:
+  ChosenSearch(const Model& model, const SolveOptions& options, Choices choices, Limits& limits)
+      : options_(options), choices_(std::move(choices)), limits_(limits), task_(model, limits),
+        assumptions_(task_, options.assumed) {
+    task_.calls().seed(options.seed, choices_);
+  }
+
+  /// Searches; the first time with `attempts`, then with one more than before.
+  Remedies run(unsigned attempts, Solution& solution) {
+    ExternalCalls& calls = task_.calls();
+    if (searched_) calls.try_again();
+    searched_ = true;
+    try {
+      while (true) {
+        const Remedies out = run_once(solution);
+        if (!out.attempts || calls.attempts() >= attempts) {
+          count(solution.statistics);
+          return out;
+        }
+        calls.try_again();
+      }
+    } catch (const LimitExceeded&) {
+      count(solution.statistics);
+      throw;
+    }
+  }
+
+  [[nodiscard]] const Choices& choices() const { return choices_; }
+  [[nodiscard]] ChoosingCalls choosing_calls() { return task_.calls().choosing_calls(); }
+
+ private:
+  Remedies run_once(Solution& solution) {
+    ExternalCalls& calls = task_.calls();
     bool proved = false;
-    solution.outcome = run_planner(task, options, assumptions, limits, solution, proved);
+    solution.limit.clear();
+    solution.refused.clear();
+    solution.outcome = run_planner(task_, options_, assumptions_, limits_, solution, proved);
     if (solution.outcome == Outcome::Solved) {
-      const auto& functions = task.model().external_functions;
-      if (std::any_of(functions.begin(), functions.end(),
-                      [](const auto& f) { return f.takes_seed; })) {
-        solution.plan.seed = options.seed;
+      const auto& functions = task_.model().external_functions;
+      if (std::ranges::any_of(functions, &ExternalFunction::takes_seed)) {
+        solution.plan.seed = options_.seed;
         solution.plan.attempts = calls.attempts();
-        solution.plan.choice = choice;
+        solution.plan.choices = choices_;
       }
     }
-    if (solution.outcome != Outcome::Unsolvable) break;
-    if (proved || calls.missed().empty()) {
+    if (solution.outcome == Outcome::Unsolvable && !proved) {
+      if (!calls.missed().empty()) {
+        solution.outcome = Outcome::Limit;
+        solution.limit = "an external function found nothing in " +
+                         std::to_string(calls.attempts()) +
+                         (calls.attempts() == 1 ? " attempt, " : " attempts, ") + calls.missed();
+        return {true, true};
+      }
+    }
+    if (solution.outcome == Outcome::Unsolvable) {
       solution.refused = calls.refused();
       if (!calls.listed().empty()) {
         solution.outcome = Outcome::Limit;
         solution.limit =
             "with what the scene lists there is none, others may do: " + calls.listed();
-        return;
+        return {false, true};
       }
-      if (proved || calls.chosen().empty()) break;
-      solution.outcome = Outcome::Limit;
-      solution.limit = "with the value that was chosen for " + calls.chosen() +
-                       " there is none; others may do, and are not tried" +
-                       (solution.refused.empty() ? "" : "; " + solution.refused);
-      return;
+      if (!proved && !calls.chosen().empty()) {
+        solution.outcome = Outcome::Limit;
+        solution.limit = "with the value that was chosen for " + calls.chosen() +
+                         " there is none; others may do, and are not tried" +
+                         (solution.refused.empty() ? "" : "; " + solution.refused);
+        return {false, true};
+      }
     }
-    if (calls.attempts() >= (choice == 0 ? options.attempts : 1)) {
-      solution.outcome = Outcome::Limit;
-      solution.limit = "an external function found nothing in " + std::to_string(calls.attempts()) +
-                       (calls.attempts() == 1 ? " attempt, " : " attempts, ") + calls.missed();
-      return;
-    }
-    calls.try_again();
+    if (solution.outcome != Outcome::Limit) calls.confirm();
+    return {};
   }
-  if (solution.outcome != Outcome::Limit) calls.confirm();
-}
+
+  /// Adds to a solution's figures what came since the last time.
+  void count(Statistics& s) {
+    const ExternalCalls& calls = task_.calls();
+    s.ground_actions = task_.action_count();
+    s.external_calls += calls.calls_made() - counted_calls_;
+    s.external_bytes = std::max<decltype(s.external_bytes)>(s.external_bytes, calls.bytes());
+    s.external_seconds += calls.seconds() - counted_seconds_;
+    counted_calls_ = calls.calls_made();
+    counted_seconds_ = calls.seconds();
+  }
+
+  const SolveOptions& options_;
+  Choices choices_;
+  Limits& limits_;
+  Task task_;
+  Assumptions assumptions_;
+  bool searched_ = false;
+  std::uint64_t counted_calls_ = 0;
+  double counted_seconds_ = 0;
+};
 
 /// Whether it is known at the start that one of several atoms holds, and not which.
 bool has_disjunctions(const Model& model) {
@@ -182,47 +240,47 @@ bool search_worlds(const Model& model, const SolveOptions& options, Limits& limi
   return true;
 }
 
-/// One search with knowledge states. @return the most things that an external function chose among.
-unsigned search_once(const Model& model, const SolveOptions& options, unsigned choice,
-                     Limits& limits, Solution& solution) {
-  Task task(model, limits);
-  Statistics& s = solution.statistics;
-  const auto count = [&] {
-    s.ground_actions = task.action_count();
-    s.external_calls += task.calls().calls_made();
-    s.external_bytes = std::max<decltype(s.external_bytes)>(s.external_bytes, task.calls().bytes());
-    s.external_seconds += task.calls().seconds();
-  };
-  try {
-    search(task, options, choice, limits, solution);
-  } catch (const LimitExceeded&) {
-    count();
-    throw;
-  }
-  count();
-  return task.calls().choices();
-}
+/// Searches with other choices that are tried after each search with one more attempt.
+constexpr int kChoicesPerAttempt = 2;
 
-/// With knowledge states; where what was found leads no further, with other choices.
+/// With knowledge states. Where what was found leads no further, in turns: with more attempts, and
+/// with other choices of the calls that the failures rest on.
 void search_knowledge(const Model& model, const SolveOptions& options, const std::string& lost,
                       Limits& limits, Solution& solution) {
-  const unsigned choices = search_once(model, options, 0, limits, solution);
-  // Without a text it is a search that ended, not a function that found nothing.
-  const bool again = solution.outcome == Outcome::Limit && !solution.limit.empty();
-  const unsigned most = again ? std::min(choices, options.choices) : 0;
-  for (unsigned choice = 1; choice <= most; ++choice) {
-    Solution other;
-    other.statistics = solution.statistics;
-    search_once(model, options, choice, limits, other);
-    solution.statistics = other.statistics;
-    if (other.outcome != Outcome::Solved) continue;
-    solution = std::move(other);
-    return;
+  ChosenSearch first(model, options, {}, limits);
+  ChoiceSearch choices;
+  unsigned attempts = 1, others = 0;
+  Remedies remedies = first.run(attempts, solution);
+  if (remedies.choices) choices.add_failure({}, first.choosing_calls());
+  bool more = remedies.attempts || remedies.choices;
+  while (more) {
+    more = false;
+    for (int i = 0; i < kChoicesPerAttempt && remedies.choices && others < options.choices; ++i) {
+      std::optional<Choices> next = choices.next();
+      if (!next) break;
+      more = true;
+      ++others;
+      Solution other;
+      other.statistics = solution.statistics;
+      ChosenSearch search(model, options, std::move(*next), limits);
+      const Remedies failed = search.run(attempts, other);
+      solution.statistics = other.statistics;
+      if (other.outcome == Outcome::Solved) {
+        solution = std::move(other);
+        return;
+      }
+      if (failed.choices) choices.add_failure(search.choices(), search.choosing_calls());
+    }
+    if (remedies.attempts && attempts < options.attempts) {
+      more = true;
+      remedies = first.run(++attempts, solution);
+      if (remedies.choices) choices.add_failure({}, first.choosing_calls());
+    }
   }
-  if (most > 0)
-    solution.limit += "; nor with " + std::to_string(most) + " other " +
-                      (most == 1 ? "choice" : "choices") + " among up to " +
-                      std::to_string(choices) + " things that external functions chose among";
+  if (solution.outcome == Outcome::Limit && others > 0)
+    solution.limit += "; nor with " + std::to_string(others) +
+                      (others == 1 ? " set" : " sets") + " of other choices (" +
+                      std::to_string(choices.conflicts()) + " conflicts)";
   if (solution.outcome != Outcome::Unsolvable || lost.empty()) return;
   solution.lost = lost;
   solution.outcome = Outcome::NotInferred;
@@ -268,6 +326,9 @@ Solution solve(const Model& model, const SolveOptions& options) {
       solution = std::move(again);
   } catch (const LimitExceeded&) {
     solution.outcome = Outcome::Limit;
+    const std::string before = std::move(solution.limit);
+    solution.limit = limits.reason();
+    if (!before.empty()) solution.limit += (solution.limit.empty() ? "" : "; until then, ") + before;
   }
   if (solution.outcome == Outcome::Limit && solution.limit.empty())
     solution.limit =

@@ -163,9 +163,9 @@ ExternalResult ExternalCalls::run(const Call& c, const std::vector<Index>& objec
                                   StateReader& reader, unsigned attempt) {
   ++made_;
   const auto start = std::chrono::steady_clock::now();
-  ExternalContext context{reader, handles_, seed_, attempt, choice_};
+  const unsigned choice = choices_.empty() ? 0 : choice_of(text(c, objects));
+  ExternalContext context{reader, handles_, seed_, attempt, choice};
   ExternalResult result = model_.external_functions[c.external].call(objects, context);
-  choices_ = std::max(choices_, result.choices);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
@@ -226,13 +226,40 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
   return reply(made);
 }
 
+unsigned ExternalCalls::choice_of(const std::string& call) const {
+  const auto found = choices_.find(call);
+  return found == choices_.end() ? 0 : found->second;
+}
+
+void ExternalCalls::blame(const Call& c, const std::vector<Index>& objects,
+                          const std::vector<Index>& read, const ExternalResult& result,
+                          bool handle) {
+  std::set<Index> sources;
+  for (const Index object : read)
+    if (const auto found = rests_on_.find(object); found != rests_on_.end())
+      sources.insert(found->second.begin(), found->second.end());
+  if (result.choices > 0) {
+    const std::string call = text(c, objects);
+    const auto [own, fresh] =
+        choosing_index_.emplace(call, static_cast<Index>(choosing_.size()));
+    if (fresh) choosing_.emplace_back(call, ChoosingCall{choice_of(call), 0, 0});
+    ChoosingCall& chooses = choosing_[own->second].second;
+    chooses.most = std::max(chooses.most, result.choices);
+    sources.insert(own->second);
+  }
+  if (handle) {
+    if (!sources.empty()) rests_on_[result.value].merge(sources);
+    return;
+  }
+  for (const Index source : sources) ++choosing_[source].second.blamed;
+}
+
+ChoosingCalls ExternalCalls::choosing_calls() const {
+  return {choosing_.begin(), choosing_.end()};
+}
+
 void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
                          const ExternalResult& result, bool fresh) {
-  if (result.kind == Answer::Kind::NotFound) return;
-  if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
-    refused_ = text(c, objects) + ": " + result.reason;
-  if (result.kind == Answer::Kind::Impossible && result.listed && listed_.empty())
-    listed_ = text(c, objects) + ": " + result.reason;
   std::vector<Index> read = objects;
   for (const auto& [item, content] : path) {
     if (is_call(item))
@@ -243,8 +270,14 @@ void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const
   const Index range = model_.externals[c.external].range;
   const bool handle =
       result.kind == Answer::Kind::Value && range != kNone && model_.types[range].handle;
+  if (handle && result.fixed) read = objects;
+  blame(c, objects, read, result, handle);
+  if (result.kind == Answer::Kind::NotFound) return;
+  if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
+    refused_ = text(c, objects) + ": " + result.reason;
+  if (result.kind == Answer::Kind::Impossible && result.listed && listed_.empty())
+    listed_ = text(c, objects) + ": " + result.reason;
   if (!handle) final_.insert(read.begin(), read.end());
-  if (result.fixed) read = objects;
   const auto source = std::find_if(read.begin(), read.end(),
                                    [&](Index object) { return chosen_.contains(object); });
   if (result.kind != Answer::Kind::Value || (!result.chosen && source == read.end())) return;

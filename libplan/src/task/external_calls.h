@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "search/choices.h"
 #include "task/answer_tree.h"
 #include "task/layout.h"
 #include "task/solve_limits.h"
@@ -104,12 +105,12 @@ class ExternalCalls {
   [[nodiscard]] std::uint64_t calls_made() const { return made_; }
   [[nodiscard]] double seconds() const { return seconds_; }
   [[nodiscard]] std::size_t bytes() const { return handles_.bytes() + answers_.bytes(); }
-  void seed(std::uint64_t seed, unsigned choice) {
+  void seed(std::uint64_t seed, Choices choices) {
     seed_ = seed;
-    choice_ = choice;
+    choices_ = std::move(choices);
   }
-  /// The most things that a function chose among.
-  [[nodiscard]] unsigned choices() const { return choices_; }
+  /// Calls that chose among several things, and how much failed that rests on it.
+  [[nodiscard]] ChoosingCalls choosing_calls() const;
 
  private:
   struct Call {
@@ -137,6 +138,10 @@ class ExternalCalls {
                      unsigned attempt);
   Index keep(Index call, const Footprint& path, const std::vector<Index>& arguments,
              const AnswerTree::Leaf& leaf);
+  [[nodiscard]] unsigned choice_of(const std::string& call) const;
+  /// Notes which calls choose, and which of their values an answer rests on.
+  void blame(const Call& c, const std::vector<Index>& objects, const std::vector<Index>& read,
+             const ExternalResult& result, bool handle);
   /// Notes what rests on what was chosen.
   void note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
             const ExternalResult& result, bool fresh);
@@ -154,7 +159,11 @@ class ExternalCalls {
   std::vector<Sample> samples_;
   std::vector<std::uint8_t> sampled_;  ///< by external
   std::uint64_t seed_ = 0;
-  unsigned attempts_ = 1, choice_ = 0, choices_ = 0;
+  unsigned attempts_ = 1;
+  Choices choices_;
+  std::vector<std::pair<std::string, ChoosingCall>> choosing_;
+  std::map<std::string, Index> choosing_index_;
+  std::map<Index, std::set<Index>> rests_on_;  ///< handles, and calls that chose them
   bool early_ = false;    ///< functions are stopped where they read what no argument names
   Index missed_ = kNone;  ///< a leaf
   std::string missed_call_;

@@ -3,10 +3,15 @@
 #include <kaboum/plan/model.h>
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace kaboum::plan {
+
+/// `Question::choice` of the calls of external functions, by the calls' texts,
+/// "fetch(robot1, o1, home)"; of those that are not there, 0.
+using Choices = std::map<std::string, unsigned>;
 
 /// A ground action of a plan.
 struct PlanAction {
@@ -48,7 +53,7 @@ struct Plan {
   Index root = kNone;
   std::uint64_t seed = 0;  ///< of its calls
   unsigned attempts = 0;   ///< the most that one of them took; 0: no function reads the state
-  unsigned choice = 0;     ///< Question::choice of its calls
+  Choices choices;         ///< of its calls
 
   [[nodiscard]] bool operator==(const Plan& other) const;
 };

@@ -46,9 +46,9 @@ struct SolveOptions {
   /// Number of times that a call that finds nothing is made, with more samples each time, before
   /// the search gives up: all calls once, then all that found nothing once more, and so on.
   unsigned attempts = 8;
-  /// Number of times that the search begins anew, each call made once, where it fails and external
-  /// functions say that they chose among several things: with other choices each time.
-  unsigned choices = 16;
+  /// Number of times that the search begins anew with other choices, where it fails and external
+  /// functions say that they chose among several things.
+  unsigned choices = 64;
   /// Assumed outcomes of sensing, by atom or term, "isSpillable(o1)": "true", "false", or
   /// the value's name. The plan has branches for nothing else of these, unless it is known not to
   /// be so (run_and_replan goes on from there).
