@@ -46,32 +46,47 @@ std::string key_of(const Call& call, const Question& question) {
   return key;
 }
 
+/// What a call leads to among the things that are involved.
+template <typename Act, typename Value>
+Performed& perform_among(Geometry& geometry, const Question& question, const std::string& prefix,
+                         const Involved& involved, const Act& act, const Value& value) {
+  std::string key = prefix;
+  involved.add_to(key);
+  auto found = geometry.performed.find(key);
+  if (found == geometry.performed.end()) {
+    Sequence sequence(geometry, question, involved.state(), involved.mounted());
+    Performed done;
+    done.answer = act(sequence) ? sequence.found(value(sequence)) : sequence.failure();
+    done.motions = sequence.motions();
+    found = geometry.performed.emplace(std::move(key), std::move(done)).first;
+  }
+  return found->second;
+}
+
 /// Does what `act` does, among the things that the call is about and those that are in the way;
-/// `value` is what it has led to. What fails among some things fails among all.
+/// `value` is what it has led to. What fails among some things fails among all: so what fails among
+/// those that the call names reads nothing else.
 template <typename Act, typename Value>
 Answer perform(Geometry& geometry, const Question& question, const Call& call, const Act& act,
                const Value& value) {
   CallState asked(geometry, question);
-  if (!asked.state.read_all()) return asked.not_known();
+  if (!asked.state.read(call.robots, call.objects)) return asked.not_known();
+  if (question.early && !asked.state.read_all()) return asked.not_known();
   if (geometry.performed.size() >= kMostKept ||
       geometry.performed.size() * geometry.placed.size() >= kMostDecided) {
     geometry.performed.clear();
     geometry.placed.clear();
   }
-  Involved involved(geometry, asked.state, call.robots, call.objects);
   const std::string prefix = key_of(call, question);
+  if (!call.objects.empty()) {  // else what is carried is not known
+    const Involved named(geometry, asked.state, call.robots, call.objects);
+    const Answer& answer = perform_among(geometry, question, prefix, named, act, value).answer;
+    if (answer.kind != Answer::Kind::Value) return answer;
+  }
+  if (!asked.state.read_all()) return asked.not_known();
+  Involved involved(geometry, asked.state, call.robots, call.objects);
   for (int round = 1;; ++round) {
-    std::string key = prefix;
-    involved.add_to(key);
-    auto found = geometry.performed.find(key);
-    if (found == geometry.performed.end()) {
-      Sequence sequence(geometry, question, involved.state(), involved.mounted());
-      Performed done;
-      done.answer = act(sequence) ? sequence.found(value(sequence)) : sequence.failure();
-      done.motions = sequence.motions();
-      found = geometry.performed.emplace(std::move(key), std::move(done)).first;
-    }
-    Performed& performed = found->second;
+    Performed& performed = perform_among(geometry, question, prefix, involved, act, value);
     if (performed.answer.kind != Answer::Kind::Value || !involved.add_obstacles(performed))
       return performed.answer;
     if (round == kRounds) involved.add_all();

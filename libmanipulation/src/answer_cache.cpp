@@ -57,6 +57,9 @@ class Notes final : public plan::StateView {
           known ? std::optional<std::string>(*known ? "true" : "false") : std::nullopt});
     return known;
   }
+  bool has_term(const std::string& function, const std::vector<std::string>& arguments) override {
+    return view_.has_term(function, arguments);
+  }
   std::vector<Reading> reads;
 
  private:
@@ -154,8 +157,8 @@ struct AnswerCache::Entries {
     }
     Notes notes(question.state);
     Entry made;
-    made.answer =
-        function({question.arguments, notes, question.seed, question.attempt, question.choice});
+    made.answer = function({question.arguments, notes, question.seed, question.attempt,
+                            question.choice, question.early});
     made.reads = std::move(notes.reads);
     Answer answer = made.answer;
     const std::size_t size = answer.payload.size() + 200 + 100 * made.reads.size();

@@ -19,21 +19,6 @@ std::size_t find_named(const Things& things, const std::string& name, const char
                                            did_you_mean(name, names));
 }
 
-/// The value of FUNCTION(NAME), `otherwise` where the domain has no such term; nullopt: not known.
-std::optional<std::string> value(Geometry& geometry, plan::StateView& view,
-                                 const std::string& function, const std::string& name,
-                                 std::string_view otherwise) {
-  const std::string term = function + "(" + name + ")";
-  if (geometry.fixed.contains(term)) return std::string(otherwise);
-  try {
-    return view.value(function, {name});
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::InvalidInput) throw;
-  }
-  geometry.fixed.insert(term);
-  return std::string(otherwise);
-}
-
 }  // namespace
 
 std::size_t robot_named(const Geometry& geometry, const std::string& name) {
@@ -52,12 +37,25 @@ GeometricState::GeometricState(Geometry& geometry, plan::StateView& view)
       robots_read_(geometry.world.robots.size(), false),
       objects_read_(geometry.world.objects.size(), false) {
   state_.absent.assign(objects_read_.size(), true);
+  if (geometry_.fixed_robots.size() < robots_read_.size() ||
+      geometry_.fixed_objects.size() < objects_read_.size())
+    find_fixed();
+}
+
+void GeometricState::find_fixed() {
+  geometry_.fixed_robots.clear();
+  for (const world::RobotModel& robot : geometry_.world.robots)
+    geometry_.fixed_robots.push_back(view_.has_term("conf", {robot.name}) ? 0 : 1);
+  geometry_.fixed_objects.clear();
+  for (const world::Object& object : geometry_.world.objects)
+    geometry_.fixed_objects.push_back(view_.has_term("pose", {object.name}) ? 0 : 1);
 }
 
 bool GeometricState::read_robot(std::size_t robot) {
   if (robots_read_[robot]) return true;
   const world::RobotModel& model = geometry_.world.robots[robot];
-  const auto word = value(geometry_, view_, "conf", model.name, kHome);
+  const auto word =
+      geometry_.is_fixed_robot(robot) ? std::string(kHome) : view_.value("conf", {model.name});
   if (!word) {
     unknown_ = "the configuration of " + model.name + " is not known";
     return false;
@@ -75,7 +73,9 @@ bool GeometricState::read_place(std::size_t object, std::size_t depth) {
   if (depth > world.objects.size())
     throw Error(ErrorCode::InvalidInput, "objects are mounted on each other in a circle; one is " +
                                              world.objects[object].name);
-  const auto word = value(geometry_, view_, "pose", world.objects[object].name, kStart);
+  const auto word = geometry_.is_fixed_object(object)
+                        ? std::string(kStart)
+                        : view_.value("pose", {world.objects[object].name});
   if (!word) {
     unknown_ = "the pose of " + world.objects[object].name + " is not known";
     return false;
@@ -99,21 +99,24 @@ bool GeometricState::read_place(std::size_t object, std::size_t depth) {
   return true;
 }
 
+bool GeometricState::read(std::span<const std::size_t> robots,
+                          std::span<const std::size_t> objects) {
+  for (const std::size_t r : robots)
+    if (!read_robot(r)) return false;
+  for (const std::size_t o : objects)
+    if (!read_object(o)) return false;
+  for (std::size_t r = 0; r < robots_read_.size(); ++r)
+    if (geometry_.is_fixed_robot(r) && !read_robot(r)) return false;
+  for (std::size_t o = 0; o < objects_read_.size(); ++o)
+    if (geometry_.is_fixed_object(o) && !read_object(o)) return false;
+  return true;
+}
+
 bool GeometricState::read_all() {
   for (std::size_t r = 0; r < robots_read_.size(); ++r)
     if (!read_robot(r)) return false;
   for (std::size_t o = 0; o < objects_read_.size(); ++o)
     if (!read_object(o)) return false;
-  if (geometry_.fixed_objects.size() == objects_read_.size()) return true;
-  // All terms have been asked for.
-  const auto is_fixed = [&](const char* function, const std::string& name) {
-    return geometry_.fixed.contains(std::string(function) + "(" + name + ")") ? 1 : 0;
-  };
-  geometry_.fixed_robots.clear();
-  for (const world::RobotModel& robot : geometry_.world.robots)
-    geometry_.fixed_robots.push_back(is_fixed("conf", robot.name));
-  for (const world::Object& object : geometry_.world.objects)
-    geometry_.fixed_objects.push_back(is_fixed("pose", object.name));
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include <kaboum/world/checker.h>
 
 #include <map>
-#include <set>
+#include <span>
 #include <unordered_map>
 
 namespace kaboum::manipulation {
@@ -37,8 +37,8 @@ struct Geometry {
   const ExternalOptions options;
   const world::Checker checker;
   world::MotionOptions check = options.path.check;  ///< of all motions
-  std::set<std::string> fixed;                      ///< terms that the domain does not have
-  /// Whether they stay as they are in the scene. @pre a state has been read as a whole
+  /// Whether they stay as they are in the scene: the domain has no term for them. @pre a
+  /// GeometricState has been made
   [[nodiscard]] bool is_fixed_robot(std::size_t robot) const { return fixed_robots[robot] != 0; }
   [[nodiscard]] bool is_fixed_object(std::size_t object) const {
     return fixed_objects[object] != 0;
@@ -66,6 +66,8 @@ class GeometricState {
   bool read_robot(std::size_t robot);
   /// Reads where an object is, and what it is mounted on; of what holds it the configuration too.
   bool read_object(std::size_t object);
+  /// Reads these, and what never changes. @return false: something is not known.
+  bool read(std::span<const std::size_t> robots, std::span<const std::size_t> objects);
   bool read_all();
   /// A configuration that the call states: the state's is not read.
   void set_robot(std::size_t robot, std::vector<double> q) { state_.q[robot] = std::move(q); }
@@ -78,6 +80,7 @@ class GeometricState {
 
  private:
   bool read_place(std::size_t object, std::size_t depth);
+  void find_fixed();
 
   Geometry& geometry_;
   plan::StateView& view_;

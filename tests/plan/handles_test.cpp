@@ -1027,6 +1027,55 @@ TEST(Handles, OnlyWhatFailuresRestOnIsChosenAnew) {
   }
 }
 
+/// What else there is to do does not multiply what is tried: the search is given up where a call
+/// that every plan needs fails by a choice, and that choice is changed alone.
+TEST(Handles, AChoiceIsTakenBackHoweverMuchElseThereIsToDo) {
+  std::vector<int> calls;
+  for (const unsigned others : {0U, 3U, 6U}) {
+    std::string things;
+    std::string start = "K(way(o0) = start)";
+    for (unsigned i = 1; i <= others; ++i) {
+      things += ", o" + std::to_string(i);
+      start += ", K(way(o" + std::to_string(i) + ") = start)";
+    }
+    const std::string text =
+        "types: thing, place, way handle\nconstants: thing o0" + things +
+        "; place a, b, c; way start\npredicates: held(thing), empty, in(thing, place)\n"
+        "functions: way(thing) : way\n"
+        "externals: take(thing, way) : way; put(thing, way, place) : way\n"
+        "action take(?o : thing) preconds: K(empty) & let ?w = extern(take(?o, way(?o)))\n"
+        "effects: add(Kf, held(?o)), add(Kf, !empty), add(Kf, way(?o) = ?w)\n"
+        "action put(?o : thing, ?p : place)\n"
+        "preconds: K(held(?o)) & let ?w = extern(put(?o, way(?o), ?p))\n"
+        "effects: add(Kf, !held(?o)), add(Kf, empty), add(Kf, way(?o) = ?w), add(Kf, in(?o, ?p))\n"
+        "init: K(empty), " +
+        start + " goal: K(in(o0, a))";
+    int count = 0;
+    const auto take = [&](const Question& q) {
+      ++count;
+      Answer a = Answer::found(q.arguments[0] + " by " + std::to_string(q.choice) + " from " +
+                               q.arguments[1].substr(0, 40));
+      a.chosen = true;
+      a.choices = 8;
+      return a;
+    };
+    const auto put = [&](const Question& q) {
+      ++count;
+      if (q.arguments[0] == "o0" && q.arguments[1].find("by 5") == std::string::npos)
+        return Answer::impossible("it does not fit");
+      // The others may be put anywhere but to 'a', each time to a place of its own.
+      if (q.arguments[0] != "o0" && q.arguments[2] == "a") return Answer::impossible("too far");
+      return Answer::found(q.arguments[2] + ", " + q.arguments[1].substr(0, 60));
+    };
+    const Solution s = with(bound(text, {{"take", take}, {"put", put}}), Algorithm::Greedy);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    EXPECT_EQ(s.plan.choices, (Choices{{"take(o0, start)", 5}}));
+    calls.push_back(count);
+  }
+  EXPECT_LT(calls[1], 400);
+  EXPECT_LT(calls[2], 800);
+}
+
 /// Two choices that do only together: no change of one alone helps, nor of both alike.
 TEST(Handles, ChoicesThatDoOnlyTogetherAreFound) {
   const std::string text =
@@ -1061,15 +1110,14 @@ TEST(Handles, ChoicesThatDoOnlyTogetherAreFound) {
   }
   // None does: every pair was tried, and no more.
   joined = 0;
-  const Solution none = with(
-      bound(text, {{"takeLeft", take},
-                   {"takeRight", take},
-                   {"join",
-                    [&](const Question&) {
-                      ++joined;
-                      return Answer::impossible("they clash");
-                    }}}),
-      Algorithm::Greedy);
+  const Solution none = with(bound(text, {{"takeLeft", take},
+                                          {"takeRight", take},
+                                          {"join",
+                                           [&](const Question&) {
+                                             ++joined;
+                                             return Answer::impossible("they clash");
+                                           }}}),
+                             Algorithm::Greedy);
   EXPECT_EQ(none.outcome, Outcome::Limit);
   expect_says(none.limit, "nor with 24 sets of other choices (25 conflicts)");
   EXPECT_EQ(joined, 25);

@@ -88,6 +88,18 @@ class NamedState final : public StateView {
     return context_.state.truth(index, objects(symbol, arguments));
   }
 
+  bool has_term(const std::string& function, const std::vector<std::string>& arguments) override {
+    const auto symbol = names_.functions.find(function);
+    if (symbol == names_.functions.end() || symbol->second.first.numeric) return false;
+    const std::vector<Index>& types = symbol->second.first.parameters;
+    if (types.size() != arguments.size()) return false;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      const auto object = names_.object_of.find(arguments[i]);
+      if (object == names_.object_of.end() || !names_.is_a(object->second, types[i])) return false;
+    }
+    return true;
+  }
+
  private:
   static const std::pair<Symbol, Index>& find(const Names::Symbols& symbols,
                                               const std::string& name, const char* what) {
@@ -142,8 +154,8 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
             std::vector<std::string> texts;
             for (const Index a : arguments) texts.push_back(names->name(a, context.handles));
             NamedState state(*names, context);
-            Answer answer = function(
-                {texts, state, seed_of(g.name, texts, context), context.attempt, context.choice});
+            Answer answer = function({texts, state, seed_of(g.name, texts, context),
+                                      context.attempt, context.choice, context.early});
             ExternalResult result;
             result.kind = answer.kind;
             result.payload = std::move(answer.payload);

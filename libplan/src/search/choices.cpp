@@ -16,26 +16,31 @@ unsigned choice_of(const Choices& choices, const std::string& call) {
 void ChoiceSearch::add_failure(const Choices& choices, const ChoosingCalls& calls) {
   std::uint64_t blames = 0;
   for (const auto& [text, call] : calls) blames += call.blamed;
-  Choices conflict, changed = choices;
-  std::vector<Candidate> singles;
-  for (const auto& [text, call] : calls) {
-    if (blames > 0 && call.blamed == 0) continue;
-    conflict[text] = call.choice;
-    if (call.choice >= call.most) continue;
-    changed[text] = call.choice + 1;
-    singles.push_back({0, blames - call.blamed, 0, choices});
-    singles.back().choices[text] = call.choice + 1;
-  }
-  if (conflict.empty()) return;
-  const auto add = [&](Candidate candidate, Candidates& to) {
-    if (!seen_.insert(candidate.choices).second) return;
-    candidate.blamed_calls = conflict.size();
-    candidate.order = seen_.size();
-    to.insert(std::move(candidate));
+  const auto add = [&](bool needed, std::size_t count, std::uint64_t spared, Choices changed,
+                       Candidates& to) {
+    if (!seen_.insert(changed).second) return;
+    to.insert({!needed, count, spared, seen_.size(), std::move(changed)});
   };
-  add({0, 0, 0, std::move(changed)}, together_);
-  for (Candidate& single : singles) add(std::move(single), single_);
-  conflicts_.push_back(std::move(conflict));
+  const auto change = [&](bool needed) {
+    Choices conflict, changed = choices;
+    for (const auto& [text, call] : calls) {
+      if (needed ? !call.needed : blames > 0 && call.blamed == 0) continue;
+      conflict[text] = call.choice;
+      if (call.choice < call.most) changed[text] = call.choice + 1;
+    }
+    if (conflict.empty()) return conflict;
+    add(needed, conflict.size(), 0, changed, together_);
+    for (const auto& [text, choice] : conflict) {
+      if (changed[text] == choice) continue;
+      Choices single = choices;
+      single[text] = choice + 1;
+      add(needed, conflict.size(), blames - calls.at(text).blamed, std::move(single), single_);
+    }
+    return conflict;
+  };
+  change(true);
+  Choices conflict = change(false);
+  if (!conflict.empty()) conflicts_.push_back(std::move(conflict));
 }
 
 bool ChoiceSearch::holds_conflict(const Choices& choices) const {
@@ -45,19 +50,21 @@ bool ChoiceSearch::holds_conflict(const Choices& choices) const {
   });
 }
 
-std::optional<Choices> ChoiceSearch::take(Candidates& from) {
-  while (!from.empty()) {
-    Choices choices = std::move(from.extract(from.begin()).value().choices);
-    if (!holds_conflict(choices)) return choices;
-  }
-  return std::nullopt;
+void ChoiceSearch::drop_conflicts(Candidates& from) const {
+  while (!from.empty() && holds_conflict(from.begin()->choices)) from.erase(from.begin());
 }
 
 std::optional<Choices> ChoiceSearch::next() {
-  std::optional<Choices> out = take(one_by_one_ ? single_ : together_);
-  if (!out) out = take(one_by_one_ ? together_ : single_);
+  drop_conflicts(together_);
+  drop_conflicts(single_);
   one_by_one_ = !one_by_one_;
-  return out;
+  if (together_.empty() && single_.empty()) return std::nullopt;
+  const auto rank = [](const Candidates& c) {
+    return c.empty() ? 2 : c.begin()->not_needed ? 1 : 0;
+  };
+  const int together = rank(together_), single = rank(single_);
+  Candidates& from = single < together || (single == together && one_by_one_) ? single_ : together_;
+  return std::move(from.extract(from.begin()).value().choices);
 }
 
 }  // namespace kaboum::plan

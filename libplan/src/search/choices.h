@@ -16,6 +16,7 @@ struct ChoosingCall {
   unsigned choice = 0;       ///< that was made
   unsigned most = 0;         ///< among how many
   std::uint64_t blamed = 0;  ///< answers that were no new value of a handle, and rest on it
+  bool needed = false;       ///< a call that all plans need had no value for that
 };
 
 /// By the calls' texts, "fetch(robot1, o1, home)".
@@ -25,7 +26,8 @@ using ChoosingCalls = std::map<std::string, ChoosingCall>;
 ///
 /// A search that fails with some choices gives a conflict: what the calls that its failures rest on
 /// had chosen. No choices that hold a conflict are tried again. Those calls are changed next, all
-/// at once or one by one, in turns; calls that nothing failed by keep what they chose.
+/// at once or one by one, in turns; calls that nothing failed by keep what they chose. Where a call
+/// failed that all plans need, what that rests on is changed first.
 class ChoiceSearch {
  public:
   /// Where a search failed with `choices`. Without any call that is blamed all are.
@@ -38,9 +40,10 @@ class ChoiceSearch {
   [[nodiscard]] std::size_t conflicts() const { return conflicts_.size(); }
 
  private:
-  /// What may be tried. First those of searches by which few calls were blamed, then those that
-  /// change what was blamed most, then the oldest.
+  /// What may be tried. First what changes what is needed, then those of searches by which few
+  /// calls were blamed, then those that change what was blamed most, then the oldest.
   struct Candidate {
+    bool not_needed = false;
     std::size_t blamed_calls = 0;
     std::uint64_t spared = 0;  ///< blames of other calls
     std::size_t order = 0;
@@ -50,12 +53,12 @@ class ChoiceSearch {
   using Candidates = std::set<Candidate>;
 
   [[nodiscard]] bool holds_conflict(const Choices& choices) const;
-  std::optional<Choices> take(Candidates& from);
+  void drop_conflicts(Candidates& from) const;
 
   Candidates together_, single_;
   std::set<Choices> seen_ = {{}};
   std::vector<Choices> conflicts_;  ///< with the calls that chose what is nearest, as 0
-  bool one_by_one_ = false;         ///< whose turn it is
+  bool one_by_one_ = true;          ///< whose turn it was
 };
 
 }  // namespace kaboum::plan

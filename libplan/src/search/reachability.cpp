@@ -32,8 +32,9 @@ bool has_variables(const Query* q) {
 
 }  // namespace
 
-Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers)
-    : task_(task), limits_(limits), facts_(facts), answers_(answers) {
+Reachability::Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers,
+                           Index without)
+    : task_(task), limits_(limits), facts_(facts), answers_(answers), without_(without) {
   const Model& model = task.model();
   reached_.assign(facts.size(), 0);
   taken_.assign(task.layout().fluents().size(), 0);
@@ -412,7 +413,7 @@ bool Reachability::possible(Formula f, bool positive) const {
     case Kind::Derived:
       return true;
     case Kind::External:
-      return !positive || answers_ == Answers::Any || may_have_value(n.a);
+      return !positive || (n.a != without_ && (answers_ == Answers::Any || may_have_value(n.a)));
     case Kind::Not:
       return possible(*pool.begin(f), !positive);
     case Kind::And:

@@ -47,8 +47,10 @@ class Reachability {
   enum class Answers : std::uint8_t { Any, AsGiven, AsFound };
 
   /// But for Any, functions that refuse early are asked of the initial state.
+  /// @param without  a call that has no value.
   /// @pre the arguments outlive it. @throws LimitExceeded
-  Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers = Answers::Any);
+  Reachability(Task& task, Limits& limits, const FactTable& facts, Answers answers = Answers::Any,
+               Index without = kNone);
 
   [[nodiscard]] bool reached(FactId f) const { return reached_[f] != 0; }
   /// Whether the formula, or its negation, may hold.
@@ -91,6 +93,7 @@ class Reachability {
   Limits& limits_;
   const FactTable& facts_;
   Answers answers_;
+  Index without_;
   mutable std::set<Index> asked_;  ///< calls, of the initial state
   std::vector<char> reached_;
   std::vector<char> taken_;      ///< by fluent of an atom: that it is true is joined

@@ -37,6 +37,11 @@ ContingentPlanner::SearchFunction search_function(Algorithm a) {
   throw Error(ErrorCode::InvalidArgument, "unknown search algorithm");
 }
 
+/// Calls in vain after which it is looked whether other choices are to be tried, how many times as
+/// many there are before the next look, and failed calls that are looked at.
+constexpr std::uint64_t kPatience = 24, kMorePatience = 8;
+constexpr std::size_t kMostFailed = 64;
+
 /// Steps of a search after which it is first looked whether what was refused leaves a plan
 /// possible, and how many times as many there are before the next look.
 constexpr std::uint64_t kFirstLook = 2'000, kLaterLook = 8;
@@ -67,11 +72,33 @@ Refutation refutation(Task& task, Limits& limits) {
   return Refutation::NotFound;
 }
 
+/// Of the calls that had no value for what was chosen, those without which there is no plan: the
+/// delete relaxation does not reach the goal.
+std::vector<Index> needed_calls(Task& task, Limits& limits) {
+  std::vector<Index> failed = task.calls().failed_by_choice();
+  if (failed.size() > kMostFailed) failed.resize(kMostFailed);
+  if (failed.empty()) return failed;
+  const FactTable facts(task.model(), task.layout());
+  std::erase_if(failed, [&](Index call) {
+    return Reachability(task, limits, facts, Reachability::Answers::Any, call)
+        .possible(task.goal(), true);
+  });
+  return failed;
+}
+
+/// How a search has ended.
+struct SearchEnd {
+  Outcome outcome = Outcome::Limit;
+  bool proved = false;   ///< no choice and no further attempt can change that there is no plan
+  bool in_vain = false;  ///< it was given up, since a call that is needed fails by what was chosen
+};
+
 /// A search, stopped now and then to look whether it can succeed at all. What it asks external
 /// functions the second time is known by then.
-/// @param proved  no choice and no further attempt can change that there is no plan.
-Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& assumptions,
-                    Limits& limits, Solution& solution, bool& proved) {
+/// @param patience  calls in vain after which it is given up; 0: never
+SearchEnd run_planner(Task& task, const SolveOptions& options, const Assumptions& assumptions,
+                      std::uint64_t patience, Limits& limits, Solution& solution) {
+  bool proved = false;
   std::uint64_t steps = kFirstLook;
   const auto& functions = task.model().external_functions;
   const bool looks = std::ranges::any_of(functions, &ExternalFunction::reads_state);
@@ -83,56 +110,61 @@ Outcome run_planner(Task& task, const SolveOptions& options, const Assumptions& 
   if (std::ranges::any_of(functions, &ExternalFunction::refuses_early)) {
     // What was not found ends no first search: that may prove more without it.
     if (task.calls().attempts() > 1) {
-      if (is_hopeless()) return Outcome::Unsolvable;
+      if (is_hopeless()) return {Outcome::Unsolvable, proved};
     } else {
       const ExternalCalls::Supposing supposing(task.calls());
-      proved = is_refuted(task, limits, Reachability::Answers::AsGiven);
-      if (proved) return Outcome::Unsolvable;
+      if (is_refuted(task, limits, Reachability::Answers::AsGiven))
+        return {Outcome::Unsolvable, true};
     }
   }
   while (true) {
     if (looks) limits.pause_after(steps);
+    task.calls().pause_after(patience);
     ContingentPlanner planner(task, search_function(options.algorithm), assumptions, limits,
                               solution.statistics);
     const Outcome out = planner.run();
     const bool paused = out == Outcome::Limit && limits.paused();
+    const bool in_vain = paused && task.calls().is_in_vain();
     limits.never_pause();
+    task.calls().pause_after(0);
     if (out == Outcome::Solved) solution.plan = planner.plan();
-    if (!paused) return out;
+    if (!paused) return {out};
+    if (in_vain) {
+      if (!needed_calls(task, limits).empty()) return {Outcome::Limit, false, true};
+      patience *= kMorePatience;
+      continue;
+    }
     const bool failed = !task.calls().refused().empty() || !task.calls().missed().empty();
-    if (failed && is_hopeless()) return Outcome::Unsolvable;
+    if (failed && is_hopeless()) return {Outcome::Unsolvable, proved};
     steps *= kLaterLook;
   }
 }
 
-/// Whether a search that has failed may succeed with more attempts, or with other choices.
+/// Whether a search that has failed may succeed with more attempts, with other choices, or with
+/// more patience.
 struct Remedies {
-  bool attempts = false, choices = false;
+  bool attempts = false, choices = false, patience = false;
 };
 
 /// A task that is searched with some choices of external functions.
 class ChosenSearch {
  public:
   ChosenSearch(const Model& model, const SolveOptions& options, Choices choices, Limits& limits)
-      : options_(options), choices_(std::move(choices)), limits_(limits), task_(model, limits),
+      : options_(options),
+        choices_(std::move(choices)),
+        limits_(limits),
+        task_(model, limits),
         assumptions_(task_, options.assumed) {
     task_.calls().seed(options.seed, choices_);
   }
 
-  /// Searches; the first time with `attempts`, then with one more than before.
-  Remedies run(unsigned attempts, Solution& solution) {
-    ExternalCalls& calls = task_.calls();
-    if (searched_) calls.try_again();
-    searched_ = true;
+  /// Searches anew, with so many attempts of each call. @param patience  as of run_planner.
+  Remedies run(unsigned attempts, std::uint64_t patience, Solution& solution) {
+    while (task_.calls().attempts() < attempts) task_.calls().try_again();
     try {
-      while (true) {
-        const Remedies out = run_once(solution);
-        if (!out.attempts || calls.attempts() >= attempts) {
-          count(solution.statistics);
-          return out;
-        }
-        calls.try_again();
-      }
+      const Remedies out = run_once(patience, solution);
+      count(solution.statistics);
+      return out;
     } catch (const LimitExceeded&) {
       count(solution.statistics);
       throw;
@@ -140,15 +172,23 @@ class ChosenSearch {
   }
 
   [[nodiscard]] const Choices& choices() const { return choices_; }
-  [[nodiscard]] ChoosingCalls choosing_calls() { return task_.calls().choosing_calls(); }
+  [[nodiscard]] ChoosingCalls choosing_calls() {
+    return task_.calls().choosing_calls(needed_calls(task_, limits_));
+  }
 
  private:
-  Remedies run_once(Solution& solution) {
+  Remedies run_once(std::uint64_t patience, Solution& solution) {
     ExternalCalls& calls = task_.calls();
-    bool proved = false;
     solution.limit.clear();
     solution.refused.clear();
-    solution.outcome = run_planner(task_, options_, assumptions_, limits_, solution, proved);
+    const SearchEnd end = run_planner(task_, options_, assumptions_, patience, limits_, solution);
+    solution.outcome = end.outcome;
+    const bool proved = end.proved;
+    if (end.in_vain) {
+      solution.limit =
+          "it was given up; " + (calls.missed().empty() ? calls.refused() : calls.missed());
+      return {!calls.missed().empty(), true, true};
+    }
     if (solution.outcome == Outcome::Solved) {
       const auto& functions = task_.model().external_functions;
       if (std::ranges::any_of(functions, &ExternalFunction::takes_seed)) {
@@ -202,7 +242,6 @@ class ChosenSearch {
   Limits& limits_;
   Task task_;
   Assumptions assumptions_;
-  bool searched_ = false;
   std::uint64_t counted_calls_ = 0;
   double counted_seconds_ = 0;
 };
@@ -248,39 +287,50 @@ constexpr int kChoicesPerAttempt = 2;
 void search_knowledge(const Model& model, const SolveOptions& options, const std::string& lost,
                       Limits& limits, Solution& solution) {
   ChosenSearch first(model, options, {}, limits);
-  ChoiceSearch choices;
   unsigned attempts = 1, others = 0;
-  Remedies remedies = first.run(attempts, solution);
-  if (remedies.choices) choices.add_failure({}, first.choosing_calls());
-  bool more = remedies.attempts || remedies.choices;
-  while (more) {
-    more = false;
-    for (int i = 0; i < kChoicesPerAttempt && remedies.choices && others < options.choices; ++i) {
-      std::optional<Choices> next = choices.next();
-      if (!next) break;
-      more = true;
-      ++others;
-      Solution other;
-      other.statistics = solution.statistics;
-      ChosenSearch search(model, options, std::move(*next), limits);
-      const Remedies failed = search.run(attempts, other);
-      solution.statistics = other.statistics;
-      if (other.outcome == Outcome::Solved) {
-        solution = std::move(other);
-        return;
-      }
+  std::size_t conflicts = 0;
+  bool again = true;
+  for (std::uint64_t patience = kPatience; again; patience *= kMorePatience) {
+    // What was given up is no conflict of those with more patience.
+    again = false;
+    ChoiceSearch choices;
+    const auto note = [&](ChosenSearch& search, const Remedies& failed) {
       if (failed.choices) choices.add_failure(search.choices(), search.choosing_calls());
+      again |= failed.patience;
+    };
+    if (others >= options.choices) patience = 0;
+    Remedies remedies = first.run(attempts, patience, solution);
+    note(first, remedies);
+    for (bool more = true; more && (remedies.attempts || remedies.choices);) {
+      more = false;
+      for (int i = 0; i < kChoicesPerAttempt && others < options.choices; ++i) {
+        std::optional<Choices> next = choices.next();
+        if (!next) break;
+        more = true;
+        ++others;
+        Solution other;
+        other.statistics = solution.statistics;
+        ChosenSearch search(model, options, std::move(*next), limits);
+        const Remedies failed = search.run(attempts, patience, other);
+        solution.statistics = other.statistics;
+        if (other.outcome == Outcome::Solved) {
+          solution = std::move(other);
+          return;
+        }
+        note(search, failed);
+      }
+      if (remedies.attempts && attempts < options.attempts) {
+        more = true;
+        remedies = first.run(++attempts, patience, solution);
+        note(first, remedies);
+      }
     }
-    if (remedies.attempts && attempts < options.attempts) {
-      more = true;
-      remedies = first.run(++attempts, solution);
-      if (remedies.choices) choices.add_failure({}, first.choosing_calls());
-    }
+    conflicts += choices.conflicts();
+    if (!remedies.attempts && !remedies.choices) break;
   }
   if (solution.outcome == Outcome::Limit && others > 0)
-    solution.limit += "; nor with " + std::to_string(others) +
-                      (others == 1 ? " set" : " sets") + " of other choices (" +
-                      std::to_string(choices.conflicts()) + " conflicts)";
+    solution.limit += "; nor with " + std::to_string(others) + (others == 1 ? " set" : " sets") +
+                      " of other choices (" + std::to_string(conflicts) + " conflicts)";
   if (solution.outcome != Outcome::Unsolvable || lost.empty()) return;
   solution.lost = lost;
   solution.outcome = Outcome::NotInferred;
@@ -328,7 +378,8 @@ Solution solve(const Model& model, const SolveOptions& options) {
     solution.outcome = Outcome::Limit;
     const std::string before = std::move(solution.limit);
     solution.limit = limits.reason();
-    if (!before.empty()) solution.limit += (solution.limit.empty() ? "" : "; until then, ") + before;
+    if (!before.empty())
+      solution.limit += (solution.limit.empty() ? "" : "; until then, ") + before;
   }
   if (solution.outcome == Outcome::Limit && solution.limit.empty())
     solution.limit =

@@ -164,7 +164,7 @@ ExternalResult ExternalCalls::run(const Call& c, const std::vector<Index>& objec
   ++made_;
   const auto start = std::chrono::steady_clock::now();
   const unsigned choice = choices_.empty() ? 0 : choice_of(text(c, objects));
-  ExternalContext context{reader, handles_, seed_, attempt, choice};
+  ExternalContext context{reader, handles_, seed_, attempt, choice, early_};
   ExternalResult result = model_.external_functions[c.external].call(objects, context);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
@@ -208,7 +208,7 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     if (limits_.check(0)) throw LimitExceeded();
     if (result.kind != Answer::Kind::NotFound) break;
   }
-  note(c, objects, path, result, handles_.size() > known);
+  note(call, objects, path, result, handles_.size() > known);
   leaf.kind = result.kind;
   leaf.value = result.value;
   leaf.text = answers_.text(result.kind == Answer::Kind::Value ? std::move(result.payload)
@@ -231,35 +231,58 @@ unsigned ExternalCalls::choice_of(const std::string& call) const {
   return found == choices_.end() ? 0 : found->second;
 }
 
-void ExternalCalls::blame(const Call& c, const std::vector<Index>& objects,
+void ExternalCalls::blame(Index call, const std::vector<Index>& objects,
                           const std::vector<Index>& read, const ExternalResult& result,
                           bool handle) {
   std::set<Index> sources;
   for (const Index object : read)
     if (const auto found = rests_on_.find(object); found != rests_on_.end())
       sources.insert(found->second.begin(), found->second.end());
+  Call& made = calls_[call];
   if (result.choices > 0) {
-    const std::string call = text(c, objects);
-    const auto [own, fresh] =
-        choosing_index_.emplace(call, static_cast<Index>(choosing_.size()));
-    if (fresh) choosing_.emplace_back(call, ChoosingCall{choice_of(call), 0, 0});
+    const std::string name = text(made, objects);
+    const auto [own, fresh] = choosing_index_.emplace(name, static_cast<Index>(choosing_.size()));
+    if (fresh) choosing_.emplace_back(name, ChoosingCall{choice_of(name)});
     ChoosingCall& chooses = choosing_[own->second].second;
     chooses.most = std::max(chooses.most, result.choices);
     sources.insert(own->second);
   }
-  if (handle) {
-    if (!sources.empty()) rests_on_[result.value].merge(sources);
-    return;
+  const bool value = result.kind == Answer::Kind::Value;
+  const bool failed_before = !made.had_value && !made.failed_by.empty();
+  in_vain_ = value && !made.had_value ? 0 : in_vain_ + 1;
+  made.had_value |= value;
+  if (!handle) {
+    for (const Index source : sources) ++choosing_[source].second.blamed;
+    if (!value) made.failed_by.insert(sources.begin(), sources.end());
+  } else if (!sources.empty()) {
+    rests_on_[result.value].merge(sources);
   }
-  for (const Index source : sources) ++choosing_[source].second.blamed;
+  const bool fails = !made.had_value && !made.failed_by.empty();
+  failed_ += (fails ? 1U : 0U) - (failed_before ? 1U : 0U);
+  if (is_in_vain()) limits_.pause_after(0);
 }
 
-ChoosingCalls ExternalCalls::choosing_calls() const {
-  return {choosing_.begin(), choosing_.end()};
+bool ExternalCalls::is_in_vain() const {
+  return pause_after_ > 0 && failed_ > 0 && in_vain_ >= pause_after_;
 }
 
-void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
+std::vector<Index> ExternalCalls::failed_by_choice() const {
+  std::vector<Index> out;
+  for (Index call = 0; call < calls_.size(); ++call)
+    if (!calls_[call].had_value && !calls_[call].failed_by.empty()) out.push_back(call);
+  return out;
+}
+
+ChoosingCalls ExternalCalls::choosing_calls(const std::vector<Index>& needed) const {
+  ChoosingCalls out(choosing_.begin(), choosing_.end());
+  for (const Index call : needed)
+    for (const Index source : calls_[call].failed_by) out[choosing_[source].first].needed = true;
+  return out;
+}
+
+void ExternalCalls::note(Index call, const std::vector<Index>& objects, const Footprint& path,
                          const ExternalResult& result, bool fresh) {
+  const Call c = calls_[call];
   std::vector<Index> read = objects;
   for (const auto& [item, content] : path) {
     if (is_call(item))
@@ -271,7 +294,7 @@ void ExternalCalls::note(const Call& c, const std::vector<Index>& objects, const
   const bool handle =
       result.kind == Answer::Kind::Value && range != kNone && model_.types[range].handle;
   if (handle && result.fixed) read = objects;
-  blame(c, objects, read, result, handle);
+  blame(call, objects, read, result, handle);
   if (result.kind == Answer::Kind::NotFound) return;
   if (result.kind == Answer::Kind::Impossible && !result.reason.empty() && refusals_++ == 0)
     refused_ = text(c, objects) + ": " + result.reason;

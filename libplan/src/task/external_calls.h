@@ -109,8 +109,16 @@ class ExternalCalls {
     seed_ = seed;
     choices_ = std::move(choices);
   }
+  /// From now on searches pause (`Limits::paused`) where so many calls one after the other had no
+  /// value, or had one before, while some that never had one rest on choices. 0: never.
+  void pause_after(std::uint64_t calls_in_vain) { pause_after_ = calls_in_vain; }
+  /// Whether it is so now.
+  [[nodiscard]] bool is_in_vain() const;
+  /// Calls that had no value so far, by failures that rest on choices.
+  [[nodiscard]] std::vector<Index> failed_by_choice() const;
   /// Calls that chose among several things, and how much failed that rests on it.
-  [[nodiscard]] ChoosingCalls choosing_calls() const;
+  /// @param needed  failed calls without a value of which there is no plan.
+  [[nodiscard]] ChoosingCalls choosing_calls(const std::vector<Index>& needed) const;
 
  private:
   struct Call {
@@ -119,6 +127,8 @@ class ExternalCalls {
     AnswerTree::Root answers;
     bool depends = false;
     bool never_known = false;
+    bool had_value = false;
+    std::set<Index> failed_by;  ///< choosing calls that its failures rest on
   };
   /// An answer that `confirm` can ask for again.
   struct Sample {
@@ -140,10 +150,10 @@ class ExternalCalls {
              const AnswerTree::Leaf& leaf);
   [[nodiscard]] unsigned choice_of(const std::string& call) const;
   /// Notes which calls choose, and which of their values an answer rests on.
-  void blame(const Call& c, const std::vector<Index>& objects, const std::vector<Index>& read,
+  void blame(Index call, const std::vector<Index>& objects, const std::vector<Index>& read,
              const ExternalResult& result, bool handle);
   /// Notes what rests on what was chosen.
-  void note(const Call& c, const std::vector<Index>& objects, const Footprint& path,
+  void note(Index call, const std::vector<Index>& objects, const Footprint& path,
             const ExternalResult& result, bool fresh);
   [[nodiscard]] Reply reply(Index leaf) const;
   static Reply open(Index fluent) { return {Reply::Kind::Open, 0, fluent}; }
@@ -164,8 +174,10 @@ class ExternalCalls {
   std::vector<std::pair<std::string, ChoosingCall>> choosing_;
   std::map<std::string, Index> choosing_index_;
   std::map<Index, std::set<Index>> rests_on_;  ///< handles, and calls that chose them
-  bool early_ = false;    ///< functions are stopped where they read what no argument names
-  Index missed_ = kNone;  ///< a leaf
+  std::uint64_t pause_after_ = 0, in_vain_ = 0;
+  std::size_t failed_ = 0;  ///< calls that had no value so far, by choices
+  bool early_ = false;      ///< functions are stopped where they read what no argument names
+  Index missed_ = kNone;    ///< a leaf
   std::string missed_call_;
   std::map<Index, std::string> chosen_;  ///< handles that rest on a choice, and whose value it was
   std::set<Index> final_;                ///< handles that final answers rest on

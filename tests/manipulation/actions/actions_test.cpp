@@ -240,6 +240,36 @@ TEST_F(Actions, AnswersSayAmongHowManyGraspsTheyChose) {
   EXPECT_NE(put.reason.find("block, held by its grasp 'top',"), std::string::npos) << put.reason;
 }
 
+/// What fails among the things that a call names fails whatever else there is: nothing else is
+/// read. What succeeds among them has looked at everything.
+TEST_F(Actions, WhatFailsAmongWhatItNamesReadsNothingElse) {
+  Words words = holding(0, 0, arms_.world.robots[0].home);
+  const std::vector<std::string> arguments = {"left", "block", "socket", "home"};
+  const auto read_by = [&](unsigned attempt, bool early, Answer::Kind kind) {
+    WordState state(words);
+    const Answer answer = all_.at("put")({arguments, state, 7, attempt, 0, early});
+    EXPECT_EQ(answer.kind, kind) << answer.reason;
+    std::vector<std::string> read = state.read();
+    std::ranges::sort(read);
+    read.erase(std::ranges::unique(read).begin(), read.end());
+    return read;
+  };
+  const std::vector<std::string> named = {"conf(left)", "pose(block)", "pose(socket)"},
+                                 all = {"conf(left)", "conf(right)", "pose(block)", "pose(socket)",
+                                        "pose(wall)"};
+  EXPECT_EQ(read_by(0, false, Answer::Kind::Value), all);
+  words["pose(socket)"] = "at 5 0 0.2 0 0 0 1";
+  EXPECT_EQ(read_by(0, false, Answer::Kind::NotFound), named);
+  EXPECT_EQ(read_by(1, false, Answer::Kind::NotFound), named);
+  // Before the search it reads on before it looks for paths.
+  EXPECT_EQ(read_by(0, true, Answer::Kind::NotFound), all);
+  // So it is, whatever the others are: in the way, or held by somebody.
+  for (const char* wall : {"start", "away", "at 0.527 0.05 -0.06 0 0 0 1"}) {
+    words["pose(wall)"] = wall;
+    EXPECT_EQ(read_by(0, false, Answer::Kind::NotFound), named);
+  }
+}
+
 TEST_F(Actions, LiftIsStraightUp) {
   const Words words = holding(0, 0, kDown);
   const Transform before = block();

@@ -150,6 +150,10 @@ std::optional<std::string> WordState::value(const std::string& function,
   return found->second;
 }
 
+bool WordState::has_term(const std::string& function, const std::vector<std::string>& arguments) {
+  return words_.contains(function + "(" + arguments.at(0) + ")");
+}
+
 std::optional<bool> WordState::truth(const std::string& predicate,
                                      const std::vector<std::string>& /*arguments*/) {
   throw Error(ErrorCode::InvalidInput, "no predicate " + predicate);

@@ -45,6 +45,7 @@ class WordState final : public plan::StateView {
                                    const std::vector<std::string>& arguments) override;
   std::optional<bool> truth(const std::string& predicate,
                             const std::vector<std::string>& arguments) override;
+  bool has_term(const std::string& function, const std::vector<std::string>& arguments) override;
   [[nodiscard]] const std::vector<std::string>& read() const { return read_; }
 
  private:

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/base/error.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -26,6 +28,17 @@ class StateView {
   /// @throws Error{InvalidInput} if the model has no such atom.
   virtual std::optional<bool> truth(const std::string& predicate,
                                     const std::vector<std::string>& arguments) = 0;
+  /// Whether the model has such a function term. It is the same in all states, so it is not noted;
+  /// a view that cannot tell reads the term.
+  virtual bool has_term(const std::string& function, const std::vector<std::string>& arguments) {
+    try {
+      value(function, arguments);
+      return true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::InvalidInput) throw;
+      return false;
+    }
+  }
 };
 
 /// One call of an external function.
@@ -37,6 +50,9 @@ struct Question {
   unsigned attempt = 0;    ///< 0, 1, ...: how often it was asked before; more samples are worth it
   /// 0, 1, ...: of several things that might do, to prefer another one each time.
   unsigned choice = 0;
+  /// It is asked before the search: what takes long is to be left until all has been read that it
+  /// may hang on (ExternalBinding::refuses_early).
+  bool early = false;
 };
 
 struct Answer {

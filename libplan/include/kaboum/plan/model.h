@@ -168,6 +168,7 @@ struct ExternalContext {
   std::uint64_t seed = 0;  ///< of the run
   unsigned attempt = 0;
   unsigned choice = 0;
+  bool early = false;  ///< Question::early
 };
 
 struct ExternalResult {
