@@ -20,6 +20,9 @@ std::string excerpt(const std::string& line) {
   return "'" + line.substr(0, kQuoted) + (line.size() > kQuoted ? "...'" : "'");
 }
 
+/// Things among which a call may choose.
+constexpr std::uint64_t kMostChoices = 1'000'000;
+
 std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -34,6 +37,10 @@ class NoState final : public plan::StateView {
   std::optional<bool> truth(const std::string& predicate,
                             const std::vector<std::string>& /*arguments*/) override {
     refuse(predicate);
+  }
+  bool has_term(const std::string& function,
+                const std::vector<std::string>& /*arguments*/) override {
+    refuse(function);
   }
 
  private:
@@ -77,7 +84,7 @@ plan::ExternalBindings AskedProcess::bindings(const std::shared_ptr<AskedProcess
   for (const auto& [name, reads_state] : process->functions()) {
     const auto answer = [process, name = name, reads = reads_state](const Question& q) {
       NoState none;
-      return process->ask(name, {q.arguments, reads ? q.state : none, q.seed, q.attempt});
+      return process->ask(name, {q.arguments, reads ? q.state : none, q.seed, q.attempt, q.choice});
     };
     out[name] = plan::ExternalBinding(answer, reads_state);
   }
@@ -91,13 +98,14 @@ Answer AskedProcess::ask(const std::string& function, const Question& question) 
         {"arguments",
          json(std::vector<std::string>(question.arguments.begin(), question.arguments.end()))},
         {"seed", question.seed},
-        {"attempt", question.attempt}},
+        {"attempt", question.attempt},
+        {"choice", question.choice}},
        seconds);
   for (;;) {
     std::string line;
     const json said = receive(line, seconds);
     if (!said.is_object()) fail("it answered " + excerpt(line) + ", which is no JSON object");
-    if (said.contains("read") || said.contains("truth"))
+    if (said.contains("read") || said.contains("truth") || said.contains("term"))
       send(read(said, question.state, line), seconds);
     else
       return answer(said, line);
@@ -142,8 +150,8 @@ void AskedProcess::send(const json& message, double& seconds) {
 
 /// What it asks of the state.
 json AskedProcess::read(const json& said, plan::StateView& state, const std::string& line) {
-  const bool truth = said.contains("truth");
-  const json& name = said[truth ? "truth" : "read"];
+  const char* kind = said.contains("truth") ? "truth" : said.contains("term") ? "term" : "read";
+  const json& name = said[kind];
   const json list = said.value("arguments", json::array());
   std::vector<std::string> arguments;
   if (list.is_array())
@@ -152,7 +160,9 @@ json AskedProcess::read(const json& said, plan::StateView& state, const std::str
   if (!name.is_string() || !list.is_array() || arguments.size() != list.size())
     fail("it asks what cannot be understood: " + excerpt(line));
   try {
-    if (truth) {
+    if (said.contains("term"))
+      return {{"truth", state.has_term(name.get<std::string>(), arguments)}};
+    if (said.contains("truth")) {
       const auto known = state.truth(name.get<std::string>(), arguments);
       return {{"truth", known ? json(*known) : json()}};
     }
@@ -180,17 +190,36 @@ Answer AskedProcess::answer(const json& said, const std::string& line) {
   if (kinds != 1)
     fail(R"(an answer has one of "value", "holds", "not_found" and "impossible", not )" +
          excerpt(line));
-  if (said.contains("not_found")) return Answer::not_found(text("not_found"));
-  if (said.contains("impossible")) return Answer::impossible(text("impossible"));
-  if (said.contains("holds")) {
-    if (!said["holds"].is_boolean()) fail("'holds' is true or false, not " + excerpt(line));
-    return Answer::holds(said["holds"].get<bool>(), said.contains("reason") ? text("reason") : "");
+  const auto flag = [&](const char* member) {
+    if (!said.contains(member)) return false;
+    if (!said[member].is_boolean())
+      fail("'" + std::string(member) + "' is true or false, not " + excerpt(line));
+    return said[member].get<bool>();
+  };
+  Answer out;
+  if (said.contains("not_found")) {
+    out = Answer::not_found(text("not_found"));
+  } else if (said.contains("impossible")) {
+    out = Answer::impossible(text("impossible"));
+  } else if (said.contains("holds")) {
+    out = Answer::holds(flag("holds"), said.contains("reason") ? text("reason") : "");
+  } else {
+    out = Answer::found(text("value"));
+    if (said.contains("payload"))
+      out.payload =
+          said["payload"].is_string() ? said["payload"].get<std::string>() : dump(said["payload"]);
   }
-  std::string payload;
-  if (said.contains("payload"))
-    payload =
-        said["payload"].is_string() ? said["payload"].get<std::string>() : dump(said["payload"]);
-  return Answer::found(text("value"), std::move(payload));
+  out.chosen = flag("chosen");
+  out.listed = flag("listed");
+  out.fixed = flag("fixed");
+  if (said.contains("choices")) {
+    if (!said["choices"].is_number_unsigned() ||
+        said["choices"].get<std::uint64_t>() > kMostChoices)
+      fail("'choices' is a whole number of at most " + std::to_string(kMostChoices) + ", not " +
+           excerpt(line));
+    out.choices = said["choices"].get<unsigned>();
+  }
+  return out;
 }
 
 }  // namespace kaboum::external

@@ -59,6 +59,9 @@ class DistantState final : public plan::StateView {
     const json said = ask({{"truth", predicate}, {"arguments", arguments}}).at("truth");
     return said.is_null() ? std::nullopt : std::optional(said.get<bool>());
   }
+  bool has_term(const std::string& function, const std::vector<std::string>& arguments) override {
+    return ask({{"term", function}, {"arguments", arguments}}).at("truth").get<bool>();
+  }
   [[nodiscard]] bool over() const { return over_; }
 
  private:
@@ -73,7 +76,7 @@ class DistantState final : public plan::StateView {
   bool over_ = false;
 };
 
-json message_of(const Answer& answer) {
+json message_of_kind(const Answer& answer) {
   switch (answer.kind) {
     case Answer::Kind::NotFound:
       return {{"not_found", answer.reason}};
@@ -90,6 +93,15 @@ json message_of(const Answer& answer) {
   return out;
 }
 
+json message_of(const Answer& answer) {
+  json out = message_of_kind(answer);
+  for (const auto& [name, set] :
+       {std::pair("chosen", answer.chosen), {"listed", answer.listed}, {"fixed", answer.fixed}})
+    if (set) out[name] = true;
+  if (answer.choices > 0) out["choices"] = answer.choices;
+  return out;
+}
+
 /// @return false: nobody asks any more.
 bool answer(const plan::ExternalBindings& bindings, LineSocket& lines) {
   json asked;
@@ -101,7 +113,8 @@ bool answer(const plan::ExternalBindings& bindings, LineSocket& lines) {
   json said;
   try {
     said = message_of(function->second({arguments, state, asked.at("seed").get<std::uint64_t>(),
-                                        asked.at("attempt").get<unsigned>()}));
+                                        asked.at("attempt").get<unsigned>(),
+                                        asked.at("choice").get<unsigned>()}));
   } catch (const CallOver&) {
     return true;
   } catch (const std::exception& error) {

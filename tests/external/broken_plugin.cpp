@@ -22,6 +22,16 @@ extern "C" void kaboum_externals_1(kaboum::plan::ExternalBindings& bindings) {
     return Answer::found("after " + read_at(q), "path\n\"of\" it");
   };
   bindings["ofNames"] = [](std::span<const std::string> a) { return "named " + a[0]; };
+  bindings["choose"] = [](const Question& q) {
+    if (!q.state.has_term("at", {}) || q.state.has_term("colour", {})) return Answer{};
+    Answer a = Answer::found("way" + std::to_string(q.choice));
+    a.chosen = true;
+    a.choices = 3;
+    return a;
+  };
+  bindings["fits"] = [](const Question& q) {
+    return q.arguments[0] == "way2" ? Answer::found("end") : Answer::impossible("too wide");
+  };
   bindings["none"] = [](const Question& q) {
     return read_at(q) == "start" ? Answer::impossible("blocked by o3") : Answer::not_found("?");
   };

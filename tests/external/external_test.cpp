@@ -66,6 +66,31 @@ TEST(Plugin, AnswersAsIfItWereInTheProcess) {
   EXPECT_EQ(solve(model(all, "none"), {}).outcome, plan::Outcome::Unsolvable);
 }
 
+/// What was chosen comes across: it is chosen anew, and no proof rests on it.
+TEST(Plugin, ChoosesAmongSeveralThings) {
+  const auto ending_with = [&](const std::string& last) {
+    return plan::load({"t.kpl",
+                       "types: conf handle\nconstants: conf start\nfunctions: at : conf\n"
+                       "predicates: chosen, done\nexternals: choose(conf) : conf; " +
+                           last +
+                           "(conf) : conf\n"
+                           "action go preconds: K(!chosen) & let ?y = extern(choose(at))\n"
+                           "effects: add(Kf, at = ?y), add(Kf, chosen)\n"
+                           "action end preconds: K(chosen) & let ?y = extern(" +
+                           last +
+                           "(at)) effects: add(Kf, done)\n"
+                           "init: K(at = start), K(!chosen), K(!done)\ngoal: K(done)",
+                       plan::Language::Kpl},
+                      nullptr, plugin());
+  };
+  const plan::Model m = ending_with("fits");
+  const plan::Solution s = solve(m, {});
+  ASSERT_EQ(s.outcome, plan::Outcome::Solved) << s.limit;
+  EXPECT_EQ(s.plan.choices, (plan::Choices{{"choose(start)", 2}}));
+  EXPECT_TRUE(check(m, s.plan).valid);
+  EXPECT_EQ(solve(ending_with("none"), {}).outcome, plan::Outcome::Limit);
+}
+
 TEST(Plugin, WhatIsBrokenIsNamedWithTheState) {
   struct Case {
     const char *function, *says;

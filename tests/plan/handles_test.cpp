@@ -639,6 +639,9 @@ class RandomTask {
     std::optional<bool> truth(const std::string& p, const std::vector<std::string>&) override {
       return p == "p" ? s_.p : p == "q" ? s_.q : s_.r;
     }
+    bool has_term(const std::string& f, const std::vector<std::string>&) override {
+      return f == "s" || f == "t";
+    }
 
    private:
     State s_;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <kaboum/base/error.h>
-
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -28,17 +26,8 @@ class StateView {
   /// @throws Error{InvalidInput} if the model has no such atom.
   virtual std::optional<bool> truth(const std::string& predicate,
                                     const std::vector<std::string>& arguments) = 0;
-  /// Whether the model has such a function term. It is the same in all states, so it is not noted;
-  /// a view that cannot tell reads the term.
-  virtual bool has_term(const std::string& function, const std::vector<std::string>& arguments) {
-    try {
-      value(function, arguments);
-      return true;
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::InvalidInput) throw;
-      return false;
-    }
-  }
+  /// Whether the model has such a function term. It is the same in all states, and not noted.
+  virtual bool has_term(const std::string& function, const std::vector<std::string>& arguments) = 0;
 };
 
 /// One call of an external function.
