@@ -55,6 +55,10 @@ struct NoState final : plan::StateView {
                             const std::vector<std::string>& /*arguments*/) override {
     return std::nullopt;
   }
+  bool has_term(const std::string& /*function*/,
+                const std::vector<std::string>& /*arguments*/) override {
+    return false;
+  }
 };
 
 void look_at_answers(const std::string& text) {

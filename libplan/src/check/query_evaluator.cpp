@@ -7,7 +7,6 @@
 #include <exception>
 
 #include "check/derived_facts.h"
-#include "task/call_text.h"
 
 namespace kaboum::plan {
 
@@ -372,14 +371,20 @@ ExternalResult QueryEvaluator::call(const Query& q, const std::vector<Index>& sl
   return it->second;
 }
 
+/// By the call's text, "fetch(robot1, o1, home)".
+unsigned QueryEvaluator::choice_of(Index external, const std::vector<Index>& arguments) const {
+  std::string text = model_.externals[external].name;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    text += (i == 0 ? "(" : ", ") + model_.name_of(arguments[i], handles_);
+  if (!arguments.empty()) text += ")";
+  const auto found = choices_.find(text);
+  return found == choices_.end() ? 0 : found->second;
+}
+
 ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arguments,
                                    const RuntimeKnowledge& k) const {
   ExternalResult result;
-  unsigned choice = 0;
-  if (!choices_.empty()) {
-    const auto chosen = choices_.find(call_text(model_, handles_, external, arguments));
-    if (chosen != choices_.end()) choice = chosen->second;
-  }
+  const unsigned choice = choices_.empty() ? 0 : choice_of(external, arguments);
   for (unsigned attempt = 0; attempt < attempts_; ++attempt) {
     KnowledgeReader reader(k, noted_);
     ExternalContext context{reader, handles_, seed_, attempt, choice};

@@ -87,6 +87,7 @@ class QueryEvaluator {
   std::optional<bool> with_derived(const RuntimeKnowledge& k, Evaluate&& evaluate) const;
   ExternalResult call(const Query& q, const std::vector<Index>& slots, const RuntimeKnowledge& k,
                       std::vector<Index>* arguments = nullptr) const;
+  [[nodiscard]] unsigned choice_of(Index external, const std::vector<Index>& arguments) const;
   ExternalResult ask(Index external, const std::vector<Index>& arguments,
                      const RuntimeKnowledge& k) const;
 
