@@ -7,6 +7,10 @@
 #include <kaboum/external/process.h>
 #include <kaboum/io/mesh_io.h>
 
+#include <filesystem>
+
+#include "manipulation_task.h"
+
 namespace kaboum::execution {
 namespace {
 
@@ -51,7 +55,46 @@ struct PlanningTask::Data {
   }
 };
 
+namespace {
+
+/// Whether the file has a task of usual actions, by its name.
+bool is_manipulation_task(const std::string& file) { return file.ends_with(".task"); }
+
+/// The texts of a task of usual actions, and the scene that they are of.
+struct ReadTask {
+  plan::TaskTexts texts;
+  std::optional<world::SceneFile> scene;
+};
+
+ReadTask read_manipulation_task(const TaskFiles& files) {
+  if (!files.problem.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                files.domain + ": a task of usual actions needs no problem beside it");
+  const std::vector<char> bytes = io::read_file(files.domain);
+  const ManipulationTask task({bytes.begin(), bytes.end()}, files.domain);
+  std::string scene = files.scene;
+  if (scene.empty() && !task.scene().empty())
+    scene = (std::filesystem::path(files.domain).parent_path() / task.scene()).string();
+  if (scene.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                files.domain +
+                    ": a task of usual actions needs a scene: «scene», or a line "
+                    "'scene FILE' in it");
+  ReadTask out;
+  out.scene = world::read_scene(scene);
+  task.add_mates(out.scene->world);
+  using plan::Language;
+  plan::Text problem{files.domain + ", as a problem", task.problem(out.scene->world),
+                     Language::Kpl};
+  out.texts.domain = {"manipulation.kpl", kManipulationDomain, Language::Kpl};
+  out.texts.problem = std::move(problem);
+  return out;
+}
+
+}  // namespace
+
 plan::TaskTexts read_texts(const TaskFiles& files) {
+  if (is_manipulation_task(files.domain)) return read_manipulation_task(files).texts;
   plan::TaskTexts out{read_text(files.domain, files.language, "input-format"), {}};
   if (!files.problem.empty())
     out.problem =
@@ -63,13 +106,20 @@ plan::TaskTexts read_texts(const TaskFiles& files) {
 PlanningTask::PlanningTask(const TaskFiles& files) : data_(std::make_unique<Data>()) {
   Data& d = *data_;
   d.files = files;
-  d.texts = read_texts(files);
+  if (is_manipulation_task(files.domain)) {
+    ReadTask task = read_manipulation_task(files);
+    d.texts = std::move(task.texts);
+    d.scene = std::move(task.scene);
+    d.files.scene = d.scene->inputs.front();
+  } else {
+    d.texts = read_texts(files);
+    if (!files.scene.empty()) d.scene = world::read_scene(files.scene);
+  }
   plan::ExternalBindings bindings;
-  if (files.scene.empty() && !files.margin.margins.empty())
+  if (!d.scene && !files.margin.margins.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "«margin»: there is no scene in which things could be kept apart");
-  if (!files.scene.empty()) {
-    d.scene = world::read_scene(files.scene);
+  if (d.scene) {
     d.scene->world.margins = world::margins_of(d.scene->world, files.margin);
     manipulation::ExternalOptions options;
     options.counters = d.counters;

@@ -212,9 +212,12 @@ void Simulation::compare(const judge::CellState& state, const judge::CellState& 
     if (const auto below = mounted_[o]; below && !is.away && !expected.objects[*below].away) {
       const double gap =
           kMostGap + world_.objects[o].outer.epsilon() + world_.objects[*below].outer.epsilon();
-      if (!is_on_seat(world_, o, cell_.pose_of(expected, o), *below,
-                      cell_.pose_of(expected, *below), gap))
-        wrong(name + " is not on the seat of what it is mounted on");
+      const geom::Transform pose = cell_.pose_of(expected, o),
+                            under = cell_.pose_of(expected, *below);
+      if (!is_on_seat(world_, o, pose, *below, under, gap) &&
+          !is_mated(world_, o, pose, *below, under))
+        wrong(name + " is neither on the seat of what it is mounted on, nor where constraints of " +
+              "the scene have it");
     }
     if (held_as(is) == held_as(stated)) continue;
     if (stated.hold && !mounted_[o] &&

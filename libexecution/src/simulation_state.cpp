@@ -7,7 +7,9 @@
 #include <kaboum/manipulation/words.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace kaboum::execution {
 namespace {
@@ -109,6 +111,59 @@ bool is_on_seat(const world::World& world, std::size_t object, const geom::Trans
   const geom::Vec3 normal = onto_pose.linear * seat->direction;
   return (object_pose * mount->point - onto_pose * seat->point).norm() <= gap + kSame &&
          (object_pose.linear * mount->direction + normal).norm() <= kSame;
+}
+
+bool is_mated(const world::World& world, std::size_t object, const geom::Transform& object_pose,
+              std::size_t onto, const geom::Transform& onto_pose) {
+  using Kind = world::Feature::Kind;
+  using kinematics::Relation;
+  const auto pose_of = [&](const world::FixedFeature& f) {
+    return f.to != world::FixedFeature::To::Object ? nullptr
+           : f.index == object                     ? &object_pose
+           : f.index == onto                       ? &onto_pose
+                                                   : nullptr;
+  };
+  const auto is_met = [&](const world::ToleratedConstraint& c) {
+    const geom::Transform *a = pose_of(c.first), *b = pose_of(c.second);
+    if (a == nullptr || b == nullptr || a == b) return false;
+    const Kind first = c.first.feature.kind, second = c.second.feature.kind;
+    const geom::Vec3 apart = *a * c.first.feature.point - *b * c.second.feature.point,
+                     u = a->linear * c.first.feature.direction,
+                     v = b->linear * c.second.feature.direction;
+    // Distance of the first one's point from the second, or of the point from what is none.
+    const auto from = [&](Kind kind, const geom::Vec3& direction) {
+      return kind == Kind::Point  ? apart.norm()
+             : kind == Kind::Line ? apart.cross(direction).norm()
+                                  : std::abs(apart.dot(direction));
+    };
+    const double distance = second == Kind::Point ? from(first, u) : from(second, v);
+    const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+    const bool mixed = first != Kind::Point && second != Kind::Point && first != second;
+    switch (c.relation) {
+      case Relation::Distance:
+        return std::abs(distance - c.value) <= c.within + kSame;
+      case Relation::Coincident: {
+        if (distance > c.within + kSame) return false;
+        if (first == Kind::Point || second == Kind::Point) return true;
+        const double off = std::min(angle, std::numbers::pi - angle);
+        return (mixed ? std::numbers::pi / 2 - off : off) <= c.within_angle + kSame;
+      }
+      case Relation::Parallel:
+      case Relation::Perpendicular: {
+        const double off = std::min(angle, std::numbers::pi - angle);
+        const bool along = (c.relation == Relation::Parallel) != mixed;
+        return (along ? off : std::numbers::pi / 2 - off) <= c.within_angle + kSame;
+      }
+      case Relation::Angle:
+        // From a plane to a line: towards its normal.
+        return std::abs((mixed ? std::numbers::pi / 2 - angle : angle) - c.value) <=
+               c.within_angle + kSame;
+    }
+    return false;
+  };
+  return std::ranges::any_of(world.constraints, [&](const world::ConstraintSet& set) {
+    return std::ranges::all_of(set.constraints, is_met);
+  });
 }
 
 }  // namespace kaboum::execution

@@ -331,24 +331,58 @@ Answer collides(Geometry& geometry, const Question& question) {
   return Answer::holds(false, "they are apart");
 }
 
-Answer satisfy(Geometry& geometry, const Question& question) {
-  const std::size_t r = robot_named(geometry, question.arguments[0]);
-  const world::ConstraintSet* set = nullptr;
+namespace {
+
+/// @throws Error{InvalidInput} when the scene has none of that name.
+const world::ConstraintSet& constraints_named(const Geometry& geometry, const std::string& name) {
   try {
-    set = &geometry.world.constraint_set(question.arguments[1]);
+    return geometry.world.constraint_set(name);
   } catch (const Error& error) {
     throw Error(ErrorCode::InvalidInput, error.what());
   }
-  std::vector<std::size_t> objects;
-  for (const world::ToleratedConstraint& c : set->constraints)
+}
+
+/// Objects that constraints are about, each once.
+std::vector<std::size_t> objects_of(const world::ConstraintSet& set) {
+  std::vector<std::size_t> out;
+  for (const world::ToleratedConstraint& c : set.constraints)
     for (const world::FixedFeature* feature : {&c.first, &c.second})
       if (feature->to == world::FixedFeature::To::Object &&
-          std::ranges::find(objects, feature->index) == objects.end())
-        objects.push_back(feature->index);
+          std::ranges::find(out, feature->index) == out.end())
+        out.push_back(feature->index);
+  return out;
+}
+
+}  // namespace
+
+Answer satisfy(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const world::ConstraintSet& set = constraints_named(geometry, question.arguments[1]);
   return perform(
-      geometry, question, {"satisfy", {r}, objects},
-      [&](Sequence& s) { return s.satisfy(r, *set); },
+      geometry, question, {"satisfy", {r}, objects_of(set)},
+      [&](Sequence& s) { return s.satisfy(r, set); },
       [&](const Sequence& s) { return configuration(s, r); });
+}
+
+Answer mate(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[1]);
+  const std::size_t onto = object_named(geometry, question.arguments[2]);
+  const world::ConstraintSet& set = constraints_named(geometry, question.arguments[3]);
+  const std::vector<double> end = configuration_of(question.arguments[4], geometry.world.robots[r]);
+  std::vector<std::size_t> objects = objects_of(set);
+  if (objects.size() != 2 || std::ranges::find(objects, o) == objects.end() ||
+      std::ranges::find(objects, onto) == objects.end())
+    throw Error(ErrorCode::InvalidInput, "the constraints '" + set.name + "' are not between " +
+                                             question.arguments[1] + " and " +
+                                             question.arguments[2] + " alone, as a mate's are");
+  const auto act = [&](Sequence& s) {
+    if (!s.mate(r, o, onto, set)) return false;
+    s.let_go(r, o);
+    return s.go(r, end);
+  };
+  return perform(geometry, question, {"mate", {r}, {o, onto}}, act,
+                 [&](const Sequence& s) { return s.word_of_mounted(o); });
 }
 
 /// Table II of the workshop paper. The arguments may come in either order, as in the thesis.

@@ -22,6 +22,7 @@ plan::Answer move(Geometry& geometry, const plan::Question& question);
 plan::Answer is_inside(Geometry& geometry, const plan::Question& question);
 plan::Answer collides(Geometry& geometry, const plan::Question& question);
 plan::Answer satisfy(Geometry& geometry, const plan::Question& question);
+plan::Answer mate(Geometry& geometry, const plan::Question& question);
 plan::Answer is_reachable(Geometry& geometry, const plan::Question& question);
 plan::Answer grasp_motion_collides(Geometry& geometry, const plan::Question& question);
 plan::Answer swept_collides(Geometry& geometry, const plan::Question& question);

@@ -33,6 +33,7 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"inside", 2, is_inside},
                                 {"collides", 2, collides},
                                 {"satisfy", 2, satisfy},
+                                {"mate", 5, mate},
                                 {"isReachable", 2, is_reachable},
                                 {"graspMotionCollides", 2, grasp_motion_collides, false, 1},
                                 {"sweptCollides", 3, swept_collides}};

@@ -24,6 +24,10 @@ class Sequence : public MotionSequence {
   /// To where the held object's plane `mount` is on the plane `seat` of another one, along the
   /// seat's normal at last.
   bool mount(std::size_t robot, std::size_t object, std::size_t onto);
+  /// To where constraints between the held object and another one are met; it is mounted on that
+  /// one when it is let go.
+  bool mate(std::size_t robot, std::size_t object, std::size_t onto,
+            const world::ConstraintSet& constraints);
   /// Lets go what stands or is mounted, at the very pose that was meant.
   void let_go(std::size_t robot, std::size_t object);
   /// The tool straight back from what was mounted, as far as that slid in.

@@ -285,8 +285,6 @@ std::vector<std::string> write_plan_page(const py::object& file, const py::objec
   take_options(execution::page_options(), keywords, options);
   const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
   require_all_taken("write_plan_page", keywords, page_keywords(), Runs::Alone);
-  if (files.scene.empty())
-    throw Error(ErrorCode::InvalidArgument, "scene is needed: what is there to be seen");
   const PlanText given(plan);
   Watch watch(running.progress);
   options.progress = watch.hook();
@@ -328,8 +326,6 @@ execution::PlanRunReport run_plan(const py::object& domain, const py::object& pr
   take_options(execution::run_options(), keywords, request);
   const RunKeywords running = take_run_keywords(keywords, Runs::Threads);
   require_all_taken("run_plan", keywords, run_keywords(), Runs::Threads);
-  if (files.scene.empty())
-    throw Error(ErrorCode::InvalidArgument, "scene is needed: a plan is carried out in it");
   const PlanText given(plan);
   request.replan.run = run_options(outcomes);
   request.replan.solve.algorithm = plan::Algorithm::Greedy;

@@ -117,11 +117,11 @@ int solve(const PlanOptions& o) {
                  {"limit", solution.limit},
                  {"lost", solution.lost},
                  {"refused", solution.refused},
-                 {"scene", o.task.scene},
+                 {"scene", task.files().scene},
                  {"statistics", statistics_json(solution.statistics)}};
   if (!o.task.margin.margins.empty()) report["margins"] = words_of(o.task.margin);
   task.keep_answers();
-  if (!o.task.scene.empty()) {
+  if (task.scene() != nullptr) {
     report["geometry"] = geometry_json(task.counters());
     report["geometry"]["answers_reused"] = task.answers_reused();
   }

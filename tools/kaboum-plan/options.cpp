@@ -11,7 +11,7 @@
 namespace kaboum::tools {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {
-  app.add_option("DOMAIN", o.task.domain, "Domain file (.kpl, .pddl), or - for stdin")
+  app.add_option("DOMAIN", o.task.domain, "Domain file (.kpl, .pddl), or - for stdin; or a task of usual actions (.task)")
       ->required()
       ->type_name("FILE");
   add_request_options(app,
@@ -30,8 +30,8 @@ CLI::Option* add_scene(CLI::App& app, PlanOptions& o) {
       o.task, o.stated);
   return app
       .add_option("--scene", o.task.scene,
-                  "Scene (JSON) whose geometry answers the external functions reach, grasp, place, "
-                  "release, move, inside and collides [externals are tables]")
+                  "Scene whose geometry answers external functions (docs/planning/geometry.md) "
+                  "[that of a .task; else externals are tables]")
       ->type_name("FILE");
 }
 

@@ -11,9 +11,9 @@
 namespace kaboum::tools {
 
 int write_page(const PlanOptions& o) {
-  if (o.task.scene.empty())
-    throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   const execution::PlanningTask task = read_task(o);
+  if (task.scene() == nullptr)
+    throw Error(ErrorCode::InvalidArgument, "--html needs --scene: what is there to be seen");
   std::vector<std::string> inputs = task.scene()->inputs;
   inputs.insert(inputs.end(), {o.plan, o.task.domain, o.task.problem});
   require_apart({{"--html", o.html}}, inputs);

@@ -84,7 +84,7 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
       "run", "Carry out a plan in simulation, and judge every sample by exact meshes");
   add_inputs(*r, o);
   add_problem(*r, o);
-  add_scene(*r, o)->required();
+  add_scene(*r, o);
   r->add_option("--plan", o.plan, "The plan to carry out, or -")->required()->type_name("FILE");
   r->add_option("--outcomes", o.outcomes,
                 "How sensing turns out: all: every branch; seed:N: one, at random; a JSON file "
@@ -118,7 +118,7 @@ int run_plan(const PlanOptions& o) {
   const execution::SimulationReport& r = done.simulation;
   Json report = report_json(r, summary);
   report["command"] = "run";
-  report["scene"] = o.task.scene;
+  report["scene"] = task.files().scene;
   report["outcomes"] = o.outcomes;
   report["rate"] = o.run.simulation.rate;
   report["triangles"] = done.triangles;

@@ -42,6 +42,10 @@ struct ExternalOptions {
 ///     putUpright(robot, object, support, conf) : pose
 ///                                           the same, upright until it stands
 ///     satisfy(robot, constraints) : conf    where constraints of the scene are met
+///     mate(robot, object, onto, constraints, conf) : pose
+///                                           mounts a held object where constraints between it and
+///                                           another one are met, lets go and goes to a
+///                                           configuration
 ///     isReachable(object, robot)            a grasp of it is within the joints' limits
 ///     graspMotionCollides([robot,] object, object)
 ///                                           fetching the first is not certainly free of the other

@@ -1,0 +1,436 @@
+// Tasks of usual manipulation actions, and the domain that they are of.
+#include "manipulation_task.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/world/checker.h>
+#include <kaboum/world/features.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+namespace kaboum::execution {
+
+const char* const kManipulationDomain = R"(domain manipulation
+-- Usual actions of manipulation. Items are the objects of a scene: those that somebody can grasp are
+-- movable. All actions end with the robots at home.
+types: robot, item, movable : item, fixed : item, mate, conf handle, pose handle
+constants: conf home; pose start
+predicates: isFree(robot), isHolding(robot, movable), isHeld(movable), on(movable, item),
+  isMounted(movable), isMated(movable, mate), isMate(mate, movable, item), isSeat(item, movable),
+  canStand(movable), canSupport(item)
+functions: conf(robot) : conf; pose(movable) : pose
+externals: fetch(robot, movable, conf) : pose; put(robot, movable, item, conf) : pose;
+  mate(robot, movable, item, mate, conf) : pose; join(robot, movable, item, conf) : pose;
+  handOver(robot, movable, robot) : pose
+
+action fetch(?r : robot, ?o : movable)
+  preconds:
+    K(isFree(?r)) & K(!isHeld(?o)) & K(!isMounted(?o)) & forallK(?x : movable) (K(!on(?x, ?o))) &
+    let ?p = extern(fetch(?r, ?o, home))
+  effects:
+    add(Kf, !isFree(?r)), add(Kf, isHolding(?r, ?o)), add(Kf, isHeld(?o)),
+    forall(?s : item) (add(Kf, !on(?o, ?s))), add(Kf, conf(?r) = home), add(Kf, pose(?o) = ?p)
+
+action put(?r : robot, ?o : movable, ?s : item)
+  preconds:
+    K(isHolding(?r, ?o)) & K(canStand(?o)) & K(canSupport(?s)) & K(?o != ?s) &
+    let ?p = extern(put(?r, ?o, ?s, home))
+  effects:
+    add(Kf, isFree(?r)), add(Kf, !isHolding(?r, ?o)), add(Kf, !isHeld(?o)), add(Kf, on(?o, ?s)),
+    add(Kf, conf(?r) = home), add(Kf, pose(?o) = ?p)
+
+action mate(?r : robot, ?o : movable, ?s : item, ?m : mate)
+  preconds:
+    K(isHolding(?r, ?o)) & K(isMate(?m, ?o, ?s)) & let ?p = extern(mate(?r, ?o, ?s, ?m, home))
+  effects:
+    add(Kf, isFree(?r)), add(Kf, !isHolding(?r, ?o)), add(Kf, !isHeld(?o)), add(Kf, isMounted(?o)),
+    add(Kf, isMated(?o, ?m)), add(Kf, conf(?r) = home), add(Kf, pose(?o) = ?p)
+
+action mount(?r : robot, ?o : movable, ?s : item)
+  preconds:
+    K(isHolding(?r, ?o)) & K(isSeat(?s, ?o)) & let ?p = extern(join(?r, ?o, ?s, home))
+  effects:
+    add(Kf, isFree(?r)), add(Kf, !isHolding(?r, ?o)), add(Kf, !isHeld(?o)), add(Kf, isMounted(?o)),
+    add(Kf, on(?o, ?s)), add(Kf, conf(?r) = home), add(Kf, pose(?o) = ?p)
+
+action handOver(?r : robot, ?o : movable, ?t : robot)
+  preconds:
+    K(?r != ?t) & K(isHolding(?r, ?o)) & K(isFree(?t)) & let ?p = extern(handOver(?r, ?o, ?t))
+  effects:
+    add(Kf, isFree(?r)), add(Kf, !isFree(?t)), add(Kf, !isHolding(?r, ?o)),
+    add(Kf, isHolding(?t, ?o)), add(Kf, conf(?r) = home), add(Kf, conf(?t) = home),
+    add(Kf, pose(?o) = ?p)
+)";
+
+namespace {
+
+using world::Feature;
+
+/// Units, as multiples of the scene's, metres and radians.
+using Units = std::map<std::string, double, std::less<>>;
+const Units kLengths = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}},
+            kAngles = {{"rad", 1}, {"deg", std::numbers::pi / 180}};
+constexpr const char* kBlanks = " \t\r";
+/// What bounding sets of things that stand on each other are at most apart, beside ε. [length]
+constexpr double kStandingGap = 5e-3;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> out;
+  for (std::string word; in >> word;) out.push_back(word);
+  return out;
+}
+
+/// Parts of a text between separators, without those that are empty, and without blanks around.
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);)
+    if (const std::size_t begin = part.find_first_not_of(kBlanks); begin != std::string::npos)
+      out.push_back(part.substr(begin, part.find_last_not_of(kBlanks) + 1 - begin));
+  return out;
+}
+
+/// A number with a unit behind it or as the next word; `at` goes past what was read.
+std::optional<double> number(const std::vector<std::string>& words, std::size_t& at,
+                             const Units& units) {
+  if (at >= words.size()) return std::nullopt;
+  const std::string& word = words[at];
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  std::string unit(end, word.data() + word.size());
+  std::size_t next = at + 1;
+  if (unit.empty() && next < words.size() && units.contains(words[next])) unit = words[next++];
+  const auto known = units.find(unit);
+  if (!unit.empty() && known == units.end()) return std::nullopt;
+  at = next;
+  return unit.empty() ? value : value * known->second;
+}
+
+bool is_name(const std::string& text) {
+  const auto is_letter = [](char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  return !text.empty() && is_letter(text[0]) && text.back() != '-' &&
+         text.find("--") == std::string::npos && std::ranges::all_of(text, [&](char c) {
+           return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '-' ||
+                  c == '\'';
+         });
+}
+
+bool has_point(const world::Object& object, const std::string& name) {
+  return std::ranges::any_of(object.features, [&](const Feature& f) {
+    return f.kind == Feature::Kind::Point && f.name == name;
+  });
+}
+
+bool has_plane(const world::Object& object, const std::string& name) {
+  return std::ranges::any_of(object.features, [&](const Feature& f) {
+    return f.kind == Feature::Kind::Plane && f.name == name;
+  });
+}
+
+/// A grasp called "TOOL/NAME" is for that tool only.
+bool may_grasp(const world::RobotModel& robot, const world::Object& object) {
+  return std::ranges::any_of(object.grasps, [&](const world::Grasp& grasp) {
+    const std::size_t slash = grasp.name.find('/');
+    return std::ranges::any_of(robot.tools, [&](const world::ToolFrame& tool) {
+      return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
+    });
+  });
+}
+
+bool is_movable(const world::World& world, std::size_t object) {
+  return world.attachments[object].has_value() ||
+         std::ranges::any_of(world.robots, [&](const world::RobotModel& robot) {
+           return may_grasp(robot, world.objects[object]);
+         });
+}
+
+/// What each object stands on at first: what it comes in contact with when it sinks a little.
+std::set<std::pair<std::size_t, std::size_t>> standing(const world::World& world) {
+  const world::Checker checker(world);
+  world::Scratch scratch;
+  world::Checker::Options options;
+  options.resting = true;
+  std::set<std::pair<std::size_t, std::size_t>> out;
+  const world::WorldState start = initial_state(world);
+  const auto touched = [&](const world::WorldState& state, std::size_t object) {
+    std::set<std::size_t> others;
+    for (const world::Contact& contact : checker.find_contacts(state, scratch, options))
+      for (int i = 0; i < 2; ++i)
+        if (contact.items[i] == world::Item{world::Item::kObject, object} &&
+            contact.items[1 - i].robot == world::Item::kObject)
+          others.insert(contact.items[1 - i].index);
+    return others;
+  };
+  double most = 0;
+  for (const world::Object& object : world.objects) most = std::max(most, object.outer.epsilon());
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    if (!is_movable(world, o) || world.attachments[o]) continue;
+    world::WorldState lower = start;
+    lower.poses[o].translation.z() -= kStandingGap + world.objects[o].outer.epsilon() + most;
+    const std::set<std::size_t> before = touched(start, o);
+    for (const std::size_t below : touched(lower, o))
+      if (!before.contains(below)) out.emplace(o, below);
+  }
+  return out;
+}
+
+}  // namespace
+
+ManipulationTask::ManipulationTask(const std::string& text, std::string name)
+    : text_(text), name_(std::move(name)) {
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (const std::size_t comment = line.find('#'); comment != std::string::npos)
+      line.resize(comment);
+    if (line.find_first_not_of(kBlanks) != std::string::npos) read_line(line, number);
+  }
+  if (goals_.empty()) fail(number, "nothing is to be done: it has no line 'put …' or 'hold …'");
+}
+
+void ManipulationTask::fail(std::size_t line, const std::string& what) const {
+  throw Error(ErrorCode::InvalidInput, name_ + ":" + std::to_string(line) + ": " + what);
+}
+
+void ManipulationTask::read_line(const std::string& line, std::size_t number) {
+  const std::vector<std::string> words = words_of(line);
+  if (words[0] == "mate") {
+    read_mate(line.substr(line.find("mate") + 4), number);
+  } else if (words[0] == "put") {
+    read_put(words, number);
+  } else if (words[0] == "hold") {
+    const bool with = words.size() == 4 && words[2] == "with";
+    if (words.size() != 2 && !with) fail(number, "expected 'hold OBJECT [with ROBOT]'");
+    goals_.push_back({Goal::Kind::Hold, number, words[1], with ? words[3] : "", ""});
+  } else if (words[0] == "scene") {
+    const std::size_t begin = line.find_first_not_of(kBlanks, line.find("scene") + 5);
+    if (begin == std::string::npos) fail(number, "expected 'scene FILE'");
+    if (!scene_.empty()) fail(number, "a second scene");
+    scene_ = line.substr(begin, line.find_last_not_of(kBlanks) + 1 - begin);
+  } else {
+    fail(number, "expected 'scene', 'mate', 'put' or 'hold', not '" + words[0] + "'" +
+                     did_you_mean(words[0], {"scene", "mate", "put", "hold"}));
+  }
+}
+
+/// "NAME: FEATURE RELATION FEATURE [VALUE] [within VALUE [and ANGLE]]; …"
+void ManipulationTask::read_mate(const std::string& rest, std::size_t number_of_line) {
+  const std::size_t colon = rest.find(':');
+  const std::vector<std::string> name = words_of(rest.substr(0, colon));
+  if (colon == std::string::npos || name.size() != 1 || !is_name(name[0]))
+    fail(number_of_line, "expected 'mate NAME: FEATURE RELATION FEATURE [VALUE]; …'");
+  if (std::ranges::find(mates_, name[0], &Mate::name) != mates_.end())
+    fail(number_of_line, "a second mate '" + name[0] + "'");
+  Mate mate{number_of_line, name[0], {}};
+  for (const std::string& part : parts_of(rest.substr(colon + 1), ';')) {
+    const std::vector<std::string> words = words_of(part);
+    if (words.size() < 3)
+      fail(number_of_line, "expected 'FEATURE RELATION FEATURE [VALUE]', not '" + part + "'");
+    Relation relation;
+    relation.first = words[0];
+    relation.second = words[2];
+    std::vector<std::string> names;
+    bool known = false;
+    for (const auto kind : {kinematics::Relation::Coincident, kinematics::Relation::Parallel,
+                            kinematics::Relation::Perpendicular, kinematics::Relation::Distance,
+                            kinematics::Relation::Angle}) {
+      names.emplace_back(name_of(kind));
+      if (names.back() != words[1]) continue;
+      relation.relation = kind;
+      known = true;
+    }
+    if (!known)
+      fail(number_of_line, "no relation '" + words[1] + "'" + did_you_mean(words[1], names) +
+                               "; there are coincident, parallel, perpendicular, distance, angle");
+    std::size_t at = 3;
+    const Units& units = relation.relation == kinematics::Relation::Coincident ||
+                                 relation.relation == kinematics::Relation::Distance
+                             ? kLengths
+                             : kAngles;
+    relation.value = number(words, at, units);
+    if (at < words.size() && words[at] == "within") {
+      relation.within = number(words, ++at, units);
+      if (at < words.size() && words[at] == "and")
+        relation.within_angle = number(words, ++at, kAngles);
+    }
+    const bool valued = relation.relation == kinematics::Relation::Distance ||
+                        relation.relation == kinematics::Relation::Angle;
+    if (at != words.size() || valued != relation.value.has_value() ||
+        (relation.within && !(*relation.within > 0)) ||
+        (relation.within_angle && !(*relation.within_angle > 0)))
+      fail(number_of_line,
+           "'" + part +
+               "': expected 'FEATURE RELATION FEATURE [VALUE] [within VALUE [and ANGLE]]'; "
+               "distance and angle have a value, in mm, cm, m, rad or deg");
+    mate.relations.push_back(std::move(relation));
+  }
+  if (mate.relations.empty()) fail(number_of_line, "the mate '" + mate.name + "' has no relation");
+  mates_.push_back(std::move(mate));
+}
+
+/// "put OBJECT… on OBJECT… [by MATE]": pairwise, or all on one.
+void ManipulationTask::read_put(const std::vector<std::string>& words, std::size_t number) {
+  const auto on = std::ranges::find(words, "on");
+  const auto by = std::find(on, words.end(), "by");
+  const std::vector<std::string> objects(words.begin() + 1, on);
+  const std::vector<std::string> others(on == words.end() ? on : on + 1, by);
+  const std::size_t left = static_cast<std::size_t>(words.end() - by);
+  if (objects.empty() || others.empty() || (left != 0 && left != 2))
+    fail(number, "expected 'put OBJECT… on OBJECT… [by MATE]'");
+  if (others.size() != 1 && others.size() != objects.size())
+    fail(number, std::to_string(objects.size()) + " objects are put on " +
+                     std::to_string(others.size()) + ": as many are expected, or one");
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    goals_.push_back({Goal::Kind::Put, number, objects[i], others[others.size() == 1 ? 0 : i],
+                      left == 2 ? words.back() : ""});
+}
+
+std::string ManipulationTask::set_name(const Goal& goal) {
+  return goal.mate + "_" + goal.object + "_" + goal.other;
+}
+
+std::size_t ManipulationTask::object_named(const world::World& world, const std::string& name,
+                                           std::size_t line) const {
+  if (const auto found = world.find_object(name)) return *found;
+  std::vector<std::string> names;
+  names.reserve(world.objects.size());
+  for (const world::Object& object : world.objects) names.push_back(object.name);
+  fail(line, "the scene has no object '" + name + "'" + did_you_mean(name, names));
+}
+
+void ManipulationTask::add_mates(world::World& world) const {
+  std::vector<std::string> names;
+  names.reserve(mates_.size());
+  for (const Mate& mate : mates_) names.push_back(mate.name);
+  for (const Goal& goal : goals_) {
+    if (goal.mate.empty()) continue;
+    const auto mate = std::ranges::find(mates_, goal.mate, &Mate::name);
+    if (mate == mates_.end())
+      fail(goal.line, "there is no mate '" + goal.mate + "'" + did_you_mean(goal.mate, names));
+    world::ConstraintSet set{set_name(goal), {}};
+    if (std::ranges::find(world.constraints, set.name, &world::ConstraintSet::name) !=
+        world.constraints.end())
+      fail(goal.line, "this is asked for twice, or the scene has constraints '" + set.name + "'");
+    object_named(world, goal.object, goal.line);
+    object_named(world, goal.other, goal.line);
+    for (const Relation& r : mate->relations) {
+      const auto feature = [&](const std::string& object, const std::string& name) {
+        try {
+          return find_feature(world, object + (name.starts_with('.') ? "" : "/") + name);
+        } catch (const Error& error) {
+          fail(mate->line, error.what());
+        }
+      };
+      world::ToleratedConstraint c{r.relation, feature(goal.object, r.first),
+                                   feature(goal.other, r.second)};
+      if (r.value) c.value = *r.value;
+      const bool length = r.relation == kinematics::Relation::Coincident ||
+                          r.relation == kinematics::Relation::Distance;
+      if (r.within) (length ? c.within : c.within_angle) = *r.within;
+      if (r.within_angle) c.within_angle = *r.within_angle;
+      try {
+        require_valid(kinematics_constraint(c));
+      } catch (const Error& error) {
+        fail(mate->line, error.what());
+      }
+      set.constraints.push_back(std::move(c));
+    }
+    world.constraints.push_back(std::move(set));
+  }
+}
+
+std::string ManipulationTask::problem(const world::World& world) const {
+  std::map<std::string, std::string> constants;
+  std::string known, goal;
+  const auto add = [](std::string& to, const std::string& item, const char* between) {
+    to += (to.empty() ? "" : between) + item;
+  };
+  const auto declare = [&](const std::string& type, const std::string& name) {
+    if (!is_name(name))
+      fail(1, "the scene's name '" + name +
+                  "' cannot be said in a task: names are letters, digits, '_' and '-'");
+    add(constants[type], name, ", ");
+  };
+  const auto know = [&](const std::string& fact) { add(known, "K(" + fact + ")", ",\n  "); };
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    const std::string& name = world.robots[r].name;
+    declare("robot", name);
+    know("conf(" + name + ") = home");
+    std::string held;
+    for (std::size_t o = 0; o < world.objects.size(); ++o)
+      if (world.attachments[o] && world.attachments[o]->robot == r) {
+        know("isHolding(" + name + ", " + world.objects[o].name + ")");
+        know("isHeld(" + world.objects[o].name + ")");
+        held = world.objects[o].name;
+      }
+    if (held.empty()) know("isFree(" + name + ")");
+  }
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const world::Object& object = world.objects[o];
+    const bool movable = is_movable(world, o);
+    declare(movable ? "movable" : "fixed", object.name);
+    if (has_point(object, "top")) know("canSupport(" + object.name + ")");
+    if (!movable) continue;
+    know("pose(" + object.name + ") = start");
+    if (has_point(object, "bottom")) know("canStand(" + object.name + ")");
+  }
+  for (const auto& [above, below] : standing(world))
+    know("on(" + world.objects[above].name + ", " + world.objects[below].name + ")");
+  std::set<std::string> seats;
+  for (const Goal& g : goals_) {
+    const std::size_t o = object_named(world, g.object, g.line);
+    const world::Object& object = world.objects[o];
+    const auto need = [&](bool has, const std::string& what) {
+      if (!has) fail(g.line, what);
+    };
+    need(is_movable(world, o), "no robot can grasp " + g.object +
+                                   ": it has no grasps that fit a tool (kaboum-scene grasps)");
+    if (g.kind == Goal::Kind::Hold) {
+      need(g.other.empty() || world.find_robot(g.other).has_value(),
+           "the scene has no robot '" + g.other + "'");
+      add(goal,
+          g.other.empty() ? "K(isHeld(" + g.object + "))"
+                          : "K(isHolding(" + g.other + ", " + g.object + "))",
+          " & ");
+      continue;
+    }
+    const world::Object& below = world.objects[object_named(world, g.other, g.line)];
+    need(g.object != g.other, g.object + " is put on itself");
+    if (!g.mate.empty()) {
+      declare("mate", set_name(g));
+      know("isMate(" + set_name(g) + ", " + g.object + ", " + g.other + ")");
+      add(goal, "K(isMated(" + g.object + ", " + set_name(g) + "))", " & ");
+      continue;
+    }
+    const bool seat = has_plane(object, "mount") &&
+                      (has_plane(below, "seat") || has_plane(below, "seat/" + g.object));
+    if (seat && seats.insert(g.object + " " + g.other).second)
+      know("isSeat(" + g.other + ", " + g.object + ")");
+    need(seat || has_point(object, "bottom"),
+         g.object + " has no point 'bottom' to stand on (kaboum-scene places)");
+    need(seat || has_point(below, "top"),
+         g.other + " has no point 'top' to put things on (kaboum-scene places)");
+    add(goal, "K(on(" + g.object + ", " + g.other + "))", " & ");
+  }
+  std::string out = "-- " + name_ + "\n";
+  std::istringstream lines(text_);
+  for (std::string line; std::getline(lines, line);) out += "--   " + line + "\n";
+  out += "constants: ";
+  std::string all;
+  for (const auto& [type, names] : constants) add(all, type + " " + names, "; ");
+  out += all + "\ninit:\n  " + known + "\nclosed: all\ngoal: " + goal + "\n";
+  return out;
+}
+
+}  // namespace kaboum::execution
