@@ -291,6 +291,8 @@ std::vector<std::string> write_plan_page(const py::object& file, const py::objec
   return run(0, [&] {
     watch("reading the plan");
     const execution::PlanningTask task(files);
+    if (task.scene() == nullptr)
+      throw Error(ErrorCode::InvalidArgument, "scene is needed: what is there to be seen");
     const plan::Model model = task.load();
     const execution::PlanPage page = execution::plan_page(task, model, given.read(model), options);
     io::write_file(path, page.html);
@@ -334,6 +336,8 @@ execution::PlanRunReport run_plan(const py::object& domain, const py::object& pr
   request.simulation.progress = watch.hook();
   return run(running.threads, [&] {
     const execution::PlanningTask task(files);
+    if (task.scene() == nullptr)
+      throw Error(ErrorCode::InvalidArgument, "scene is needed: a plan is carried out in it");
     const plan::Model model = task.load();
     execution::PlanRunReport out = execution::run_plan(task, model, given.read(model), request);
     const std::vector<std::string>& notes = task.scene()->notes;

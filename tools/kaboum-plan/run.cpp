@@ -105,6 +105,8 @@ int run_plan(const PlanOptions& o) {
   request.replan.solve.algorithm = plan::Algorithm::Greedy;
   request.trajectories = o.trajectories;
   const execution::PlanningTask task = read_task(o);
+  if (task.scene() == nullptr)
+    throw Error(ErrorCode::InvalidArgument, "--scene is required: a plan is carried out in it");
   const plan::Model model = task.load();
   const plan::Plan plan = read_plan_file(model, o.plan);
   const execution::PlanRunReport done = [&] {
