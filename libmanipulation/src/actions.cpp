@@ -43,6 +43,7 @@ std::string key_of(const Call& call, const Question& question) {
   key += '\n';
   add_to_key(key, question.seed);
   add_to_key(key, question.attempt);
+  add_to_key(key, question.choice);
   return key;
 }
 

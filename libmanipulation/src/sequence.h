@@ -58,7 +58,8 @@ class Sequence : public MotionSequence {
     geom::Vec3 point;
     double angle = 0;
   };
-  std::vector<Footing> footings(std::size_t object, std::size_t support);
+  /// @param points  of the support that things are put on
+  std::vector<Footing> footings(std::size_t object, std::size_t support, std::size_t points);
   [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object) const;
   /// Whether no tool comes as near to the object as the grasps that are listed have it, however the
   /// robot stretches: then no other grasp is in reach either.

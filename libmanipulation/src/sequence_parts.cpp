@@ -33,6 +33,8 @@ constexpr double kOfFace = 0.01;
 constexpr double kLevel = 1e-9;
 /// Places on a face that are drawn, in each attempt more.
 constexpr std::size_t kPlaces = 64;
+/// Choices of a place beside the points 'top…', each with draws of its own.
+constexpr std::size_t kChosenPlaces = 8;
 
 /// What of a convex body is at its top, seen from above: in the object's frame.
 class UpperFace {
@@ -178,13 +180,25 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
     chosen_ = true;
     return true;
   };
-  const std::vector<geom::Vec3> tops = tops_of(below);
-  for (const geom::Vec3& top : tops)
-    for (const double angle : angles)
-      if (stands(top, angle)) return true;
-  const std::vector<Footing> more = footings(object, support);
-  for (const Footing& footing : more)
-    if (stands(footing.point, footing.angle)) return true;
+  const auto stands_on = [&](const geom::Vec3& top) {
+    return std::ranges::any_of(angles, [&](double angle) { return stands(top, angle); });
+  };
+  const auto stands_at = [&](const Footing& footing) {
+    return stands(footing.point, footing.angle);
+  };
+  std::vector<geom::Vec3> tops = tops_of(below);
+  const std::vector<Footing> more = footings(object, support, tops.size());
+  // Of the choices 1, 2, … the first ones prefer the points but the first, the others no point.
+  const std::size_t choice = question_.choice;
+  choices_ = std::max(choices_, static_cast<unsigned>(tops.size() - 1 + kChosenPlaces));
+  if (choice < tops.size())
+    std::rotate(tops.begin(), tops.begin() + static_cast<std::ptrdiff_t>(choice),
+                tops.begin() + static_cast<std::ptrdiff_t>(choice) + 1);
+  const bool points_first = choice < tops.size();
+  if ((points_first && std::ranges::any_of(tops, stands_on)) ||
+      std::ranges::any_of(more, stands_at) ||
+      (!points_first && std::ranges::any_of(tops, stands_on)))
+    return true;
   if (failed_ == Answer::Kind::NotFound)
     reason_ = name_with_grasp(object, *held) + " on " + below.name + ": " +
               std::to_string(tops.size()) +
@@ -197,12 +211,15 @@ bool Sequence::place(std::size_t robot, std::size_t object, std::size_t support,
 }
 
 /// Places on the upper faces that the points 'top…' are on, evenly spread, on which an object
-/// stands with all of its base. The first attempt tries the points alone.
-std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_t support) {
+/// stands with all of its base. The first attempt tries the points alone, unless the choice is to
+/// prefer none of them.
+std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_t support,
+                                                  std::size_t points) {
   const world::Object &thing = geometry_.world.objects[object],
                       &below = geometry_.world.objects[support];
   std::vector<Footing> out;
-  if (question_.attempt == 0) return out;
+  const std::size_t draws = kPlaces * (question_.attempt + (question_.choice < points ? 0U : 1U));
+  if (draws == 0) return out;
   const Eigen::Matrix3d lies = pose_of_object(support).linear;
   if (lies(2, 2) < 1 - kLevel) return out;
   const geom::Vec3 bottom =
@@ -231,7 +248,7 @@ std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_
       return face.holds(point) && std::abs(point.z() - face.height()) <= kOfFace;
     });
     if (!meant) continue;
-    for (std::size_t n = 0; n < kPlaces * question_.attempt; ++n) {
+    for (std::size_t n = 0; n < draws; ++n) {
       Footing f;
       f.point = face.at(random_.between(0, 1), random_.between(0, 1));
       f.angle = random_.between(0, 2 * std::numbers::pi);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <set>
 #include <string>
 
 #include "two_arms.h"
@@ -238,6 +239,29 @@ TEST_F(Actions, AnswersSayAmongHowManyGraspsTheyChose) {
   const Answer put = ask(all_, "put", {"left", "block", "socket", "home"}, words, 2);
   EXPECT_EQ(put.kind, Answer::Kind::NotFound);
   EXPECT_NE(put.reason.find("block, held by its grasp 'top',"), std::string::npos) << put.reason;
+}
+
+/// Other choices put things elsewhere: beside the point, with all of the base on the face.
+TEST_F(Actions, OtherChoicesPutThingsElsewhere) {
+  const Words words = holding(0, 0, kDown);
+  const std::vector<std::string> arguments = {"left", "block", "socket", "home"};
+  std::set<std::string> places;
+  for (unsigned choice = 0; choice <= 3; ++choice) {
+    WordState state(words);
+    const Answer answer = all_.at("put")({arguments, state, 1000U + choice, 0, choice});
+    ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+    EXPECT_EQ(answer.choices, 8U);
+    places.insert(answer.value);
+    const manipulation::ObjectPlace place =
+        manipulation::place_of(answer.value, arms_.world, TwoArms::kBlock);
+    for (const double x : {-0.025, 0.025})
+      for (const double y : {-0.025, 0.025}) {
+        const Vec3 corner = place.pose * Vec3(x, y, -0.08);
+        EXPECT_LE(std::abs(corner.x() - 0.55), 0.05 - TwoArms::kEpsilon);
+        EXPECT_LE(std::abs(corner.y() - 0.05), 0.05 - TwoArms::kEpsilon);
+      }
+  }
+  EXPECT_EQ(places.size(), 4U);
 }
 
 /// What fails among the things that a call names fails whatever else there is: nothing else is
