@@ -124,8 +124,8 @@ def options(name, n, least, most, more=lambda parser: None):
     return o
 
 
-def run(name, o, cell, problem_text, domain="domain.kpl"):
-    """All that comes after scene and problem."""
+def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}):
+    """All that comes after scene and problem. @param compare  what the last line says more of a plan."""
     out = o.out.resolve()
     cell.make(out)
     (out / "problem.kpl").write_text(problem_text)
@@ -151,6 +151,7 @@ def run(name, o, cell, problem_text, domain="domain.kpl"):
     if status == 0:
         size = solved["plan"]
         result.update(solved=True, actions=size["longest_path"], nodes=size["nodes"], leaves=size["leaves"])
+        result.update(compare(json.loads(pathlib.Path(plan).read_text())))
         checked, _ = call("check", "--plan", plan)
         result["checked"] = checked == 0
         if checked == 1:  # not that there is no plan: one was found that does not hold

@@ -73,7 +73,15 @@ END_OF_PAGE
   command -v node >/dev/null || fail "Node.js is missing (nodejs, which scripts/setup installs): the page's code has not been run"
   node "$HERE/play_page.js" "$1/plan.html" "$S/../../libpage/src" >said.txt 2>&1 || fail "$1: $(tail -5 said.txt)"
 }
-scenario force-sensing 2 10 4
+scenario force-sensing 3 15 8
+# Weighing decides the path.
+python3 - <<'END' || fail "force-sensing: both paths are the same: $(cat last.json)"
+import json
+r = json.load(open("last.json"))
+assert r["compared"] == 3 and r["different_paths"] == 2, "the same paths"
+assert max(r["upright_leans_deg"]) <= 15 < sorted(r["fast_leans_deg"])[1], "who leans"
+assert 0 < r["fast_s"] < r["upright_s"], "fast is not fast"
+END
 scenario remove 6 12 1 --robots 2
 python3 -c 'import json; print({n["arguments"][0] for n in json.load(open("remove/plan.json"))["nodes"]})' | grep -q 'arm2.*arm\|arm.*arm2' ||
   fail "one robot takes all blocks"
