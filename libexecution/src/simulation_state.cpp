@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/judge/placement.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/grasp_family.h>
 
 #include <algorithm>
 #include <cmath>
@@ -90,9 +91,12 @@ bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t lin
                  const geom::Transform& object_pose) {
   for (const world::ToolFrame& tool : world.robots[robot].tools)
     for (const world::Grasp& grasp : world.objects[object].grasps)
-      if (tool.link == link &&
-          same(judge::product(judge::product(link_pose, tool.pose), grasp.pose), object_pose))
-        return true;
+      if (tool.link == link) {
+        const geom::Transform at = judge::product(link_pose, tool.pose);
+        const geom::Transform member =
+            world::nearest_member(grasp, judge::product(inverse(at), object_pose));
+        if (same(judge::product(at, member), object_pose)) return true;
+      }
   return false;
 }
 

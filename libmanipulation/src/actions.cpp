@@ -105,6 +105,7 @@ std::optional<Answer> out_of_reach(Geometry& geometry, const Question& question,
   add_to_key(key, robot);
   add_to_key(key, object);
   add_to_key(key, question.seed);
+  add_to_key(key, question.attempt);
   add_to_key(key, (state.absent[object] ? 1U : 0U) + (sequence.held_by(robot, object) ? 2U : 0U));
   add_to_key(key, state.q[robot]);
   add_to_key(key, sequence.pose_of_object(object));

@@ -5,6 +5,7 @@
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/grasp_family.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,13 @@ using world::Transform;
 bool fits(const world::ToolFrame& tool, const world::Grasp& grasp) {
   const std::size_t slash = grasp.name.find('/');
   return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
+}
+
+bool is_at(const world::Transform& tool, const world::Grasp& grasp,
+           const world::Transform& object) {
+  const Transform member = world::nearest_member(grasp, inverse(tool) * object);
+  const kinematics::PoseError error = kinematics::difference(tool * member, object);
+  return error.position <= kSamePose && error.rotation <= kSamePose;
 }
 
 MotionSequence::MotionSequence(const Geometry& geometry, const plan::Question& question,
@@ -136,9 +144,7 @@ std::optional<world::Attachment> MotionSequence::find_grasp(std::size_t robot,
     const Transform link = pose_of_link(robot, tool.link);
     for (const world::Grasp& grasp : geometry_.world.objects[object].grasps) {
       if (!fits(tool, grasp)) continue;
-      const kinematics::PoseError error =
-          kinematics::difference(link * tool.pose * grasp.pose, pose);
-      if (error.position > kSamePose || error.rotation > kSamePose) continue;
+      if (!is_at(link * tool.pose, grasp, pose)) continue;
       world::Attachment held;
       held.robot = robot;
       held.link = tool.link;

@@ -4,11 +4,13 @@
 #include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/grasp_family.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 namespace kaboum::manipulation {
 namespace {
@@ -19,6 +21,11 @@ using world::Transform;
 
 /// Turns that are tried when an object is put down; more with each attempt.
 constexpr int kTurns = 8;
+/// Members of a family of grasps that are drawn; with each attempt twice as many.
+constexpr std::size_t kDraws = 16;
+constexpr unsigned kMostDoublings = 6;
+/// Of these, as many are choices that a search may prefer.
+constexpr std::size_t kChoices = 8;
 /// More than sums of lengths lose. [1]
 constexpr double kRounding = 1e-9;
 
@@ -40,38 +47,57 @@ std::vector<double> Sequence::turns() {
   return out;
 }
 
-Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object) const {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  const world::Object& thing = geometry_.world.objects[object];
+std::vector<Sequence::Hold> Sequence::holds(std::size_t robot, std::size_t object,
+                                            std::size_t draws) const {
+  std::vector<Hold> out;
+  for (const world::Grasp& grasp : geometry_.world.objects[object].grasps)
+    for (const world::ToolFrame& tool : geometry_.world.robots[robot].tools) {
+      if (!fits(tool, grasp)) continue;
+      const std::size_t members = is_family(grasp) ? draws : 1;
+      for (std::size_t i = 0; i < members; ++i)
+        out.push_back({&grasp, &tool, member_of(grasp, draw_member(grasp, i))});
+    }
+  return out;
+}
+
+void Sequence::add_goals_of(Goals& goals, std::size_t robot, std::size_t object,
+                            const Hold& hold) const {
+  add_goals(goals, robot, hold.tool->link,
+            pose_of_object(object) * inverse(hold.pose) * inverse(hold.tool->pose));
+  if (is_family(*hold.grasp)) goals.all = false;
+}
+
+std::size_t Sequence::draws() const {
+  return kDraws << std::min(question_.attempt, kMostDoublings);
+}
+
+Goals Sequence::goals_of_reach(std::size_t robot, std::size_t object,
+                               std::optional<unsigned> rank) const {
   Goals goals;
-  for (const world::Grasp& grasp : thing.grasps)
-    for (const world::ToolFrame& tool : model.tools)
-      if (fits(tool, grasp))
-        add_goals(goals, robot, tool.link,
-                  pose_of_object(object) * inverse(grasp.pose) * inverse(tool.pose));
-  const auto fitting = std::ranges::count_if(thing.grasps, [&](const world::Grasp& grasp) {
-    return std::ranges::any_of(model.tools,
-                               [&](const world::ToolFrame& tool) { return fits(tool, grasp); });
-  });
-  goals.listed = (fitting == 1 ? "the only grasp" : "the " + std::to_string(fitting) + " grasps") +
-                 (" listed for " + thing.name);
+  std::set<const world::Grasp*> fitting;
+  bool family = false;
+  for (const Hold& hold : holds(robot, object, draws())) {
+    if (rank && hold.grasp->rank != *rank) continue;
+    fitting.insert(hold.grasp);
+    family = family || is_family(*hold.grasp);
+    add_goals_of(goals, robot, object, hold);
+  }
+  const std::string& name = geometry_.world.objects[object].name;
+  goals.listed =
+      (fitting.size() == 1 ? "the only grasp"
+                           : "the " + std::to_string(fitting.size()) + " grasps") +
+      (" listed for " + name) +
+      (family ? ", of families " + std::to_string(draws()) + " members each," : std::string());
   return goals;
 }
 
 std::optional<Goals> Sequence::preferred_goals(std::size_t robot, std::size_t object) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  const world::Object& thing = geometry_.world.objects[object];
-  std::vector<std::pair<const world::Grasp*, const world::ToolFrame*>> all;
-  for (const world::Grasp& grasp : thing.grasps)
-    for (const world::ToolFrame& tool : model.tools)
-      if (fits(tool, grasp)) all.emplace_back(&grasp, &tool);
+  const std::vector<Hold> all = holds(robot, object, kChoices);
   if (all.size() < 2) return std::nullopt;
   choices_ = std::max(choices_, static_cast<unsigned>(all.size()));
   if (question_.choice == 0) return std::nullopt;
-  const auto [grasp, tool] = all[spread(question_.choice, all.size())];
   Goals goals;
-  add_goals(goals, robot, tool->link,
-            pose_of_object(object) * inverse(grasp->pose) * inverse(tool->pose));
+  add_goals_of(goals, robot, object, all[spread(question_.choice, all.size())]);
   goals.all = false;  // there are other grasps
   if (goals.configurations.empty()) return std::nullopt;
   return goals;
@@ -92,7 +118,7 @@ bool Sequence::is_beyond_reach(std::size_t robot, std::size_t object) const {
       tools.push_back(tool);
   if (tools.empty()) return false;
   for (const world::Grasp& grasp : thing.grasps)
-    aside = std::max(aside, (grasp.pose * ball.center).norm() - ball.radius);
+    aside = std::max(aside, farthest_from(grasp, ball.center) - ball.radius);
   const robot::Robot& robot_of = model.kinematics;
   return std::ranges::all_of(tools, [&](const world::ToolFrame& tool) {
     const kinematics::Arm arm =
@@ -115,8 +141,7 @@ std::string Sequence::name_with_grasp(std::size_t object, const world::Attachmen
   for (const world::ToolFrame& tool : geometry_.world.robots[held.robot].tools)
     for (const world::Grasp& grasp : thing.grasps) {
       if (tool.link != held.link || !fits(tool, grasp)) continue;
-      const kinematics::PoseError error = kinematics::difference(tool.pose * grasp.pose, held.pose);
-      if (error.position <= kSamePose && error.rotation <= kSamePose)
+      if (is_at(tool.pose, grasp, held.pose))
         return thing.name + ", held by its grasp '" + grasp.name + "',";
     }
   return thing.name;
@@ -140,10 +165,11 @@ std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t obj
     return none(Answer::Kind::Impossible, thing.name + " is held already");
   Goals goals = goals_of_reach(robot, object);
   if (!goals.configurations.empty()) return goals;
-  if (goals.all) {
+  const bool beyond = is_beyond_reach(robot, object);
+  if (goals.all || beyond) {
     none(Answer::Kind::Impossible,
          thing.name + " is out of reach: " + goals.none() + " can be reached by " + model.name);
-    listed_ = !is_beyond_reach(robot, object);
+    listed_ = !beyond;
     return std::nullopt;
   }
   return none(Answer::Kind::NotFound,
@@ -158,6 +184,14 @@ bool Sequence::reach(std::size_t robot, std::size_t object) {
                 geometry_.world.objects[object].name + " is held already");
   const auto preferred = preferred_goals(robot, object);
   if (preferred && go(robot, *preferred)) return true;
+  std::set<unsigned> ranks;
+  for (const Hold& hold : holds(robot, object, 1)) ranks.insert(hold.grasp->rank);
+  if (ranks.size() > 1)
+    for (const unsigned rank : ranks) {
+      Goals best = goals_of_reach(robot, object, rank);
+      best.all = false;  // there are other ranks
+      if (!best.configurations.empty() && go(robot, best)) return true;
+    }
   return go(robot, *goals);
 }
 

@@ -60,7 +60,21 @@ class Sequence : public MotionSequence {
   };
   /// @param points  of the support that things are put on
   std::vector<Footing> footings(std::size_t object, std::size_t support, std::size_t points);
-  [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object) const;
+  /// A grasp, or a member of a family, by a tool that may use it.
+  struct Hold {
+    const world::Grasp* grasp;
+    const world::ToolFrame* tool;
+    world::Transform pose;  ///< from the object's frame to the tool's
+  };
+  /// In the scene's order. @param draws  members of each family
+  [[nodiscard]] std::vector<Hold> holds(std::size_t robot, std::size_t object,
+                                        std::size_t draws) const;
+  void add_goals_of(Goals& goals, std::size_t robot, std::size_t object, const Hold& hold) const;
+  /// Members of a family that this attempt draws.
+  [[nodiscard]] std::size_t draws() const;
+  /// @param rank  of the grasps; nullopt: of any
+  [[nodiscard]] Goals goals_of_reach(std::size_t robot, std::size_t object,
+                                     std::optional<unsigned> rank = std::nullopt) const;
   /// Whether no tool comes as near to the object as the grasps that are listed have it, however the
   /// robot stretches: then no other grasp is in reach either.
   [[nodiscard]] bool is_beyond_reach(std::size_t robot, std::size_t object) const;

@@ -4,9 +4,11 @@
 #include <kaboum/base/length_unit.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/features.h>
+#include <kaboum/world/grasp_family.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -16,6 +18,14 @@ namespace kaboum::world {
 namespace {
 
 using detail::Located;
+
+/// Of the sine of the angle between two slides.
+constexpr double kNotParallel = 1e-3;
+/// Of bounds that are stated in decimals. [1]
+constexpr double kRounding = 1e-9;
+/// Of slides and turns. [length or rad]
+constexpr double kFarthestBound = 1e6;
+constexpr double kLastRank = 100;
 
 class Parser : detail::SceneRobot {
  public:
@@ -75,11 +85,92 @@ class Parser : detail::SceneRobot {
              "an angle above 0 and at most pi is expected, in radians: most that the object may "
              "lean");
     }
-    for (const Located& g : list(o, "grasps")) {
-      known(g, {"name", "position", "rpy", "quaternion"});
-      out.grasps.push_back({string(need(g, "name")), pose(g)});
-    }
     world_.objects.push_back(std::move(out));
+    for (const Located& g : list(o, "grasps")) add_grasp(g);
+  }
+
+  /// Of the object that was read last.
+  void add_grasp(const Located& g) {
+    known(g, {"name", "position", "rpy", "quaternion", "slides", "turn", "rank"});
+    Grasp out{string(need(g, "name")), pose(g)};
+    for (const Located& s : list(g, "slides")) {
+      known(s, {"along", "from", "to"});
+      FreeSlide slide;
+      slide.direction = axis_of_object(need(s, "along")).direction;
+      slide.from = bound(need(s, "from"));
+      slide.to = bound(need(s, "to"));
+      require_order(s, slide.from, slide.to);
+      for (const FreeSlide& other : out.slides)
+        if (!(other.direction.cross(slide.direction).norm() > kNotParallel))
+          fail(s, "two slides in one direction: one is enough, with wider bounds");
+      out.slides.push_back(slide);
+    }
+    if (out.slides.size() > 2) fail(need(g, "slides"), "at most two slides are expected");
+    if (const Located* t = find(g, "turn")) {
+      known(*t, {"about", "from", "to"});
+      const Feature axis = axis_of_object(need(*t, "about"));
+      FreeTurn turn{axis.point, axis.direction};
+      const Located *from = find(*t, "from"), *to = find(*t, "to");
+      if ((from == nullptr) != (to == nullptr))
+        fail(*t, "give both 'from' and 'to', or neither: then it turns all round");
+      if (from != nullptr) {
+        turn.from = bound(*from);
+        turn.to = bound(*to);
+        require_order(*t, turn.from, turn.to);
+        if (turn.to - turn.from > 2 * std::numbers::pi * (1 + kRounding))
+          fail(*t, "more than a whole turn: bounds at most 2 pi apart are expected, in radians");
+      }
+      out.turn = turn;
+    }
+    if (const Located* rank = find(g, "rank")) {
+      const double value = number(*rank);
+      if (!(value >= 0 && value <= kLastRank && value == std::floor(value)))
+        fail(*rank, "a rank from 0 to 100 is expected: the lowest is tried first");
+      out.rank = static_cast<unsigned>(value);
+    }
+    if (is_family(out)) require_tool(need(g, "name"));
+    world_.objects.back().grasps.push_back(std::move(out));
+  }
+
+  double bound(const Located& value) const {
+    const double out = number(value);
+    if (!(std::abs(out) <= kFarthestBound)) fail(value, "a number from -1e6 to 1e6 is expected");
+    return out;
+  }
+
+  void require_order(const Located& at, double from, double to) const {
+    if (from > to) fail(at, "no value is within the bounds: 'from' is above 'to'");
+  }
+
+  /// A line, or the normal of a plane, of the object that was read last: by its name, or stated.
+  Feature axis_of_object(const Located& value) const {
+    if (value.kind == Located::Kind::Object) {
+      known(value, {"point", "direction"});
+      const Located* point = find(value, "point");
+      return {"", Feature::Kind::Line, point != nullptr ? vector(*point) : Vec3(Vec3::Zero()),
+              unit_vector(need(value, "direction"))};
+    }
+    const FixedFeature out = feature_named(value);
+    if (out.to != FixedFeature::To::Object || out.index + 1 != world_.objects.size())
+      fail(value, "'" + value.text + "' is no feature of the object '" +
+                      world_.objects.back().name + "', whose grasp this is");
+    if (out.feature.kind == Feature::Kind::Point)
+      fail(value,
+           "'" + value.text + "' is a point: a line, or a plane for its normal, is expected");
+    return out.feature;
+  }
+
+  /// Refuses a family that is called after a tool that no robot has: it would never be tried.
+  void require_tool(const Located& name) const {
+    const std::size_t slash = name.text.find('/');
+    if (slash == std::string::npos || world_.robots.empty()) return;
+    const std::string tool = name.text.substr(0, slash);
+    std::vector<std::string> tools;
+    for (const RobotModel& robot : world_.robots)
+      for (const ToolFrame& frame : robot.tools) tools.push_back(frame.name);
+    if (std::ranges::find(tools, tool) == tools.end())
+      fail(name, "no robot has the tool '" + tool + "', which alone may use this grasp" +
+                     did_you_mean(tool, tools));
   }
 
   void add_region(const Located& r) {

@@ -153,6 +153,23 @@ TEST(Simulation, CountsWhatIsWrong) {
   EXPECT_GT(carry_out(c, -1.5, "on arm/hand 0.12 0 0 0 0 0 1").report.limit_violations, 0U);
 }
 
+TEST(Simulation, AToolIsAtAnyMemberOfAFamily) {
+  // The block 1 cm aside, and in the hand likewise: at no grasp but that of a slide.
+  Case c;
+  c.world.objects[0].pose.translation.y() = 0.01;
+  const std::string held = "on arm/hand 0.12 0.01 0 0 0 0 1";
+  EXPECT_GT(carry_out(c, 1, held).report.jumps, 0U);
+  world::Grasp& grasp = c.world.objects[0].grasps[0];
+  grasp.slides = {{geom::Vec3::UnitY(), -0.02, 0.003}};
+  const Outcome within = carry_out(c, 1, held);
+  EXPECT_TRUE(within.report.good()) << within.report.problems.front();
+  // The tool would have to slide by -0.01.
+  grasp.slides = {{geom::Vec3::UnitY(), -0.0099, 0.02}};
+  EXPECT_GT(carry_out(c, 1, held).report.jumps, 0U);
+  grasp.slides = {{geom::Vec3::UnitZ(), -0.02, 0.02}};
+  EXPECT_GT(carry_out(c, 1, held).report.jumps, 0U);
+}
+
 /// The block is picked; then the hand moves on by these parts of a motion, and the block is away.
 SimulationReport taken_away(const std::string& parts) {
   Case c;

@@ -646,5 +646,123 @@ TEST_F(Actions, SweptCollidesReadsTheOtherRobotToo) {
   }
 }
 
+/// The block's only grasp is at a side, anywhere round its axis and up to 2 cm higher.
+TwoArms with_family() {
+  TwoArms arms;
+  std::vector<world::Grasp>& grasps = arms.world.objects[TwoArms::kBlock].grasps;
+  grasps = {grasps[1]};
+  grasps[0].turn = world::FreeTurn{};
+  grasps[0].slides = {{Vec3::UnitZ(), 0, 0.02}};
+  return arms;
+}
+
+/// How the hand of the left arm has the block, at the end of a path.
+Transform in_hand(const TwoArms& arms, const std::vector<double>& q) {
+  const world::RobotModel& left = arms.world.robots[0];
+  const Transform tool =
+      judge::product(judge::places(left.kinematics, left.base, q)[arms.hand], left.tools[0].pose);
+  const Transform back{tool.linear.transpose(), -(tool.linear.transpose() * tool.translation)};
+  return judge::product(back, arms.world.objects[TwoArms::kBlock].pose);
+}
+
+/// That a tool stands off the block's axis by `radius`, looks straight at it, and is 0 to 2 cm
+/// above where the stated pose has it.
+void expect_at_side(const Transform& held) {
+  const Vec3 origin = -(held.linear.transpose() * held.translation);  // in the block's frame
+  const Vec3 looks = held.linear.transpose().col(2), along = held.linear.transpose().col(0);
+  EXPECT_NEAR(origin.head<2>().norm(), 0.025 + TwoArms::kGap, 1e-6);
+  EXPECT_LT((looks.head<2>() + origin.head<2>().normalized()).norm(), 1e-6);
+  EXPECT_NEAR(std::abs(along.z()), 1, 1e-6);
+  const double stated = 0.03 * -along.z();
+  EXPECT_GE(origin.z(), stated - 1e-6);
+  EXPECT_LE(origin.z(), stated + 0.02 + 1e-6);
+}
+
+TEST(GraspFamilies, AreReachedAndTakenAtAnyMember) {
+  const TwoArms arms = with_family();
+  const plan::ExternalBindings all = manipulation::bind_externals(arms.world, {});
+  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
+                                                    {"conf(right)", "home"},
+                                                    {"pose(block)", "start"},
+                                                    {"pose(socket)", "start"},
+                                                    {"pose(wall)", "start"}};
+  const Answer there = ask(all, "reach", {"left", "block"}, words);
+  ASSERT_EQ(there.kind, Answer::Kind::Value) << there.reason;
+  const std::vector<double> q = motions_of(there).back().path.back();
+  expect_at_side(in_hand(arms, q));
+  const Answer held = ask(all, "grasp", {"left", "block", there.value}, words);
+  ASSERT_EQ(held.kind, Answer::Kind::Value) << held.reason;
+  // A little off is at none.
+  std::vector<double> off = q;
+  off[1] += 1e-4;
+  EXPECT_EQ(ask(all, "grasp", {"left", "block", manipulation::word_of(off)}, words).kind,
+            Answer::Kind::Impossible);
+}
+
+TEST(GraspFamilies, ASearchMayPreferOneMemberAfterTheOther) {
+  // From above, at any turn.
+  TwoArms arms;
+  std::vector<world::Grasp>& grasps = arms.world.objects[TwoArms::kBlock].grasps;
+  grasps = {grasps[0]};
+  grasps[0].turn = world::FreeTurn{};
+  const plan::ExternalBindings all = manipulation::bind_externals(arms.world, {});
+  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
+                                                    {"conf(right)", "home"},
+                                                    {"pose(block)", "start"},
+                                                    {"pose(socket)", "start"},
+                                                    {"pose(wall)", "start"}};
+  const unsigned choices = ask(all, "reach", {"left", "block"}, words).choices;
+  EXPECT_EQ(choices, 8U);
+  std::set<long> turns;
+  for (unsigned choice = 1; choice <= choices; ++choice) {
+    const Answer there = ask(all, "reach", {"left", "block"}, words, 6, choice);
+    ASSERT_EQ(there.kind, Answer::Kind::Value) << there.reason;
+    const Transform held = in_hand(arms, motions_of(there).back().path.back());
+    EXPECT_LT((held.translation - grasps[0].pose.translation).norm(), 1e-6);
+    EXPECT_NEAR(held.linear(2, 2), -1, 1e-9);
+    turns.insert(std::lround(std::atan2(held.linear(1, 0), held.linear(0, 0)) * 1000));
+  }
+  EXPECT_EQ(turns.size(), 8U);
+}
+
+TEST(GraspFamilies, NotFoundIsNoProofButDistanceIs) {
+  TwoArms arms = with_family();
+  std::map<std::string, std::string> words = {{"conf(left)", "home"},
+                                              {"conf(right)", "home"},
+                                              {"pose(socket)", "start"},
+                                              {"pose(wall)", "start"}};
+  const auto kind = [&](const std::string& pose) {
+    words["pose(block)"] = pose;
+    return ask(manipulation::bind_externals(arms.world, {}), "reach", {"left", "block"}, words)
+        .kind;
+  };
+  // Upside down under the table, and farther away than the arm is long.
+  EXPECT_EQ(kind("at 0.5 0.3 -0.2 0 0 0 1"), Answer::Kind::NotFound);
+  EXPECT_EQ(kind("at 5 0.3 0.1 0 0 0 1"), Answer::Kind::Impossible);
+  // Slides may bring the tool nearer: then it is not said.
+  arms.world.objects[TwoArms::kBlock].grasps[0].slides[0] = {Vec3::UnitX(), -3.7, 0};
+  EXPECT_EQ(kind("at 5 0.3 0.1 0 0 0 1"), Answer::Kind::NotFound);
+}
+
+TEST(GraspFamilies, TheLowestRankIsTakenWhereItDoes) {
+  TwoArms arms;
+  std::vector<world::Grasp>& grasps = arms.world.objects[TwoArms::kBlock].grasps;
+  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
+                                                    {"conf(right)", "home"},
+                                                    {"pose(block)", "start"},
+                                                    {"pose(socket)", "start"},
+                                                    {"pose(wall)", "start"}};
+  for (const std::size_t first : {0U, 1U, 2U}) {
+    for (world::Grasp& grasp : grasps) grasp.rank = 1;
+    grasps[first].rank = 0;
+    const Answer there =
+        ask(manipulation::bind_externals(arms.world, {}), "reach", {"left", "block"}, words);
+    ASSERT_EQ(there.kind, Answer::Kind::Value) << there.reason;
+    const Transform held = in_hand(arms, motions_of(there).back().path.back());
+    EXPECT_LT((held.translation - grasps[first].pose.translation).norm(), 1e-6) << first;
+    EXPECT_LT((held.linear - grasps[first].pose.linear).norm(), 1e-6) << first;
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::test

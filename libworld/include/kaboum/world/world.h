@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -106,10 +107,27 @@ struct RobotModel {
   std::string fingerprint;  ///< hash of what proofs about the robot alone depend on
 };
 
-/// Hold of a tool on an object.
+/// A slide of a tool along a direction of what it holds, between two bounds.
+struct FreeSlide {
+  Vec3 direction = Vec3::UnitX();  ///< of unit length, in the object's frame
+  double from = 0, to = 0;         ///< from the grasp's stated pose; from ≤ to [length]
+};
+
+/// A turn of a tool about an axis of what it holds, between two bounds.
+struct FreeTurn {
+  Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();  ///< axis of unit length, in the object's frame
+  /// From the grasp's stated pose; from ≤ to, at most a whole turn. [rad]
+  double from = -std::numbers::pi, to = std::numbers::pi;
+};
+
+/// Hold of a tool on an object. With slides or a turn it is a family of holds: the tool is turned
+/// about the axis, then slid, by any values within the bounds (grasp_family.h).
 struct Grasp {
   std::string name;
-  Transform pose;  ///< from the object's frame to the tool's
+  Transform pose;                      ///< from the object's frame to the tool's
+  std::vector<FreeSlide> slides = {};  ///< at most two, not parallel
+  std::optional<FreeTurn> turn = {};
+  unsigned rank = 0;  ///< planners try grasps of a lower one first
 };
 
 struct Object {
