@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "search/deferred_calls.h"
 #include "search/search.h"
 #include "search/state_store.h"
 
@@ -19,14 +20,25 @@ void count_states(const StateStore& store, Statistics& s) {
 /// For the limit of memory: what the table of states takes for a while when it grows included.
 std::size_t held(const StateStore& store) { return store.bytes() + store.growth(); }
 
+/// Steps as they are: external functions are asked.
+struct AskedSteps {
+  static constexpr bool kAsked = true;
+  static constexpr std::size_t kMostStates = ~std::size_t{0};
+  Task& task;
+  void expand(const Word* state, std::vector<OperatorId>& steps) { task.expand(state, steps); }
+  bool apply(OperatorId step, Knowledge& state) { return task.apply(step, state); }
+};
+
 /// Successors of one state, made together so that the table's lines are fetched ahead.
+template <class Steps>
 struct Successors {
-  std::vector<OperatorId> steps;
-  std::vector<Word> words;
-  std::vector<std::uint64_t> hashes;
+  Steps& from;
+  std::vector<OperatorId> steps = {};
+  std::vector<Word> words = {};
+  std::vector<std::uint64_t> hashes = {};
 
   void make(const SearchInput& in, const Word* state, Knowledge& scratch, const StateStore& store) {
-    in.task.expand(state, steps);
+    from.expand(state, steps);
     const Index n = in.task.layout().words();
     words.clear();
     hashes.clear();
@@ -34,7 +46,7 @@ struct Successors {
     for (const OperatorId step : steps) {
       if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
       scratch.assign(state);
-      if (!in.task.apply(step, scratch)) continue;
+      if (!from.apply(step, scratch)) continue;
       words.insert(words.end(), scratch.words(), scratch.words() + n);
       hashes.push_back(scratch.hash());
       store.prefetch(scratch.hash());
@@ -74,9 +86,9 @@ std::optional<std::pair<Index, OperatorId>> last_step(const SearchInput& in,
   return std::nullopt;
 }
 
-}  // namespace
-
-SearchResult breadth_first(const SearchInput& in) {
+/// Breadth first.
+template <class Steps>
+SearchResult search_layers(const SearchInput& in, Steps& from) {
   const Index n = in.task.layout().words();
   StateStore store(n);
   Knowledge scratch(in.task.layout());
@@ -86,7 +98,7 @@ SearchResult breadth_first(const SearchInput& in) {
     found.outcome = Outcome::Solved;
     return found;
   }
-  Successors next;
+  Successors<Steps> next{from};
   std::size_t layer_end = 0;
   std::uint64_t depth = 0;
   const auto solved = [&](std::vector<OperatorId> steps) {
@@ -101,13 +113,13 @@ SearchResult breadth_first(const SearchInput& in) {
       layer_end = store.size();
       ++depth;  // of the states that are made
       in.statistics.depth = std::max(in.statistics.depth, depth - 1);
-      if (const auto last = last_step(in, store, i, layer_end)) {
+      if (const auto last = Steps::kAsked ? last_step(in, store, i, layer_end) : std::nullopt) {
         std::vector<OperatorId> steps = store.path(last->first);
         steps.push_back(last->second);
         return solved(std::move(steps));
       }
     }
-    if (in.limits.exceeded(held(store))) {
+    if (in.limits.exceeded(held(store)) || store.size() > Steps::kMostStates) {
       count_states(store, in.statistics);
       return found;
     }
@@ -122,6 +134,91 @@ SearchResult breadth_first(const SearchInput& in) {
   count_states(store, in.statistics);
   found.outcome = Outcome::Unsolvable;
   return found;
+}
+
+/// Depth-first within a growing depth limit. A state is searched again only with more depth left
+/// than ever before, so each round is at most as long as a breadth-first search of the same depth
+/// and the plan has the fewest steps. A round that reaches no new state proves that there is none.
+template <class Steps>
+SearchResult search_deeper(const SearchInput& in, Steps& from) {
+  const Index n = in.task.layout().words();
+  StateStore store(n);  // link.step: most depth left with which it was searched
+  Knowledge state(in.task.layout());
+  state.keep_log(true);
+  SearchResult found;
+  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), 0, 0);
+  if (in.target.reached(in.start.data())) {
+    found.outcome = Outcome::Solved;
+    return found;
+  }
+  std::vector<std::vector<OperatorId>> steps;
+  std::vector<OperatorId> path;
+  enum class Round { Solved, Limit, Failed };
+  const auto descend = [&](const auto& self, Index left) -> Round {
+    const std::size_t depth = path.size();
+    if (in.limits.exceeded(held(store)) || store.size() > Steps::kMostStates) return Round::Limit;
+    from.expand(state.words(), steps[depth]);
+    ++in.statistics.expanded;
+    for (std::size_t i = 0; i < steps[depth].size(); ++i) {
+      const OperatorId step = steps[depth][i];
+      if (in.task.is_outcome(step) && !in.target.allowed(state.words(), step)) continue;
+      const std::size_t mark = state.mark();
+      if (from.apply(step, state)) {
+        ++in.statistics.generated;
+        const auto [number, fresh] = store.insert(state.words(), state.hash(), 0, left - 1);
+        path.push_back(step);
+        if (fresh && in.target.reached(state.words())) return Round::Solved;
+        if (left > 1 && (fresh || store.link(number).step < left - 1)) {
+          store.link(number).step = left - 1;
+          const Round r = self(self, left - 1);
+          if (r != Round::Failed) return r;
+        }
+        path.pop_back();
+      }
+      state.undo(mark);
+    }
+    return Round::Failed;
+  };
+  constexpr Index kDeepest = 10'000;  // the recursion's depth
+  for (Index limit = 1; limit <= kDeepest; ++limit) {
+    in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, limit);
+    steps.resize(limit);
+    path.clear();
+    state.assign(in.start.data());
+    const std::size_t before = store.size();
+    store.link(0).step = limit;
+    const Round r = descend(descend, limit);
+    count_states(store, in.statistics);
+    if (r == Round::Solved) {
+      found.outcome = Outcome::Solved;
+      found.steps = path;
+      return found;
+    }
+    if (r == Round::Limit) return found;
+    if (store.size() == before) {
+      found.outcome = Outcome::Unsolvable;
+      return found;
+    }
+  }
+  return found;
+}
+
+/// Fewest steps by a search with calls put off; where its plan does not hold, with all calls made.
+template <class Search>
+SearchResult with_deferred_calls(const SearchInput& in, const Search& search) {
+  if (DeferredCalls deferred(in); deferred.possible()) {
+    SearchResult found = search(deferred.input(), deferred);
+    if (deferred.confirms(found)) return found;
+  }
+  AskedSteps asked{in.task};
+  return search(in, asked);
+}
+
+}  // namespace
+
+SearchResult breadth_first(const SearchInput& in) {
+  return with_deferred_calls(
+      in, [](const SearchInput& of, auto& from) { return search_layers(of, from); });
 }
 
 SearchResult depth_first(const SearchInput& in) {
@@ -197,70 +294,9 @@ SearchResult depth_first(const SearchInput& in) {
   return found;
 }
 
-/// Depth-first within a growing depth limit. A state is searched again only with more depth left
-/// than ever before, so each round is at most as long as a breadth-first search of the same depth
-/// and the plan has the fewest steps. A round that reaches no new state proves that there is none.
 SearchResult iterative_deepening(const SearchInput& in) {
-  const Index n = in.task.layout().words();
-  StateStore store(n);  // link.step: most depth left with which it was searched
-  Knowledge state(in.task.layout());
-  state.keep_log(true);
-  SearchResult found;
-  store.insert(in.start.data(), Knowledge::hash_of(in.start.data(), n), 0, 0);
-  if (in.target.reached(in.start.data())) {
-    found.outcome = Outcome::Solved;
-    return found;
-  }
-  std::vector<std::vector<OperatorId>> steps;
-  std::vector<OperatorId> path;
-  enum class Round { Solved, Limit, Failed };
-  const auto descend = [&](const auto& self, Index left) -> Round {
-    const std::size_t depth = path.size();
-    if (in.limits.exceeded(held(store))) return Round::Limit;
-    in.task.expand(state.words(), steps[depth]);
-    ++in.statistics.expanded;
-    for (std::size_t i = 0; i < steps[depth].size(); ++i) {
-      const OperatorId step = steps[depth][i];
-      if (in.task.is_outcome(step) && !in.target.allowed(state.words(), step)) continue;
-      const std::size_t mark = state.mark();
-      if (in.task.apply(step, state)) {
-        ++in.statistics.generated;
-        const auto [number, fresh] = store.insert(state.words(), state.hash(), 0, left - 1);
-        path.push_back(step);
-        if (fresh && in.target.reached(state.words())) return Round::Solved;
-        if (left > 1 && (fresh || store.link(number).step < left - 1)) {
-          store.link(number).step = left - 1;
-          const Round r = self(self, left - 1);
-          if (r != Round::Failed) return r;
-        }
-        path.pop_back();
-      }
-      state.undo(mark);
-    }
-    return Round::Failed;
-  };
-  constexpr Index kDeepest = 10'000;  // the recursion's depth
-  for (Index limit = 1; limit <= kDeepest; ++limit) {
-    in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, limit);
-    steps.resize(limit);
-    path.clear();
-    state.assign(in.start.data());
-    const std::size_t before = store.size();
-    store.link(0).step = limit;
-    const Round r = descend(descend, limit);
-    count_states(store, in.statistics);
-    if (r == Round::Solved) {
-      found.outcome = Outcome::Solved;
-      found.steps = path;
-      return found;
-    }
-    if (r == Round::Limit) return found;
-    if (store.size() == before) {
-      found.outcome = Outcome::Unsolvable;
-      return found;
-    }
-  }
-  return found;
+  return with_deferred_calls(
+      in, [](const SearchInput& of, auto& from) { return search_deeper(of, from); });
 }
 
 }  // namespace kaboum::plan
