@@ -124,6 +124,29 @@ def options(name, n, least, most, more=lambda parser: None):
     return o
 
 
+MOVE = """
+externals: wander(robot) : conf
+
+action move(?r : robot)
+  preconds: let ?q = extern(wander(?r))
+  effects: add(Kf, conf(?r) = ?q)
+"""
+
+
+def add_move(parser):
+    parser.add_argument("--move", action="store_true", help="with the action move, to random waypoints (thesis, Table 6.1)")
+
+
+def domain_of(o, name):
+    """The scenario's domain, with the action move where it is asked for: last, as depth-first search takes actions in order."""
+    if not o.move:
+        return "domain.kpl"
+    file = o.out.resolve() / "domain.kpl"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text((HERE / name / "domain.kpl").read_text() + MOVE)
+    return file
+
+
 def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}):
     """All that comes after scene and problem. @param compare  what the last line says more of a plan."""
     out = o.out.resolve()

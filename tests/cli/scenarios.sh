@@ -86,9 +86,18 @@ scenario remove 6 12 1 --robots 2
 python3 -c 'import json; print({n["arguments"][0] for n in json.load(open("remove/plan.json"))["nodes"]})' | grep -q 'arm2.*arm\|arm.*arm2' ||
   fail "one robot takes all blocks"
 expect 2 'set KABOUM_MESHES' env KABOUM_MESHES= "$S/remove/run" 2 --real ur5 --out none
-scenario bimanual-assembly 4 8 1
+scenario circular-rearrange 3 6 1 --move
+grep -q 'action move' circular-rearrange/domain.kpl || fail "no action move"
 P=$BIN/kaboum-plan
 D=$S/bimanual-assembly/domain.kpl
+# Handing over is in the plan, and there is none without it.
+scenario bimanual-assembly 4 7 1 --hand-over
+python3 -c 'import json; print([n["action"] for n in json.load(open("bimanual-assembly/plan.json"))["nodes"]].count("handoverBearing"))' | grep -qx 1 ||
+  fail "no bearing is handed over"
+sed '/^action handoverBearing/,/^    add(Kf, conf/d; /^action move/,/^  effects: add(Kf, conf/d' "$D" >alone.kpl
+expect 7 'fetch(robot1, o1, home): impossible.*out of reach' "$P" solve alone.kpl bimanual-assembly/problem.kpl \
+  --scene bimanual-assembly/cell.json -o none.json --explain --timeout 10 --no-cache
+scenario bimanual-assembly 4 8 1
 set -- "$D" bimanual-assembly/problem.kpl --scene bimanual-assembly/cell.json
 # Of a second run nothing is asked again; its plan is the same.
 expect 0 solved "$P" solve "$@" -o again.json --report again-report.json
