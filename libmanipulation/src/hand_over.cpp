@@ -23,6 +23,8 @@ constexpr int kMeetings = 60, kWanderings = 100;
 constexpr std::size_t kSatisfying = 16;
 /// Ways to take a thing at such a place that are enough.
 constexpr std::size_t kEnough = 4;
+/// Members of a family of grasps that are tried at one such place: there are many places.
+constexpr std::size_t kMembers = 8;
 
 }  // namespace
 
@@ -36,13 +38,23 @@ bool Sequence::meet(std::size_t from, std::size_t object, std::size_t to,
   const std::vector<Motion> motions = motions_;
   state_ = then;
   Goals goals;
-  const Goals reaching = grasps == Grasps::All ? goals_of_reach(to, object)
-                                               : preferred_goals(to, object).value_or(Goals{});
-  for (const std::vector<double>& goal : reaching.configurations) {
-    world::WorldState both = then;
-    both.q[to] = goal;
-    if (is_free(both)) goals.configurations.push_back(goal);
-    if (goals.configurations.size() == kEnough) break;
+  const auto add_free = [&](const Goals& reaching) {
+    for (const std::vector<double>& goal : reaching.configurations) {
+      if (goals.configurations.size() == kEnough) return;
+      world::WorldState both = then;
+      both.q[to] = goal;
+      if (is_free(both)) goals.configurations.push_back(goal);
+    }
+  };
+  if (grasps == Grasps::Preferred) {
+    add_free(preferred_goals(to, object).value_or(Goals{}));
+  } else {
+    for (const Hold& hold : holds(to, object, kMembers)) {
+      if (goals.configurations.size() == kEnough) break;
+      Goals reaching;
+      add_goals_of(reaching, to, object, hold);
+      add_free(reaching);
+    }
   }
   state_ = before;
   goals.all = false;

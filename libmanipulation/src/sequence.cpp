@@ -23,7 +23,7 @@ using world::Transform;
 constexpr int kTurns = 8;
 /// Members of a family of grasps that are drawn; with each attempt twice as many.
 constexpr std::size_t kDraws = 16;
-constexpr unsigned kMostDoublings = 6;
+constexpr unsigned kMostDoublings = 3;
 /// Of these, as many are choices that a search may prefer.
 constexpr std::size_t kChoices = 8;
 /// More than sums of lengths lose. [1]
