@@ -11,6 +11,7 @@
 
 #include "involved.h"
 #include "sequence.h"
+#include "volumes.h"
 
 namespace kaboum::manipulation {
 namespace {
@@ -122,8 +123,20 @@ std::optional<Answer> out_of_reach(Geometry& geometry, const Question& question,
 /// Motions that fetch an object and go back, or why there are none.
 struct Fetched {
   std::vector<Motion> motions;
+  Answer found;  ///< without a value
   Answer failure;
 };
+
+/// Reads what a motion that fetches an object is looked for among: robots, the object and the
+/// things that nobody grasps.
+bool read_to_fetch(const Geometry& geometry, GeometricState& state, std::size_t object) {
+  const world::World& world = geometry.world;
+  for (std::size_t robot = 0; robot < world.robots.size(); ++robot)
+    if (!state.read_robot(robot)) return false;
+  for (std::size_t i = 0; i < world.objects.size(); ++i)
+    if ((i == object || world.objects[i].grasps.empty()) && !state.read_object(i)) return false;
+  return true;
+}
 
 /// The first that is found, of all attempts up to the question's. A question's own seed is made of
 /// its arguments: what is found here is the same whatever else is asked about.
@@ -137,12 +150,23 @@ Fetched fetch_alone(Geometry& geometry, const Question& question, const world::W
     if (sequence.reach(robot, object) && sequence.take(robot, object) &&
         sequence.go(robot, state.q[robot])) {
       out.motions = sequence.motions();
+      out.found = sequence.found("");
       break;
     }
     out.failure = sequence.failure();
     if (out.failure.kind == Answer::Kind::Impossible) break;
   }
   return out;
+}
+
+/// Whether the same objects are held in the very same way.
+bool are_same(const std::vector<std::pair<std::size_t, world::Attachment>>& a,
+              const std::vector<std::pair<std::size_t, world::Attachment>>& b) {
+  return std::ranges::equal(a, b, [](const auto& x, const auto& y) {
+    return x.first == y.first && x.second.link == y.second.link &&
+           x.second.pose.linear == y.second.pose.linear &&
+           x.second.pose.translation == y.second.pose.translation;
+  });
 }
 
 std::string configuration(const Sequence& s, std::size_t robot) {
@@ -302,11 +326,7 @@ Answer move(Geometry& geometry, const Question& question) {
 Answer is_inside(Geometry& geometry, const Question& question) {
   const std::size_t o = object_named(geometry, question.arguments[0]);
   const world::World& world = geometry.world;
-  std::size_t region = 0;
-  while (region < world.regions.size() && world.regions[region].name != question.arguments[1])
-    ++region;
-  if (region == world.regions.size())
-    throw Error(ErrorCode::InvalidInput, "the scene has no region '" + question.arguments[1] + "'");
+  const std::size_t region = region_named(geometry, question.arguments[1]);
   CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
   if (asked.state.world().absent[o])
@@ -415,11 +435,8 @@ Answer grasp_motion_collides(Geometry& geometry, const Question& question) {
   const std::size_t other = object_named(geometry, question.arguments[skip + 1]);
   if (other == o) return Answer::holds(false, "it is what is grasped");
   CallState asked(geometry, question);
-  for (std::size_t robot = 0; robot < world.robots.size(); ++robot)
-    if (!asked.state.read_robot(robot)) return asked.not_known();
-  for (std::size_t i = 0; i < world.objects.size(); ++i)
-    if ((i == o || i == other || world.objects[i].grasps.empty()) && !asked.state.read_object(i))
-      return asked.not_known();
+  if (!read_to_fetch(geometry, asked.state, o) || !asked.state.read_object(other))
+    return asked.not_known();
   world::WorldState state = asked.state.world();
   if (state.absent[other]) return Answer::holds(false, question.arguments[skip + 1] + " is away");
   state.absent[other] = true;
@@ -456,6 +473,76 @@ Answer swept_collides(Geometry& geometry, const Question& question) {
   // with others count.
   const auto motion = check_motion(geometry.checker, state, r, {state.q[r], to}, geometry.check);
   return Answer::holds(motion.outcome != world::MotionAnswer::Outcome::Free, "it is free");
+}
+
+namespace {
+
+/// The word of the volume of what a sequence did; where it did nothing, of the robot where it is.
+std::string volume_of_sequence(const Geometry& geometry, const Sequence& s, std::size_t robot) {
+  if (!s.motions().empty()) return volume_word(geometry.world, s.motions());
+  return volume_word(geometry.world, {motion_in(s.state(), robot, {s.state().q[robot]})});
+}
+
+}  // namespace
+
+Answer path_volume(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::vector<double> end = configuration_of(question.arguments[1], geometry.world.robots[r]);
+  Answer answer = perform(
+      geometry, question, {"pathVolume", {r}, {}}, [&](Sequence& s) { return s.go(r, end); },
+      [&](const Sequence& s) { return volume_of_sequence(geometry, s, r); });
+  answer.payload.clear();  // nothing moves
+  return answer;
+}
+
+Answer reach_volume(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[1]);
+  if (auto no = out_of_reach(geometry, question, r, o)) return *no;
+  Answer answer = perform(
+      geometry, question, {"reachVolume", {r}, {o}}, [&](Sequence& s) { return s.reach(r, o); },
+      [&](const Sequence& s) { return volume_of_sequence(geometry, s, r); });
+  answer.payload.clear();
+  return answer;
+}
+
+/// The motion is that of graspMotionCollides, and free of what nobody grasps.
+Answer grasp_volume(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[1]);
+  CallState asked(geometry, question);
+  if (!read_to_fetch(geometry, asked.state, o)) return asked.not_known();
+  const Fetched fetched =
+      fetch_alone(geometry, question, asked.state.world(), asked.state.mounted(), r, o);
+  if (fetched.motions.empty()) return fetched.failure;
+  Answer answer = fetched.found;
+  answer.value = volume_word(geometry.world, fetched.motions);
+  return answer;
+}
+
+Answer follow(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const world::RobotModel& robot = geometry.world.robots[r];
+  const auto volume = volume_of(geometry, question.arguments[1]);
+  if (volume->motions.size() != 1 || volume->motions.front().robot != r)
+    return Answer::impossible("the volume is not of one motion of " + robot.name);
+  const Motion& motion = volume->motions.front();
+  const auto begins_here = [&](const world::WorldState& state) {
+    const Motion now = motion_in(state, r, {state.q[r]});
+    return now.path.front() == motion.path.front() && are_same(now.holds, motion.holds);
+  };
+  return perform(
+      geometry, question, {"follow", {r}, {}},
+      [&](Sequence& s) {
+        return begins_here(s.state())
+                   ? s.follow(r, motion.path)
+                   : s.fail(Answer::Kind::Impossible,
+                            robot.name +
+                                " is not where the volume's motion begins, with what it holds");
+      },
+      [&](const Sequence& s) {
+        return s.state().q[r] == robot.home ? std::string(kHome) : configuration(s, r);
+      });
 }
 
 }  // namespace kaboum::manipulation

@@ -26,5 +26,14 @@ plan::Answer mate(Geometry& geometry, const plan::Question& question);
 plan::Answer is_reachable(Geometry& geometry, const plan::Question& question);
 plan::Answer grasp_motion_collides(Geometry& geometry, const plan::Question& question);
 plan::Answer swept_collides(Geometry& geometry, const plan::Question& question);
+plan::Answer swept_volume(Geometry& geometry, const plan::Question& question);
+plan::Answer path_volume(Geometry& geometry, const plan::Question& question);
+plan::Answer reach_volume(Geometry& geometry, const plan::Question& question);
+plan::Answer grasp_volume(Geometry& geometry, const plan::Question& question);
+plan::Answer occupied_volume(Geometry& geometry, const plan::Question& question);
+plan::Answer volume_collides(Geometry& geometry, const plan::Question& question);
+plan::Answer volumes_collide(Geometry& geometry, const plan::Question& question);
+plan::Answer volume_inside(Geometry& geometry, const plan::Question& question);
+plan::Answer follow(Geometry& geometry, const plan::Question& question);
 
 }  // namespace kaboum::manipulation

@@ -7,8 +7,10 @@
 namespace kaboum::manipulation {
 
 plan::ExternalBindings bind_externals(world::World world, const ExternalOptions& options) {
-  if (!(options.clearance > 0) || !(options.lift > 0) || !(options.upright > 0))
-    throw Error(ErrorCode::InvalidArgument, "clearance, lift and upright are to be above 0");
+  if (!(options.clearance > 0) || !(options.lift > 0) || !(options.upright > 0) ||
+      !(options.volume_epsilon > 0))
+    throw Error(ErrorCode::InvalidArgument,
+                "clearance, lift, upright and the epsilon of volumes are to be above 0");
   const auto geometry = std::make_shared<Geometry>(std::move(world), options);
   struct Entry {
     const char* name;
@@ -36,7 +38,16 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"mate", 5, mate},
                                 {"isReachable", 2, is_reachable},
                                 {"graspMotionCollides", 2, grasp_motion_collides, false, 1},
-                                {"sweptCollides", 3, swept_collides}};
+                                {"sweptCollides", 3, swept_collides},
+                                {"sweptVolume", 2, swept_volume},
+                                {"pathVolume", 2, path_volume},
+                                {"reachVolume", 2, reach_volume, true},
+                                {"graspVolume", 2, grasp_volume},
+                                {"occupiedVolume", 1, occupied_volume},
+                                {"volumeCollides", 2, volume_collides},
+                                {"volumesCollide", 2, volumes_collide},
+                                {"volumeInside", 2, volume_inside},
+                                {"follow", 2, follow}};
   plan::ExternalBindings out;
   for (const Entry& entry : kEntries) {
     plan::ExternalBinding& binding = out[entry.name];

@@ -29,6 +29,10 @@ std::size_t object_named(const Geometry& geometry, const std::string& name) {
   return find_named(geometry.world.objects, name, "object");
 }
 
+std::size_t region_named(const Geometry& geometry, const std::string& name) {
+  return find_named(geometry.world.regions, name, "region");
+}
+
 GeometricState::GeometricState(Geometry& geometry, plan::StateView& view)
     : geometry_(geometry),
       view_(view),

@@ -23,6 +23,8 @@ struct Performed {
   std::vector<signed char> in_the_way;  ///< by Geometry::placed, see Involved
 };
 
+struct Volume;
+
 /// A world, and what is asked of it again and again.
 struct Geometry {
   Geometry(world::World w, const ExternalOptions& o)
@@ -49,12 +51,14 @@ struct Geometry {
   std::unordered_map<std::string, Performed> performed;
   std::unordered_map<std::string, std::uint32_t> placed;  ///< numbers of things where they are
   std::unordered_map<std::string, plan::Answer> reached;  ///< whether objects are in reach
+  std::unordered_map<std::string, std::shared_ptr<const Volume>> volumes;  ///< by their words
   mutable world::Scratch scratch;
 };
 
 /// @throws Error{InvalidInput} for names that the scene does not have.
 std::size_t robot_named(const Geometry& geometry, const std::string& name);
 std::size_t object_named(const Geometry& geometry, const std::string& name);
+std::size_t region_named(const Geometry& geometry, const std::string& name);
 
 /// The state of the world as the planner knows it, as far as it was read: what is read is in the
 /// footprint of the call. Things that were not read are as in the scene, objects absent.

@@ -103,6 +103,16 @@ bool MotionSequence::may_follow(std::size_t robot, const robot::Path& path) cons
   return free;
 }
 
+bool MotionSequence::follow(std::size_t robot, const robot::Path& path) {
+  if (!may_follow(robot, path)) {
+    fail(Answer::Kind::Impossible, "the motion of the volume is not certainly free now");
+    listed_ = true;  // other motions may do
+    return false;
+  }
+  record(robot, path);
+  return true;
+}
+
 void MotionSequence::add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
                                const Transform& target) const {
   const Stopwatch watch;

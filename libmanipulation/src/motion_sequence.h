@@ -24,6 +24,9 @@ class MotionSequence {
   /// @return whether it was done.
   bool go(std::size_t robot, const Goals& goals, std::vector<motion::PathConstraint> kept = {});
   bool go(std::size_t robot, const std::vector<double>& q);
+  /// Along a path, if it is certainly free and keeps upright what is carried.
+  /// @pre it begins where the robot is.
+  bool follow(std::size_t robot, const robot::Path& path);
 
   /// @return false.
   bool fail(plan::Answer::Kind kind, std::string reason);

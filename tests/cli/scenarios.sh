@@ -85,6 +85,12 @@ END
 scenario remove 6 12 1 --robots 2
 python3 -c 'import json; print({n["arguments"][0] for n in json.load(open("remove/plan.json"))["nodes"]})' | grep -q 'arm2.*arm\|arm.*arm2' ||
   fail "one robot takes all blocks"
+scenario remove 3 3 1 --volumes
+# Two blocks in the middle are taken one after the other, four two at a time.
+scenario shared-table 2 4 1
+! grep -q Together shared-table/plan.json || fail "both arms are in the middle at once"
+scenario shared-table 4 4 1
+[ "$(grep -c Together shared-table/plan.json)" = 4 ] || fail "the arms do not go at once"
 expect 2 'set KABOUM_MESHES' env KABOUM_MESHES= "$S/remove/run" 2 --real ur5 --out none
 scenario circular-rearrange 3 6 1 --move
 grep -q 'action move' circular-rearrange/domain.kpl || fail "no action move"

@@ -45,9 +45,18 @@ Json size_json(const plan::PlanSize& s) {
 }
 
 Json geometry_json(const manipulation::GeometryCounters& c) {
-  return {{"ik_calls", c.ik_calls}, {"ik_s", c.ik_seconds},
-          {"paths", c.paths},       {"predicate_calls", c.predicate_calls},
-          {"positive", c.positive}, {"path_s", c.path_seconds}};
+  return {{"ik_calls", c.ik_calls},
+          {"ik_s", c.ik_seconds},
+          {"paths", c.paths},
+          {"predicate_calls", c.predicate_calls},
+          {"positive", c.positive},
+          {"path_s", c.path_seconds},
+          {"volumes", c.volumes},
+          {"volume_bodies", c.volume_bodies},
+          {"volume_triangles", c.volume_triangles},
+          {"volume_s", c.volume_seconds},
+          {"volume_tests", c.volume_tests},
+          {"volume_test_s", c.volume_test_seconds}};
 }
 
 /// What is said of an outcome where there is no plan, and its exit code.

@@ -14,6 +14,10 @@ struct GeometryCounters {
   std::uint64_t positive = 0;         ///< motions of these that were not free
   std::uint64_t paths = 0;            ///< that were looked for
   double ik_seconds = 0, path_seconds = 0;
+  std::uint64_t volumes = 0;  ///< swept volumes that were made, and what they consist of
+  std::uint64_t volume_bodies = 0, volume_triangles = 0;
+  std::uint64_t volume_tests = 0;  ///< volumes against objects, regions and each other
+  double volume_seconds = 0, volume_test_seconds = 0;
 };
 
 struct ExternalOptions {
@@ -26,6 +30,9 @@ struct ExternalOptions {
   /// Is told what the bounded predicates are asked; may be none.
   std::shared_ptr<world::Observer> observer = {};
   double upright = 0.26;  ///< most that what is kept upright leans, at any instant. > 0 [rad]
+  /// Most that volumes are enlarged by on account of what moves between the ends of their pieces.
+  /// Where bodies of the scene's sets have a radius, four times that if it is more. > 0 [length]
+  double volume_epsilon = 2e-3;
 };
 
 /// The external functions that domains may declare (docs/planning/geometry.md), bound to a world.
@@ -62,6 +69,15 @@ struct ExternalOptions {
 ///     move(robot, conf) : conf              to a configuration, with what is held
 ///     inside(object, region)                whether the object is in the region, for certain
 ///     collides(object, object)              whether the outer sets of two objects meet
+///     sweptVolume(robot, conf) : volume     of a straight motion from where the robot is
+///     pathVolume(robot, conf) : volume      of a free path to a configuration
+///     reachVolume(robot, object) : volume   of a free path to where a grasp of the object is
+///     graspVolume(robot, object) : volume   of fetching an object and going back
+///     occupiedVolume(thing) : volume        of a robot or an object where it is
+///     volumeCollides(volume, object)        not certainly free of an object where it is
+///     volumesCollide(volume, volume)        not certainly apart, whatever the time of either
+///     volumeInside(volume, region)          in the region at every instant, for certain
+///     follow(robot, volume) : conf          along the path of a volume, to its end
 ///     sweptCollides(robot, conf, object)    whether a straight motion is not certainly free of it
 plan::ExternalBindings bind_externals(world::World world, const ExternalOptions& options);
 

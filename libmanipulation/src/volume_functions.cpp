@@ -1,0 +1,75 @@
+// External functions of the planner that make volumes and tell where they are.
+// docs/planning/geometry.md, "Volumes".
+#include <kaboum/manipulation/words.h>
+
+#include <algorithm>
+
+#include "actions.h"
+#include "volumes.h"
+
+namespace kaboum::manipulation {
+
+using plan::Answer;
+using plan::Question;
+
+Answer swept_volume(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::vector<double> to = configuration_of(question.arguments[1], geometry.world.robots[r]);
+  GeometricState state(geometry, question.state);
+  if (!state.read_all()) return Answer::not_found(state.unknown());
+  const Motion motion = motion_in(state.world(), r, {state.world().q[r], to});
+  return Answer::found(volume_word(geometry.world, {motion}));
+}
+
+Answer occupied_volume(Geometry& geometry, const Question& question) {
+  const std::string& name = question.arguments[0];
+  GeometricState state(geometry, question.state);
+  auto robot = geometry.world.find_robot(name);
+  if (!robot) {
+    const std::size_t o = object_named(geometry, name);
+    if (!state.read_object(o)) return Answer::not_found(state.unknown());
+    if (state.world().absent[o]) return Answer::impossible(name + " is away");
+    const auto& held = state.world().attachments[o];
+    if (!held) return Answer::found(volume_word(geometry.world, o, state.world().poses[o]));
+    robot = held->robot;
+  }
+  if (!state.read_all()) return Answer::not_found(state.unknown());
+  const Motion motion = motion_in(state.world(), *robot, {state.world().q[*robot]});
+  return Answer::found(volume_word(geometry.world, {motion}));
+}
+
+Answer volume_collides(Geometry& geometry, const Question& question) {
+  const auto volume = volume_of(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[1]);
+  const world::Item item{world::Item::kObject, o};
+  if (std::ranges::any_of(volume->shapes, [&](const auto& shape) { return shape.item == item; }))
+    return Answer::holds(false, question.arguments[1] + " is part of the volume");
+  GeometricState asked(geometry, question.state);
+  if (!asked.read_object(o)) return Answer::not_found(asked.unknown());
+  const world::WorldState& state = asked.world();
+  if (state.absent[o]) return Answer::holds(false, question.arguments[1] + " is away");
+  const auto& held = state.attachments[o];
+  if (!held) {
+    const auto object = volume_of(geometry, volume_word(geometry.world, o, state.poses[o]));
+    return Answer::holds(are_in_contact(geometry, *volume, *object), "they are apart");
+  }
+  // Of the robot that holds it, the object alone.
+  Motion motion{held->robot, {state.q[held->robot]}, {{o, *held}}};
+  Volume object = *volume_of(geometry, volume_word(geometry.world, {motion}));
+  std::erase_if(object.shapes, [&](const Volume::Shape& shape) { return shape.item != item; });
+  return Answer::holds(are_in_contact(geometry, *volume, object), "they are apart");
+}
+
+Answer volumes_collide(Geometry& geometry, const Question& question) {
+  const auto a = volume_of(geometry, question.arguments[0]);
+  const auto b = volume_of(geometry, question.arguments[1]);
+  return Answer::holds(are_in_contact(geometry, *a, *b), "they are apart at all times");
+}
+
+Answer volume_inside(Geometry& geometry, const Question& question) {
+  const auto volume = volume_of(geometry, question.arguments[0]);
+  const std::size_t region = region_named(geometry, question.arguments[1]);
+  return Answer::holds(is_inside(geometry, *volume, region), "it is not certain");
+}
+
+}  // namespace kaboum::manipulation
