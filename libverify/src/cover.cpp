@@ -2,6 +2,7 @@
 // original. docs/algorithms/exact-inclusion.md.
 #include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/ball_cover.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
@@ -180,6 +181,10 @@ Convexity verify_convexity(const geom::ConvexSet& set) {
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options) {
   Cover cover{verify_convexity(set), {}};
+  if (is_set_of_balls(set)) {
+    cover.inclusion = verify_ball_cover(original, set, options);
+    return cover;
+  }
   const std::optional<double> margin = geom::margin_of(set);
   if (!margin) {
     const auto with = [&](const geom::ConvexSet& polytopes) {
@@ -217,6 +222,7 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
 
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits) {
+  if (to_solid && is_set_of_balls(set)) return verify_ball_excess(set, original, epsilon);
   const std::optional<double> one_radius = geom::margin_of(set);
   if (!one_radius) {
     // To the triangles alone it is the bodies' surfaces that count, which are within the gap of
