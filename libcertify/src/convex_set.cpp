@@ -2,6 +2,7 @@
 // search, serialise, read back, decide, and once more with other means where that fails.
 
 #include <kaboum/base/error.h>
+#include <kaboum/bcd/balls.h>
 #include <kaboum/bcd/inner.h>
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/certify/mesh.h>
@@ -26,10 +27,22 @@ namespace {
 constexpr std::array<double, 3> kSafety{1, 64, 4096};
 /// So often places that inner bodies must not reach are handed to another search.
 constexpr int kAvoided = 5;
+/// So often places that spheres leave out are handed to another search.
+constexpr int kHeld = 20;
 /// Of epsilon, that a wrap round the input may take; the bodies have what it leaves.
 constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
 constexpr double kSumUp = 1 + 0x1p-50;
+
+/// What of the request spheres cannot have; null: nothing.
+const char* flaw_of_spheres(const SetRequest& r) {
+  if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
+  if (r.min_thickness > 0) return "cannot be thickened";
+  if (r.max_total_vertices) return "have no vertices to be counted";
+  if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
+  if (r.simplify) return "are not simplified";
+  return nullptr;
+}
 
 bcd::SearchRun run_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
   bcd::SearchRun run;
@@ -55,18 +68,30 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
   return {r, run_of(r, diagonal, hooks), {}};
 }
 
+/// @throws Error{InvalidArgument} on what only polytopes can be asked
+bcd::BallOptions balls_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  if (const char* flaw = flaw_of_spheres(r))
+    throw Error(ErrorCode::InvalidArgument, std::string("spheres ") + flaw);
+  bcd::BallOptions out;
+  static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
+  out.max_bodies = r.max_bodies;
+  out.effort = r.effort;
+  return out;
+}
+
 /// Why a set does not do what it should, decided exactly.
 struct Refutation {
   std::string reason;  ///< empty when it does
   /// Of the solid's mesh: what bounds parts of inner bodies that are outside.
   std::vector<std::uint32_t> triangles;
+  std::vector<geom::Vec3> left_out;  ///< points of the solid that are in no body
 };
 
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
         geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
-      return {"a body is thinner than «min-thickness»", {}};
+      return {"a body is thinner than «min-thickness»", {}, {}};
   const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
     for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;
@@ -76,14 +101,20 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
   options.max_work = std::numeric_limits<double>::infinity();  // it has to be decided
   if (r.direction == SetRequest::Direction::Outer) {
     const verify::Cover cover = verify::verify_cover(solid, set, options);
-    return {first_of({&cover.convexity.convex, &cover.inclusion.solid, &cover.inclusion.surface}),
-            {}};
+    Refutation out{
+        first_of({&cover.convexity.convex, &cover.inclusion.solid, &cover.inclusion.surface}),
+        {},
+        {}};
+    for (const verify::Claim* claim : {&cover.inclusion.solid, &cover.inclusion.surface})
+      if (claim->answer != verify::Answer::Verified && claim->witness)
+        out.left_out.push_back(claim->witness->point);
+    return out;
   }
   // Of a solid that is deep nowhere: nothing is claimed to lie in it.
   if (set.bodies.empty()) return {};
-  if (geom::find_not_convex(set)) return {"a body is not convex", {}};
+  if (geom::find_not_convex(set)) return {"a body is not convex", {}, {}};
   const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid, options);
-  Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles};
+  Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles, {}};
   out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
                        inside.surface.outer_triangles.end());
   return out;
@@ -109,13 +140,20 @@ class Search {
   Search(const geom::SolidMesh& solid, const SetRequest& request, double diagonal,
          const Hooks& hooks)
       : solid_(solid) {
-    if (request.direction == SetRequest::Direction::Outer)
+    if (request.body_kind == SetRequest::BodyKind::Spheres)
+      balls_ = balls_of(request, diagonal, hooks);
+    else if (request.direction == SetRequest::Direction::Outer)
       cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks)};
     else
       inner_ = inner_of(request, diagonal, hooks);
   }
 
   Candidate run() {
+    if (balls_) {
+      bcd::CoverCandidate found = bcd::find_balls(solid_, *balls_);
+      return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
+              found.statistics};
+    }
     if (cover_) {
       bcd::CoverCandidate found = bcd::find_cover(solid_, *cover_);
       simplified_ = found.statistics.pre_step_triangles > 0;
@@ -137,6 +175,11 @@ class Search {
 
   /// Chooses other means after a refutation. @return which, in words; empty: there are none left.
   std::string other_means(const Refutation& found) {
+    if (balls_) {
+      balls_->held.insert(balls_->held.end(), found.left_out.begin(), found.left_out.end());
+      tried_ = ++held_ < kHeld && !found.left_out.empty() ? 0 : kSafety.size();
+      return "to hold the places found";
+    }
     if (simplified_) {
       cover_->pre_step = bcd::PreStep::Off;
       return "without simplifying the input first";
@@ -164,10 +207,11 @@ class Search {
   }
 
   const geom::SolidMesh& solid_;
+  std::optional<bcd::BallOptions> balls_;
   std::optional<bcd::CoverOptions> cover_;
   std::optional<bcd::InnerOptions> inner_;
   std::size_t tried_ = 0;  // allowances for rounding
-  int avoided_ = 0;
+  int avoided_ = 0, held_ = 0;
   bool simplified_ = false;
 };
 
@@ -196,7 +240,7 @@ CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks)
 std::string outside_of(const geom::ConvexSet& set, const geom::Mesh& mesh) {
   verify::InclusionOptions options;
   options.surface_only = true;
-  const verify::Claim claim = verify::verify_inclusion(mesh, verify::sum_of(set), options).surface;
+  const verify::Claim claim = verify::verify_cover(mesh, set, options).inclusion.surface;
   return claim.answer == verify::Answer::Verified ? std::string() : claim.reason;
 }
 

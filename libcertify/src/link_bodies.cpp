@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/certify/link_bodies.h>
 #include <kaboum/certify/set_options.h>
+#include <kaboum/geom/convex_hull.h>
 
 #include <algorithm>
 #include <cmath>
@@ -126,16 +127,39 @@ double placing_error(const Geometry& g, double size) {
 
 namespace {
 
+/// Spheres for a box or a cylinder, in the frame of its link. Its polytope's corners are placed
+/// within placing_error.
+CertifiedSet spheres_of(const Geometry& g, const robot::RobotFile& robot, const std::string& link,
+                        const RobotRequest& request) {
+  SetRequest asked = request.set;
+  if (const auto own = request.epsilons.find(link); own != request.epsilons.end())
+    asked.epsilon = own->second;
+  std::optional<CertifiedSet> set =
+      certify_set(*geom::convex_hull(robot::bounding_points(g)), robot.sha256, asked);
+  if (!set)
+    throw TooCoarse(robot.path.string() + ": link '" + link +
+                    "': float32 cannot hold spheres as near to its " + robot::describe(g));
+  return *std::move(set);
+}
+
 /// Appends the bodies of one shape in the frame of its link, points within the bodies' radii:
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set  of the mesh in its own frame and unit; unused for other shapes.
-void place_shape(const Geometry& g, const geom::ConvexSet* set, const std::string& link,
-                 std::uint32_t index, std::vector<robot::LinkBody>& bodies) {
+/// @param kind  of Spheres, a sphere stands for itself
+void place_shape(const Geometry& g, const geom::ConvexSet* set, SetRequest::BodyKind kind,
+                 const std::string& link, std::uint32_t index,
+                 std::vector<robot::LinkBody>& bodies) {
   const auto name = [&] {
     const auto same = [&](const robot::LinkBody& b) { return b.link == index; };
     return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
   };
   if (robot::is_point(g)) return;
+  if (g.shape == Geometry::Shape::Sphere && kind == SetRequest::BodyKind::Spheres) {
+    const double radius = g.size.x();
+    bodies.push_back(
+        {name(), index, {g.origin.translation}, radius + placing_error(g, 2 * radius)});
+    return;
+  }
   if (g.shape != Geometry::Shape::Mesh) {
     bodies.push_back(
         {name(), index, robot::bounding_points(g), placing_error(g, 2 * g.size.norm())});
@@ -215,9 +239,22 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   for (const robot::LinkShape& shape : out.shapes) {
     const robot::Link& link = robot.robot.links[shape.link];
     if (shape.mesh && !out.meshes[*shape.mesh].held) continue;
-    place_shape(request.shapes.shapes_of(link)[shape.index],
-                shape.mesh ? &out.meshes[*shape.mesh].made.found.set.artefact() : nullptr,
-                link.name, shape.link, bodies);
+    const Geometry& g = request.shapes.shapes_of(link)[shape.index];
+    if (request.set.body_kind == SetRequest::BodyKind::Spheres && !robot::is_point(g) &&
+        (g.shape == Geometry::Shape::Box || g.shape == Geometry::Shape::Cylinder)) {
+      const CertifiedSet set = spheres_of(g, robot, link.name, request);
+      const double error = placing_error(g, 2 * g.size.norm());
+      for (const geom::ConvexBody& body : set.artefact().bodies)
+        bodies.push_back({link.name + "/" + std::to_string(bodies.size()),
+                          shape.link,
+                          {body.core.vertices[0]},
+                          body.radius + error});
+      out.distance = std::max(out.distance, distance_of(robot, out, shape) + error +
+                                                set.artefact().provenance.epsilon.value_or(0));
+      continue;
+    }
+    place_shape(g, shape.mesh ? &out.meshes[*shape.mesh].made.found.set.artefact() : nullptr,
+                request.set.body_kind, link.name, shape.link, bodies);
     out.distance = std::max(out.distance, distance_of(robot, out, shape));
   }
   if (bodies.empty() && first) std::rethrow_exception(first);

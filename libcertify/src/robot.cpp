@@ -62,6 +62,9 @@ struct LinkRecord {
 
 CertifiedRobot certify_robot(const robot::RobotFile& robot, const RobotRequest& request,
                              const SetCache* cache, const RobotHooks& hooks) {
+  if (request.set.body_kind != SetRequest::BodyKind::Polytopes)
+    throw Error(ErrorCode::InvalidArgument,
+                "a robot's containers hold polytopes; its spheres are those of certify_bodies");
   CertifiedRobot out{certify_bodies(robot, request, cache, hooks), {}};
   const BodiesCertificate& made = out.bodies.certificate();
   std::vector<LinkRecord> links;

@@ -20,6 +20,9 @@ using Names = std::array<std::pair<const char*, Value>, N>;
 using Direction = SetRequest::Direction;
 constexpr Names<Direction, 2> kDirections{
     {{"outer", Direction::Outer}, {"inner", Direction::Inner}}};
+using BodyKind = SetRequest::BodyKind;
+constexpr Names<BodyKind, 2> kBodyKinds{
+    {{"polytopes", BodyKind::Polytopes}, {"spheres", BodyKind::Spheres}}};
 constexpr Names<bcd::Effort, 3> kEfforts{
     {{"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}}};
 constexpr Names<bcd::PreStep, 3> kPreSteps{
@@ -47,6 +50,11 @@ void add_limits(std::vector<Option<R>>& out) {
        .low = 8,
        .high = 10000000},
       [](auto& r) -> auto& { return r.request.max_total_vertices; }));
+  out.push_back(choice<R>(
+      {.name = "bodies",
+       .text = "polytopes; or spheres, whose union holds the solid and every triangle, as planners "
+               "with spheres take them (a robot's are written as cuRobo YAML)"},
+      [](auto& r) -> auto& { return r.request.body_kind; }, kBodyKinds));
   out.push_back(choice<R>(
       {.name = "direction",
        .text = "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
@@ -230,6 +238,14 @@ geom::Provenance origin_of(const SetRequest& request, const std::string& sha256)
 std::string contradiction(const SetOptions& options, const std::set<std::string>& stated) {
   std::string flaw = contradiction(options.preparation, stated);
   if (!flaw.empty()) return flaw;
+  if (options.request.body_kind == SetRequest::BodyKind::Spheres) {
+    if (options.request.direction != SetRequest::Direction::Outer)
+      return "{bodies} spheres needs {direction} outer";
+    for (const char* name : {"max-total-vertices", "max-vertices-per-body", "min-thickness",
+                             "simplify", "improve-work", "max-work", "pre-step"})
+      if (stated.contains(name))
+        return "{" + std::string(name) + "} means nothing with {bodies} spheres";
+  }
   if (options.request.direction != SetRequest::Direction::Outer) {
     if (options.preparation.mode == Mode::Wrap)
       return "{prepare} wrap: what lies in a wrap need not lie in the input; only {direction} "

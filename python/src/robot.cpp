@@ -322,7 +322,8 @@ constexpr const char* kRobotParameters =
 std::vector<Option<certify::SetOptions>> link_options() {
   std::vector<Option<certify::SetOptions>> out;
   for (const Option<certify::SetOptions>& option : certify::set_options())
-    if (option.name != "direction" && option.name != "scale" && option.name != "frame")
+    if (option.name != "bodies" && option.name != "direction" && option.name != "scale" &&
+        option.name != "frame")
       out.push_back(option);
   return out;
 }

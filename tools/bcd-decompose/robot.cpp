@@ -3,6 +3,7 @@
 #include "robot.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/io/convex_io.h>
@@ -15,11 +16,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <optional>
 
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
+#include "robots/sphere_yaml.h"
 #include "words.h"
 
 namespace kaboum::tools {
@@ -183,9 +186,65 @@ void write_page(const Run& run, const RobotWriter& output) {
           .counts = page::counts_of(run.made)}));
 }
 
+/// Spheres of all links, in one file: no shapes of a URDF.
+int decompose_into_spheres(const DecomposeOptions& o) {
+  const std::string extension = std::filesystem::path(o.output).extension().string();
+  if (extension != ".yaml" && extension != ".yml")
+    throw Error(ErrorCode::InvalidArgument,
+                "--bodies spheres of a robot are written as cuRobo YAML: end --output in .yaml");
+  if (o.srdf || !o.preview.empty() || !o.robot.html.empty())
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--srdf, --preview and --html-report mean nothing with --bodies spheres of a robot");
+  Run run{o, robot::read_robot(o.input)};
+  run.request = robot_request(o, run.robot, o.robot.shapes);
+  const certify::SetCache kept(certify::SetCache::default_folder());
+  const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
+  if (o.robot_bodies + o.robot_vertices > 0) share_out(run, cache);
+  Progress progress(o.common.quiet);
+  certify::RobotHooks hooks =
+      certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
+  bool reached = true;
+  Json meshes = Json::array();
+  hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
+    progress.show("");
+    const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
+    reached = reached && certificate.reached() && certificate.undecided.empty();
+    log(o.common.quiet, mesh.mesh.file.string() + ": " + page::summary_of(certificate) +
+                            (mesh.made.found.cached ? " (from the cache)" : ""));
+    meshes.push_back({{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
+  };
+  const certify::CertifiedBodies bodies =
+      certify::certify_bodies(run.robot, run.request, cache, hooks);
+  io::write_file(o.output, sphere_yaml(run.robot, bodies, run.request.parameters()));
+  log(o.common.quiet, o.output + ": " + counted(bodies.artefact().size(), "sphere", "spheres") +
+                          ", no point farther from its link's shapes than " +
+                          number_up(bodies.certificate().distance) + "; bound-verify robot " +
+                          o.input + " --spheres " + o.output + " decides it");
+  for (const std::string& note : run.notes.lines()) log(o.common.quiet, "note: " + note);
+  if (!o.common.report.empty())
+    write_report(o.common, "bcd-decompose",
+                 {{"spheres", bodies.artefact().size()},
+                  {"reach_upper", bodies.certificate().distance},
+                  {"meshes", std::move(meshes)},
+                  {"stop", reached ? "done" : "epsilon not reached"},
+                  {"input", {{"file", o.input}, {"sha256", run.robot.sha256}}},
+                  {"output", {{"file", o.output}}},
+                  {"parameters", run.request.parameters()},
+                  {"notes", run.notes.lines()}});
+  if (!o.depfile.empty()) {
+    std::vector<std::string> inputs{o.input};
+    for (std::string& file : strings(bodies.certificate().files)) inputs.push_back(std::move(file));
+    write_depfile(o.depfile, {o.output}, inputs);
+  }
+  return reached ? kDone : kNo;
+}
+
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
+  if (o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres)
+    return decompose_into_spheres(o);
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");

@@ -1,12 +1,15 @@
 // bound-verify mesh, cover, robot, sweep and progressive.
 #include "commands.h"
 
+#include <kaboum/base/error.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <string_view>
 #include <utility>
 
 #include "common/request_options.h"
+#include "robot_spheres.h"
 
 namespace kaboum::tools {
 namespace {
@@ -136,10 +139,22 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "and --prepare=wrap where that was; their --html-report has the command.",
       [&o] {
         require_none(contradiction(o.robot.how));
+        if (o.robot.result.empty() == o.robot.spheres.empty())
+          throw Error(ErrorCode::InvalidArgument,
+                      "robot: either RESULT or --spheres FILE is needed, not both");
+        if (!o.robot.spheres.empty()) return verify_spheres(o.robot, o.common);
         return verify_robot(o.robot, o.common);
       });
   add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
-  add_file(*c, "RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)");
+  c->add_option("RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)")
+      ->type_name("FILE");
+  c->add_option("--spheres", o.robot.spheres,
+                "Instead of RESULT, spheres of the links, in their frames: cuRobo's YAML "
+                "(collision_spheres) or a URDF with spheres as collision shapes. Decides of each "
+                "link whether its own spheres hold its triangles, as the files have them, and the "
+                "solid that they bound; else says how much of its surface is outside, and how "
+                "deep. Of the other options, --geometry, --links and --package-path count")
+      ->type_name("FILE");
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);
   add_visual(*c, o.robot.how.shapes);

@@ -11,6 +11,7 @@ namespace kaboum::tools {
 /// What `bound-verify robot ORIGINAL RESULT` is asked.
 struct VerifyRobotOptions {
   std::string original, result;  ///< URDF files
+  std::string spheres;           ///< instead of the result: spheres of the links
   verify::RobotVerdictOptions how;
 };
 

@@ -20,6 +20,9 @@ namespace kaboum::certify {
 struct SetRequest : bcd::CoverSettings {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
+  /// Polytopes; or spheres (closed balls), of outer sets, which take of the other settings of
+  /// covers `max_bodies` and `effort`.
+  enum class BodyKind { Polytopes, Spheres } body_kind = BodyKind::Polytopes;
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;

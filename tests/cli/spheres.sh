@@ -1,0 +1,69 @@
+# Covers by spheres: made, decided, judged, and mutants of all of them.
+. "$(dirname "$0")/common.sh"
+B=$BIN/bcd-decompose
+V=$BIN/bound-verify
+
+# json FILE CONDITION: of the report r.
+json() {
+  python3 -c "import json, sys; r = json.load(open(sys.argv[1])); sys.exit(not ($2))" "$1" || fail "$1: not $2"
+}
+
+printf 'OFF\n8 12 0\n0 0 0\n4 0 0\n0 1 0\n4 1 0\n0 0 1\n4 0 1\n0 1 1\n4 1 1\n' >bar.off
+for t in '0 2 1' '1 2 3' '4 5 6' '5 7 6' '0 1 4' '1 5 4' '2 6 3' '3 6 7' '0 4 2' '2 4 6' '1 3 5' '3 7 5'; do
+  echo "3 $t" >>bar.off
+done
+
+# Within epsilon, and by a number of them; the same bytes for any number of threads.
+expect 0 '' "$B" bar.off -o bar.glb --bodies spheres --epsilon 0.4 --effort fast --no-cache --report bar.json
+shows 0 '^verified' "$V" cover bar.off bar.glb --epsilon 0.4
+expect 0 '' "$B" bar.off -o again.glb --bodies spheres --epsilon 0.4 --effort fast --no-cache --threads 1
+cmp bar.glb again.glb
+expect 0 '' "$B" bar.off -o five.glb --bodies spheres --max-bodies 5 --effort fast --no-cache --report five.json
+json five.json "r['bodies'] <= 5 and r['reach']['upper'] < 0.5"
+shows 0 '^verified' "$V" cover bar.off five.glb
+
+# What means nothing beside spheres.
+expect 2 'bodies' "$B" bar.off -o x.glb --bodies spheres --direction inner
+expect 2 'min-thickness' "$B" bar.off -o x.glb --bodies spheres --min-thickness 0.1
+
+# A robot: its spheres, written, judged, and judged less one digit.
+cat >arm.urdf <<'U'
+<robot name="arm">
+  <link name="base"><collision><origin xyz="0.1 0.2 0.3" rpy="0.3 0.2 0.1"/><geometry><mesh filename="bar.off"/></geometry></collision></link>
+  <link name="hand"><collision><origin xyz="0 0 1"/><geometry><box size="0.1 0.1 1"/></geometry></collision><collision><geometry><sphere radius="0.5"/></geometry></collision></link>
+  <joint name="j" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>
+U
+expect 2 'yaml' "$B" arm.urdf -o out --bodies spheres --epsilon 0.4
+expect 0 '' "$B" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
+shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres arm.yaml --report judged.json
+json judged.json "r['verdict'] == 'verified' and r['share_outside']['upper'] == 0"
+
+cat >one.yaml <<'Y'
+robot_cfg:
+  kinematics:
+    collision_sphere_buffer: 0.5
+    collision_spheres:
+      base:
+        - center: [2, 0.5, 0.5]
+          radius: 0.5
+      hand:
+        - "center": [0, 0, 0]
+          "radius": 0.1
+Y
+shows 1 "link 'base': refuted: between .* % of the surface is outside its 1 spheres, by" "$V" robot arm.urdf --spheres one.yaml
+shows 1 "link 'hand': refuted" "$V" robot arm.urdf --spheres one.yaml
+sed 's/radius: 0.5/radius: -1/' one.yaml >negative.yaml
+expect 3 'negative.yaml:[0-9]*: .*above 0' "$V" robot arm.urdf --spheres negative.yaml
+sed 's/base:/bsae:/' one.yaml >stranger.yaml
+expect 3 "stranger.yaml:5: .*no link 'bsae'" "$V" robot arm.urdf --spheres stranger.yaml
+printf 'collision_spheres:\n  base:\n    - center: [0, 0' >cut.yaml
+expect 3 'cut.yaml:3' "$V" robot arm.urdf --spheres cut.yaml
+printf 'collision_spheres:\n  base:\n    - center: [0, 0]\n      radius: 1\n' >two.yaml
+expect 3 'two.yaml:3: .*three numbers' "$V" robot arm.urdf --spheres two.yaml
+expect 2 'RESULT or --spheres' "$V" robot arm.urdf
+# Spherised URDF; and shapes of it that are no spheres.
+sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"/>|<sphere radius="0.6"/>|' arm.urdf >spheres.urdf
+shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf
+expect 3 'are to be spheres' "$V" robot arm.urdf --spheres arm.urdf
+finish
