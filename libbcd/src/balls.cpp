@@ -32,6 +32,7 @@ constexpr int kPatchRounds = 40;  ///< of balls added there
 constexpr std::size_t kAddedAtOnce = 150;
 constexpr int kPieceCuts = 24;  ///< of a triangle
 constexpr std::size_t kMostSamples = 12'000;
+constexpr std::size_t kMostPoints = 20'000;  ///< after which the best found is enough
 
 struct Effortful {
   std::size_t samples, steps;
@@ -47,7 +48,7 @@ Effortful effort_of(Effort effort) {
     case Effort::Best:
       return {3000, 20000, 6};
   }
-  return {1500, 2000, 2};
+  return {1500, 1500, 2};
 }
 
 /// A centre and the signed distance to the surface there, from above.
@@ -328,22 +329,23 @@ class BallSearch {
     }
   }
 
-  /// A cover of all triangles within ε; empty where none was found with `enough` balls or fewer.
+  /// A cover of all triangles within ε; empty where none was found with `limit` balls or fewer.
   /// @param limit  of the number of balls; 0: none
   std::vector<Chosen> cover(double epsilon, std::size_t limit = 0) {
+    constexpr int kBefore = 2;  // rounds that find points at first
     epsilon_ = epsilon;
     const std::size_t first = centers_.size();
     std::vector<std::uint32_t> choice;
+    std::vector<Chosen> best;
     for (int round = 0; round < kBallRounds; ++round) {
       show(limit > 0 ? "trying a distance" : "choosing balls",
            static_cast<double>(round) / kBallRounds);
-      const bool refine = limit == 0 && round < effort_.refinements && !choice.empty();
-      if (refine) {
+      const int refined = round - kBefore;
+      if (limit == 0 && refined >= 0 && refined < effort_.refinements) {
         forget(choice, first);
-        scatter(choice, epsilon, 0.4 / (round + 1));
+        scatter(choice, epsilon, 0.4 / (refined + 1));
       }
-      // What is found while points are still missing need not be the best.
-      const std::size_t steps = refine ? effort_.steps : effort_.steps / 5;
+      const std::size_t steps = round < kBefore ? effort_.steps / 4 : effort_.steps;
       choice = choose(points_, epsilon, steps, limit);
       if (choice.empty()) {
         // A point that no centre's ball holds: balls about the points themselves do.
@@ -354,13 +356,21 @@ class BallSearch {
                       "epsilon is too small for spheres here; allow a larger one");
       }
       if (limit > 0 && choice.size() > limit) return {};
-      const std::vector<Chosen> balls = balls_of(choice, epsilon);
-      if (add_free_points(balls) && round >= (limit == 0 ? effort_.refinements : 0)) return balls;
+      std::vector<Chosen> balls = patched(choice, epsilon, limit);
+      const bool is_whole = balls.size() == choice.size();  // nothing was added
+      if (!balls.empty() && (best.empty() || balls.size() < best.size())) best = std::move(balls);
+      if (limit > 0 && !best.empty()) return best;
+      if (!best.empty() && points_.size() > kMostPoints) break;
+      if (is_whole && refined >= effort_.refinements) break;
     }
-    return patched(std::move(choice), epsilon, limit);
+    if (best.empty() && limit == 0)
+      throw Error(
+          ErrorCode::LimitReached,
+          "no spheres were found that hold all triangles within epsilon; allow a larger one");
+    return best;
   }
 
-  /// Adds balls until all triangles are held.
+  /// Adds balls until all triangles are held; empty where these would be too many.
   std::vector<Chosen> patched(std::vector<std::uint32_t> choice, double epsilon,
                               std::size_t limit) {
     for (int round = 0; round < kPatchRounds; ++round) {
@@ -378,8 +388,7 @@ class BallSearch {
       }
       choice.insert(choice.end(), more.begin(), more.end());
     }
-    throw Error(ErrorCode::LimitReached,
-                "no spheres were found that hold all triangles within epsilon; allow a larger one");
+    return {};
   }
 
   /// The least ε found with so many balls.
