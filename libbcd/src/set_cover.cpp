@@ -8,6 +8,8 @@
 namespace kaboum::bcd {
 namespace {
 
+/// Pairs of a set and a free point that a search looks at, at most.
+constexpr std::uint64_t kMostPairs = 200'000'000;
 constexpr std::uint32_t kNoSet = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
@@ -111,6 +113,7 @@ std::vector<std::uint32_t> SetCover::search(std::size_t steps, std::size_t enoug
   if (!free_.empty()) return {};
   std::vector<std::uint32_t> best;
   std::uint32_t last = kNoSet;
+  std::uint64_t pairs = 0;
   for (std::size_t step = 1; step <= steps + 1; ++step) {
     while (free_.empty()) {
       best = chosen_;
@@ -122,7 +125,7 @@ std::vector<std::uint32_t> SetCover::search(std::size_t steps, std::size_t enoug
       changed_[chosen_[i]] = step;
       drop(chosen_[i]);
     }
-    if (step > steps) break;
+    if (step > steps || pairs > kMostPairs) break;
     if (const std::size_t i = cheapest(last); i < chosen_.size()) {
       const std::uint32_t set = chosen_[i];
       drop(set);
@@ -130,6 +133,7 @@ std::vector<std::uint32_t> SetCover::search(std::size_t steps, std::size_t enoug
       may_be_taken_[set] = 0;
     }
     const std::uint32_t point = free_[random_.index(free_.size())];
+    pairs += of_point_[point].size() * free_.size();
     std::uint32_t taken = kNoSet;
     double most = -1;
     for (const std::uint32_t s : of_point_[point]) {

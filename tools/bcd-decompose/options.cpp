@@ -18,10 +18,12 @@ void add_input(CLI::App& app, DecomposeOptions& o) {
                  "link of it")
       ->required()
       ->type_name("FILE");
-  app.add_option("-o,--output", o.output,
-                 "Where the bodies go: a .glb container, an .obj with one object per body, or a "
-                 "folder with one STL per body (- for stdout); for robots a folder, which gets a "
-                 "URDF, the bodies that it refers to, and a container per link")
+  app.add_option(
+         "-o,--output", o.output,
+         "Where the bodies go: a .glb container, an .obj with one object per body, or a "
+         "folder with one STL per body (- for stdout); for robots a folder, which gets a "
+         "URDF, the bodies that it refers to, and a container per link; with --bodies spheres a "
+         ".yaml file as cuRobo has them")
       ->required()
       ->type_name("PATH");
 }
