@@ -51,6 +51,9 @@ class Recorder final : public plan::StateView {
                             const std::vector<std::string>& arguments) override {
     return state_.truth(predicate, arguments);
   }
+  bool has_term(const std::string& function, const std::vector<std::string>& arguments) override {
+    return state_.has_term(function, arguments);
+  }
 
  private:
   plan::StateView& state_;
