@@ -288,7 +288,7 @@ def whole_searches(document, runs):
         script.write_text(f'#!/bin/sh\nexec "{program}" "$1" {" ".join(files)} {search} > {result}\n')
         script.chmod(0o755)
         if call(f"exact meshes, {name} {n} {search} {detail}", script, [SCENARIOS / name / "domain.kpl"],
-                [program, SCENARIOS / name / ("volumes.kpl" if "--volumes" in options else "domain.kpl"), *(call.folder / f for f in files)], [result]) is None:
+                [program, SCENARIOS / name / "domain.kpl", *(call.folder / f for f in files)], [result]) is None:
             continue
         found = json.loads((call.folder / result).read_text())
         seconds = {key: found[key]["s"] for key in SEARCH_TIMES}
