@@ -31,7 +31,7 @@ externals: fetch(robot, movable, conf) : pose; put(robot, movable, item, conf) :
 
 action fetch(?r : robot, ?o : movable)
   preconds:
-    K(isFree(?r)) & K(!isHeld(?o)) & K(!isMounted(?o)) & forallK(?x : movable) (K(!on(?x, ?o))) &
+    K(isFree(?r)) & K(!isHeld(?o)) & K(!isMounted(?o)) & forallK(?x : movable) (K(!on(?x, ?o)) | K(isMounted(?x))) &
     let ?p = extern(fetch(?r, ?o, home))
   effects:
     add(Kf, !isFree(?r)), add(Kf, isHolding(?r, ?o)), add(Kf, isHeld(?o)),
@@ -76,6 +76,8 @@ using world::Feature;
 using Units = std::map<std::string, double, std::less<>>;
 const Units kLengths = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}},
             kAngles = {{"rad", 1}, {"deg", std::numbers::pi / 180}};
+/// Six would fix a pose.
+constexpr std::size_t kMostRelations = 32;
 constexpr const char* kBlanks = " \t\r";
 /// What bounding sets of things that stand on each other are at most apart, beside ε. [length]
 constexpr double kStandingGap = 5e-3;
@@ -154,22 +156,30 @@ bool is_movable(const world::World& world, std::size_t object) {
          });
 }
 
-/// What each object stands on at first: what it comes in contact with when it sinks a little.
+/// What each object stands on at first: what it is in contact with when it sinks a little, allowed
+/// contacts too; of what it touches as it is, only what is not above it.
 std::set<std::pair<std::size_t, std::size_t>> standing(const world::World& world) {
-  const world::Checker checker(world);
+  world::World strict = world;
+  std::erase_if(strict.allowed, [](const std::array<world::Item, 2>& pair) {
+    return pair[0].robot == world::Item::kObject && pair[1].robot == world::Item::kObject;
+  });
+  const world::Checker checker(strict);
   world::Scratch scratch;
   world::Checker::Options options;
   options.resting = true;
   std::set<std::pair<std::size_t, std::size_t>> out;
-  const world::WorldState start = initial_state(world);
+  const world::WorldState start = initial_state(strict);
   const auto touched = [&](const world::WorldState& state, std::size_t object) {
     std::set<std::size_t> others;
     for (const world::Contact& contact : checker.find_contacts(state, scratch, options))
-      for (int i = 0; i < 2; ++i)
+      for (std::size_t i = 0; i < 2; ++i)
         if (contact.items[i] == world::Item{world::Item::kObject, object} &&
             contact.items[1 - i].robot == world::Item::kObject)
           others.insert(contact.items[1 - i].index);
     return others;
+  };
+  const auto height = [&](std::size_t object) {
+    return (start.poses[object] * world.objects[object].outer.ball().center).z();
   };
   double most = 0;
   for (const world::Object& object : world.objects) most = std::max(most, object.outer.epsilon());
@@ -179,7 +189,8 @@ std::set<std::pair<std::size_t, std::size_t>> standing(const world::World& world
     lower.poses[o].translation.z() -= kStandingGap + world.objects[o].outer.epsilon() + most;
     const std::set<std::size_t> before = touched(start, o);
     for (const std::size_t below : touched(lower, o))
-      if (!before.contains(below)) out.emplace(o, below);
+      if (!before.contains(below) || world.attachments[below] || height(below) <= height(o))
+        out.emplace(o, below);
   }
   return out;
 }
@@ -275,6 +286,8 @@ void ManipulationTask::read_mate(const std::string& rest, std::size_t number_of_
                "distance and angle have a value, in mm, cm, m, rad or deg");
     mate.relations.push_back(std::move(relation));
   }
+  if (mate.relations.size() > kMostRelations)
+    fail(number_of_line, "more than " + std::to_string(kMostRelations) + " relations in a mate");
   if (mate.relations.empty()) fail(number_of_line, "the mate '" + mate.name + "' has no relation");
   mates_.push_back(std::move(mate));
 }
@@ -415,6 +428,9 @@ std::string ManipulationTask::problem(const world::World& world) const {
     }
     const bool seat = has_plane(object, "mount") &&
                       (has_plane(below, "seat") || has_plane(below, "seat/" + g.object));
+    if (seat)
+      need(has_point(below, "entry/" + g.object) || has_point(below, "entry"),
+           g.other + " has a seat, but no point 'entry' from which things slide onto it");
     if (seat && seats.insert(g.object + " " + g.other).second)
       know("isSeat(" + g.other + ", " + g.object + ")");
     need(seat || has_point(object, "bottom"),

@@ -53,6 +53,10 @@ Simulation::Simulation(const world::World& world, const judge::Cell& cell, const
       options_(std::move(options)),
       sink_(std::move(sink)) {
   require_above_zero(options_);
+  for (const plan::Plan::Node& node : plan.nodes)
+    for (const plan::Plan::Call& call : node.calls)
+      if (model.externals[call.external].name == "mate" && call.arguments.size() == 5)
+        mates_[call.arguments[1]].insert(call.arguments[3]);
 }
 
 void Simulation::say(const std::string& problem) {
@@ -215,9 +219,9 @@ void Simulation::compare(const judge::CellState& state, const judge::CellState& 
       const geom::Transform pose = cell_.pose_of(expected, o),
                             under = cell_.pose_of(expected, *below);
       if (!is_on_seat(world_, o, pose, *below, under, gap) &&
-          !is_mated(world_, o, pose, *below, under))
+          !is_mated(world_, mates_[name], o, pose, *below, under))
         wrong(name + " is neither on the seat of what it is mounted on, nor where constraints of " +
-              "the scene have it");
+              "its mate have it");
     }
     if (held_as(is) == held_as(stated)) continue;
     if (stated.hold && !mounted_[o] &&

@@ -117,8 +117,9 @@ bool is_on_seat(const world::World& world, std::size_t object, const geom::Trans
          (object_pose.linear * mount->direction + normal).norm() <= kSame;
 }
 
-bool is_mated(const world::World& world, std::size_t object, const geom::Transform& object_pose,
-              std::size_t onto, const geom::Transform& onto_pose) {
+bool is_mated(const world::World& world, const std::set<std::string>& sets, std::size_t object,
+              const geom::Transform& object_pose, std::size_t onto,
+              const geom::Transform& onto_pose) {
   using Kind = world::Feature::Kind;
   using kinematics::Relation;
   const auto pose_of = [&](const world::FixedFeature& f) {
@@ -127,7 +128,9 @@ bool is_mated(const world::World& world, std::size_t object, const geom::Transfo
            : f.index == onto                       ? &onto_pose
                                                    : nullptr;
   };
-  const auto is_met = [&](const world::ToleratedConstraint& c) {
+  const auto is_met = [&](world::ToleratedConstraint c) {
+    // Tolerances are of the point of what was moved.
+    if (c.first.index == onto) std::swap(c.first, c.second);
     const geom::Transform *a = pose_of(c.first), *b = pose_of(c.second);
     if (a == nullptr || b == nullptr || a == b) return false;
     const Kind first = c.first.feature.kind, second = c.second.feature.kind;
@@ -166,7 +169,7 @@ bool is_mated(const world::World& world, std::size_t object, const geom::Transfo
     return false;
   };
   return std::ranges::any_of(world.constraints, [&](const world::ConstraintSet& set) {
-    return std::ranges::all_of(set.constraints, is_met);
+    return sets.contains(set.name) && std::ranges::all_of(set.constraints, is_met);
   });
 }
 

@@ -5,6 +5,7 @@
 #include <kaboum/world/world.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,11 @@ bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t lin
                  const geom::Transform& link_pose, std::size_t object,
                  const geom::Transform& object_pose);
 
-/// Whether an object and another one are where all constraints of some set of the scene, which are
-/// between these two, are met. By formulas of its own.
-bool is_mated(const world::World& world, std::size_t object, const geom::Transform& object_pose,
-              std::size_t onto, const geom::Transform& onto_pose);
+/// Whether an object and another one are where all constraints of one of some sets of the scene,
+/// which are between these two, are met. By formulas of its own.
+bool is_mated(const world::World& world, const std::set<std::string>& sets, std::size_t object,
+              const geom::Transform& object_pose, std::size_t onto,
+              const geom::Transform& onto_pose);
 
 /// Whether the plane `mount` of an object is on the plane `seat` of another one, facing it, no
 /// farther away than `gap`.

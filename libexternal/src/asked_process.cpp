@@ -212,6 +212,11 @@ Answer AskedProcess::answer(const json& said, const std::string& line) {
   out.chosen = flag("chosen");
   out.listed = flag("listed");
   out.fixed = flag("fixed");
+  if (said.contains("choices") && out.kind == Answer::Kind::Impossible)
+    fail(
+        "what is impossible is so whatever is chosen: 'choices' goes with a value or 'not_found', "
+        "not with " +
+        excerpt(line));
   if (said.contains("choices")) {
     if (!said["choices"].is_number_unsigned() ||
         said["choices"].get<std::uint64_t>() > kMostChoices)

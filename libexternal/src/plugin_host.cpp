@@ -98,7 +98,8 @@ json message_of(const Answer& answer) {
   for (const auto& [name, set] :
        {std::pair("chosen", answer.chosen), {"listed", answer.listed}, {"fixed", answer.fixed}})
     if (set) out[name] = true;
-  if (answer.choices > 0) out["choices"] = answer.choices;
+  if (answer.choices > 0 && answer.kind != Answer::Kind::Impossible)
+    out["choices"] = answer.choices;
   return out;
 }
 

@@ -364,13 +364,13 @@ const world::ConstraintSet& constraints_named(const Geometry& geometry, const st
   }
 }
 
-/// Objects that constraints are about, each once.
-std::vector<std::size_t> objects_of(const world::ConstraintSet& set) {
-  std::vector<std::size_t> out;
+/// Objects, or robots, that constraints are about, each once; after `first`.
+std::vector<std::size_t> things_of(const world::ConstraintSet& set, world::FixedFeature::To kind,
+                                   std::vector<std::size_t> first = {}) {
+  std::vector<std::size_t> out = std::move(first);
   for (const world::ToleratedConstraint& c : set.constraints)
     for (const world::FixedFeature* feature : {&c.first, &c.second})
-      if (feature->to == world::FixedFeature::To::Object &&
-          std::ranges::find(out, feature->index) == out.end())
+      if (feature->to == kind && std::ranges::find(out, feature->index) == out.end())
         out.push_back(feature->index);
   return out;
 }
@@ -379,9 +379,11 @@ std::vector<std::size_t> objects_of(const world::ConstraintSet& set) {
 
 Answer satisfy(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
+  using To = world::FixedFeature::To;
   const world::ConstraintSet& set = constraints_named(geometry, question.arguments[1]);
+  // Where other robots are decides what is met: they are read like what is named.
   return perform(
-      geometry, question, {"satisfy", {r}, objects_of(set)},
+      geometry, question, {"satisfy", things_of(set, To::Link, {r}), things_of(set, To::Object)},
       [&](Sequence& s) { return s.satisfy(r, set); },
       [&](const Sequence& s) { return configuration(s, r); });
 }
@@ -392,9 +394,13 @@ Answer mate(Geometry& geometry, const Question& question) {
   const std::size_t onto = object_named(geometry, question.arguments[2]);
   const world::ConstraintSet& set = constraints_named(geometry, question.arguments[3]);
   const std::vector<double> end = configuration_of(question.arguments[4], geometry.world.robots[r]);
-  std::vector<std::size_t> objects = objects_of(set);
-  if (objects.size() != 2 || std::ranges::find(objects, o) == objects.end() ||
-      std::ranges::find(objects, onto) == objects.end())
+  const auto is_of = [](const world::FixedFeature& feature, std::size_t object) {
+    return feature.to == world::FixedFeature::To::Object && feature.index == object;
+  };
+  if (!std::ranges::all_of(set.constraints, [&](const world::ToleratedConstraint& c) {
+        return (is_of(c.first, o) && is_of(c.second, onto)) ||
+               (is_of(c.first, onto) && is_of(c.second, o));
+      }))
     throw Error(ErrorCode::InvalidInput, "the constraints '" + set.name + "' are not between " +
                                              question.arguments[1] + " and " +
                                              question.arguments[2] + " alone, as a mate's are");

@@ -52,6 +52,7 @@ struct Geometry {
   std::unordered_map<std::string, std::uint32_t> placed;  ///< numbers of things where they are
   std::unordered_map<std::string, plan::Answer> reached;  ///< whether objects are in reach
   std::unordered_map<std::string, std::shared_ptr<const Volume>> volumes;  ///< by their words
+  std::size_t volume_bodies = 0;  ///< of the volumes that are kept
   mutable world::Scratch scratch;
 };
 

@@ -1,10 +1,13 @@
 // External functions of the planner that make volumes and tell where they are.
 // docs/planning/geometry.md, "Volumes".
+#include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
 
 #include "actions.h"
+#include "motion_sequence.h"
 #include "volumes.h"
 
 namespace kaboum::manipulation {
@@ -15,6 +18,8 @@ using plan::Question;
 Answer swept_volume(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::vector<double> to = configuration_of(question.arguments[1], geometry.world.robots[r]);
+  if (find_out_of_limits(geometry.world.robots[r].kinematics, to))
+    return Answer::impossible("outside the limits of a joint");
   GeometricState state(geometry, question.state);
   if (!state.read_all()) return Answer::not_found(state.unknown());
   const Motion motion = motion_in(state.world(), r, {state.world().q[r], to});
@@ -38,19 +43,50 @@ Answer occupied_volume(Geometry& geometry, const Question& question) {
   return Answer::found(volume_word(geometry.world, {motion}));
 }
 
+namespace {
+
+/// Where an object is in a state.
+world::Transform pose_in_state(const Geometry& geometry, const world::WorldState& state,
+                               std::size_t object) {
+  const auto& held = state.attachments[object];
+  if (!held) return state.poses[object];
+  const world::RobotModel& robot = geometry.world.robots[held->robot];
+  return robot.base * forward(robot.kinematics, state.q[held->robot])[held->link] * held->pose;
+}
+
+/// Whether a volume's motions carry the object, from this pose on.
+bool is_taken_from(const Geometry& geometry, const Volume& volume, std::size_t object,
+                   const world::Transform& pose) {
+  for (const Motion& motion : volume.motions)
+    for (const auto& [carried, held] : motion.holds) {
+      if (carried != object) continue;
+      const world::RobotModel& robot = geometry.world.robots[motion.robot];
+      const world::Transform first =
+          robot.base * forward(robot.kinematics, motion.path.front())[held.link] * held.pose;
+      const kinematics::PoseError error = kinematics::difference(first, pose);
+      return error.position <= kSamePose && error.rotation <= kSamePose;
+    }
+  return false;
+}
+
+}  // namespace
+
 Answer volume_collides(Geometry& geometry, const Question& question) {
   const auto volume = volume_of(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const world::Item item{world::Item::kObject, o};
-  if (std::ranges::any_of(volume->shapes, [&](const auto& shape) { return shape.item == item; }))
-    return Answer::holds(false, question.arguments[1] + " is part of the volume");
   GeometricState asked(geometry, question.state);
   if (!asked.read_object(o)) return Answer::not_found(asked.unknown());
   const world::WorldState& state = asked.world();
   if (state.absent[o]) return Answer::holds(false, question.arguments[1] + " is away");
   const auto& held = state.attachments[o];
+  if (is_taken_from(geometry, *volume, o, pose_in_state(geometry, state, o)))
+    return Answer::holds(false, question.arguments[1] + " is carried from where it is");
   if (!held) {
-    const auto object = volume_of(geometry, volume_word(geometry.world, o, state.poses[o]));
+    const std::string word = volume_word(geometry.world, o, state.poses[o]);
+    if (word == question.arguments[0])
+      return Answer::holds(false, question.arguments[1] + " is the volume");
+    const auto object = volume_of(geometry, word);
     return Answer::holds(are_in_contact(geometry, *volume, *object), "they are apart");
   }
   // Of the robot that holds it, the object alone.

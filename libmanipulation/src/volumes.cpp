@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/collide/inclusion.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/sweep/sweep.h>
 #include <kaboum/world/margins.h>
 
@@ -21,12 +22,14 @@ using nlohmann::json;
 using world::Item;
 
 constexpr std::string_view kVolumePrefix = "swept ";
-/// Volumes that are kept.
-constexpr std::size_t kMostVolumes = 2'000;
+/// Volumes, and bodies of volumes, that are kept.
+constexpr std::size_t kMostVolumes = 2'000, kMostBodies = 500'000;
 /// A radius is at most this share of the sweep's epsilon, of which it may take half.
 constexpr double kShareOfRadius = 0.25;
 /// Of matrices that stand for rotations.
 constexpr double kMostDefect = 1e-9;
+/// As in words of poses. [length]
+constexpr double kMostNumber = 1e6;
 
 json numbers_of(const world::Transform& pose) {
   json out = json::array();
@@ -50,6 +53,8 @@ double defect_of(const Eigen::Matrix3d& m) {
 world::Transform pose_in(const json& j) {
   const auto v = j.get<std::vector<double>>();
   if (v.size() != 12) refuse_volume("a pose has 12 numbers");
+  if (!std::ranges::all_of(v, [](double x) { return std::abs(x) < kMostNumber; }))
+    refuse_volume("a number of a pose is 1e6 at most");
   world::Transform out;
   for (int k = 0; k < 9; ++k) out.linear(k / 3, k % 3) = v[static_cast<std::size_t>(k)];
   for (int k = 0; k < 3; ++k) out.translation[k] = v[static_cast<std::size_t>(9 + k)];
@@ -69,7 +74,13 @@ Motion motion_of(const Geometry& geometry, const json& part) {
       refuse_volume("a waypoint of " + geometry.world.robots[out.robot].name + " has " +
                     std::to_string(kinematics.variables.size()) + " joint values, not " +
                     std::to_string(q.size()));
+  for (const auto& q : out.path)
+    if (find_out_of_limits(kinematics, q) ||
+        !std::ranges::all_of(q, [](double x) { return std::abs(x) < kMostNumber; }))
+      refuse_volume("a waypoint of " + geometry.world.robots[out.robot].name +
+                    " is outside the limits of its joints, or 1e6 or more");
   const json holds = part.value("holds", json::object());
+  if (!holds.is_object()) refuse_volume("'holds' has objects by their names");
   for (const auto& [name, held] : holds.items()) {
     world::Attachment attachment;
     attachment.robot = out.robot;
@@ -249,7 +260,13 @@ std::shared_ptr<const Volume> volume_of(Geometry& geometry, const std::string& w
     }
     counters->volume_seconds += watch.seconds();
   }
-  if (geometry.volumes.size() >= kMostVolumes) geometry.volumes.clear();
+  std::size_t bodies = 0;
+  for (const Volume::Shape& shape : made->shapes) bodies += shape.set->size();
+  if (geometry.volumes.size() >= kMostVolumes || geometry.volume_bodies + bodies > kMostBodies) {
+    geometry.volumes.clear();
+    geometry.volume_bodies = 0;
+  }
+  geometry.volume_bodies += bodies;
   return geometry.volumes.emplace(word, std::move(made)).first->second;
 }
 

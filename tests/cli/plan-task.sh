@@ -20,8 +20,28 @@ grep -q 'on(tree1, table)' all.kpl || fail "what stands where is not known"
 # The judge has formulas of its own: what is mated is not where another mate would have it.
 for other in 's/1 mm within/3 mm within/' 's/axis coincident axis within 0.2 mm/axis distance bottom 5 mm within 0.2 mm/'; do
   sed "$other" bearings.task >other.task
-  expect 1 'nor where constraints of the scene have it' "$P" run other.task --plan plan.json
+  expect 1 'nor where constraints of its mate have it' "$P" run other.task --plan plan.json
 done
+# Other constraints between the two do not make it right.
+python3 - <<'END'
+import json, pathlib
+scene = json.loads(pathlib.Path("bearings/cell.json").read_text())
+scene["constraints"] = [{"name": "loose", "all": [{"relation": "parallel", "first": "bearing1.z", "second": "tree1.z", "within_angle": 0.5}]}]
+pathlib.Path("bearings/loose.json").write_text(json.dumps(scene))
+scene["allowed_contacts"] = [["bearing1", "tree1"]]
+for thing in scene["objects"]:
+    if thing["name"] == "bearing1":  # round the shaft of tree1
+        thing["pose"]["position"] = [*scene["objects"][[o["name"] for o in scene["objects"]].index("tree1")]["pose"]["position"][:2], 0.052]
+    if thing["name"] == "tree1":
+        thing["features"] += [{"name": "entry", "point": [0, 0, 0.1]}]
+pathlib.Path("bearings/round.json").write_text(json.dumps(scene))
+END
+sed 's/1 mm within/3 mm within/; s/cell.json/loose.json/' bearings.task >other.task
+expect 1 'nor where constraints of its mate have it' "$P" run other.task --plan plan.json
+# What stands on a thing that is fetched goes first, also where its contact is allowed.
+printf 'scene bearings/round.json\nhold tree1\n' >round.task
+expect 0 solved "$P" solve round.task -o round-plan.json
+grep -q '"bearing1"' round-plan.json || fail "the bearing is left in the air"
 # The scene may be stated, and has to be somewhere.
 grep -v '^scene' bearings.task >bare.task
 expect 0 solved "$P" solve bare.task --scene bearings/cell.json -o bare.json

@@ -1160,6 +1160,41 @@ TEST(Handles, AChoiceIsTakenBackHoweverMuchElseThereIsToDo) {
   EXPECT_LT(calls[2], 800);
 }
 
+/// Two calls return the same handle, one of them after something has failed by it: what failed
+/// rests on both, through what was made of the handle as well.
+TEST(Handles, WhatFailsRestsOnEveryCallThatReturnsTheHandle) {
+  const std::string text =
+      "types: way handle\nconstants: way none\npredicates: done\n"
+      "functions: left : way; right : way; made : way\n"
+      "externals: first : way; second : way; make(way) : way; use(way) : way\n"
+      "action a preconds: let ?w = extern(first) effects: add(Kf, left = ?w)\n"
+      "action b preconds: let ?w = extern(make(left)) effects: add(Kf, made = ?w)\n"
+      "action c preconds: let ?w = extern(use(made)) effects: add(Kf, done)\n"
+      "action d preconds: Kv(made) & let ?w = extern(second) effects: add(Kf, right = ?w)\n"
+      "action e preconds: let ?w = extern(make(right)) effects: add(Kf, made = ?w)\n"
+      "goal: K(done)";
+  const auto choose = [](const char* other) {
+    return [other](const Question& q) {
+      Answer a = Answer::found(q.choice == 0 ? "X" : other);
+      a.chosen = true;
+      a.choices = 1;
+      return a;
+    };
+  };
+  const ExternalBindings bindings = {
+      {"first", choose("X2")},
+      {"second", choose("Y")},
+      {"make", [](const Question& q) { return Answer::found("of " + q.arguments[0]); }},
+      {"use", [](const Question& q) {
+         return q.arguments[0] == "of Y" ? Answer::found("none") : Answer::impossible("no");
+       }}};
+  for (const Algorithm a : kAll) {
+    const Solution s = with(bound(text, bindings), a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    EXPECT_EQ(s.plan.choices.at("second"), 1U);
+  }
+}
+
 /// Two choices that do only together: no change of one alone helps, nor of both alike.
 TEST(Handles, ChoicesThatDoOnlyTogetherAreFound) {
   const std::string text =

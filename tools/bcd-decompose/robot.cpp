@@ -196,11 +196,15 @@ int decompose_into_spheres(const DecomposeOptions& o) {
     throw Error(
         ErrorCode::InvalidArgument,
         "--srdf, --preview and --html-report mean nothing with --bodies spheres of a robot");
+  if (o.robot_bodies + o.robot_vertices > 0)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--robot-bodies and --robot-vertices share out polytopes; for --bodies spheres of a "
+        "robot state --epsilon, or --max-bodies of each mesh");
   Run run{o, robot::read_robot(o.input)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   const certify::SetCache kept(certify::SetCache::default_folder());
   const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
-  if (o.robot_bodies + o.robot_vertices > 0) share_out(run, cache);
   Progress progress(o.common.quiet);
   certify::RobotHooks hooks =
       certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });

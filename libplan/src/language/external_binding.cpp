@@ -161,7 +161,8 @@ ExternalFunction host_function(const ExternalBinding& function, const Symbol& g,
             result.payload = std::move(answer.payload);
             result.reason = std::move(answer.reason);
             result.chosen = answer.chosen;
-            result.choices = answer.choices;
+            // What is impossible is so whatever is chosen.
+            result.choices = answer.kind == Answer::Kind::Impossible ? 0 : answer.choices;
             result.fixed = answer.fixed;
             result.listed = answer.listed;
             if (answer.kind != Answer::Kind::Value || g.range == kNone) return result;

@@ -80,6 +80,7 @@ std::vector<Index> needed_calls(Task& task, Limits& limits) {
   if (failed.empty()) return failed;
   const FactTable facts(task.model(), task.layout());
   std::erase_if(failed, [&](Index call) {
+    const Limits::Scope scope(limits);
     return Reachability(task, limits, facts, Reachability::Answers::Any, call)
         .possible(task.goal(), true);
   });
@@ -310,6 +311,7 @@ void search_knowledge(const Model& model, const SolveOptions& options, const std
         ++others;
         Solution other;
         other.statistics = solution.statistics;
+        const Limits::Scope scope(limits);
         ChosenSearch search(model, options, std::move(*next), limits);
         const Remedies failed = search.run(attempts, patience, other);
         solution.statistics = other.statistics;

@@ -234,30 +234,34 @@ unsigned ExternalCalls::choice_of(const std::string& call) const {
 void ExternalCalls::blame(Index call, const std::vector<Index>& objects,
                           const std::vector<Index>& read, const ExternalResult& result,
                           bool handle) {
-  std::set<Index> sources;
-  for (const Index object : read)
-    if (const auto found = rests_on_.find(object); found != rests_on_.end())
-      sources.insert(found->second.begin(), found->second.end());
+  const auto rests = [&](Index object) { return rest_on_choice_.contains(object); };
   Call& made = calls_[call];
+  Index own = kNone;
   if (result.choices > 0) {
     const std::string name = text(made, objects);
-    const auto [own, fresh] = choosing_index_.emplace(name, static_cast<Index>(choosing_.size()));
+    const auto [at, fresh] = choosing_index_.emplace(name, static_cast<Index>(choosing_.size()));
+    own = at->second;
     if (fresh) choosing_.emplace_back(name, ChoosingCall{choice_of(name)});
-    ChoosingCall& chooses = choosing_[own->second].second;
+    ChoosingCall& chooses = choosing_[own].second;
     chooses.most = std::max(chooses.most, result.choices);
-    sources.insert(own->second);
   }
+  const bool by_choice = own != kNone || std::ranges::any_of(read, rests);
   const bool value = result.kind == Answer::Kind::Value;
-  const bool failed_before = !made.had_value && !made.failed_by.empty();
+  const bool failed_before = !made.had_value && made.failed_by_choice;
   in_vain_ = value && !made.had_value ? 0 : in_vain_ + 1;
   made.had_value |= value;
-  if (!handle) {
-    for (const Index source : sources) ++choosing_[source].second.blamed;
-    if (!value) made.failed_by.insert(sources.begin(), sources.end());
-  } else if (!sources.empty()) {
-    rests_on_[result.value].merge(sources);
+  if (handle) {
+    Origin& origin = origins_[result.value];
+    if (own != kNone) origin.choosing.insert(own);
+    for (const Index object : read)
+      if (object >= model_.objects.size() || origins_.contains(object)) origin.read.insert(object);
+    if (by_choice) rest_on_choice_.insert(result.value);
+  } else {
+    for (const Index object : read) ++failures_[object][call];
+    if (own != kNone) ++failures_of_own_choice_[own][call];
+    made.failed_by_choice |= !value && by_choice;
   }
-  const bool fails = !made.had_value && !made.failed_by.empty();
+  const bool fails = !made.had_value && made.failed_by_choice;
   failed_ += (fails ? 1U : 0U) - (failed_before ? 1U : 0U);
   if (is_in_vain()) limits_.pause_after(0);
 }
@@ -269,14 +273,35 @@ bool ExternalCalls::is_in_vain() const {
 std::vector<Index> ExternalCalls::failed_by_choice() const {
   std::vector<Index> out;
   for (Index call = 0; call < calls_.size(); ++call)
-    if (!calls_[call].had_value && !calls_[call].failed_by.empty()) out.push_back(call);
+    if (!calls_[call].had_value && calls_[call].failed_by_choice) out.push_back(call);
+  return out;
+}
+
+std::set<Index> ExternalCalls::choosing_calls_of(Index handle) const {
+  std::set<Index> out, seen = {handle};
+  for (std::vector<Index> left = {handle}; !left.empty();) {
+    const auto origin = origins_.find(left.back());
+    left.pop_back();
+    if (origin == origins_.end()) continue;
+    out.insert(origin->second.choosing.begin(), origin->second.choosing.end());
+    for (const Index read : origin->second.read)
+      if (seen.insert(read).second) left.push_back(read);
+  }
   return out;
 }
 
 ChoosingCalls ExternalCalls::choosing_calls(const std::vector<Index>& needed) const {
   ChoosingCalls out(choosing_.begin(), choosing_.end());
-  for (const Index call : needed)
-    for (const Index source : calls_[call].failed_by) out[choosing_[source].first].needed = true;
+  const auto blame = [&](Index source, const std::map<Index, std::uint64_t>& failures) {
+    ChoosingCall& chosen = out[choosing_[source].first];
+    for (const auto& [call, times] : failures) {
+      chosen.blamed += times;
+      chosen.needed |= std::ranges::find(needed, call) != needed.end();
+    }
+  };
+  for (const auto& [handle, failures] : failures_)
+    for (const Index source : choosing_calls_of(handle)) blame(source, failures);
+  for (const auto& [source, failures] : failures_of_own_choice_) blame(source, failures);
   return out;
 }
 

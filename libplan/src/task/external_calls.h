@@ -128,7 +128,7 @@ class ExternalCalls {
     bool depends = false;
     bool never_known = false;
     bool had_value = false;
-    std::set<Index> failed_by;  ///< choosing calls that its failures rest on
+    bool failed_by_choice = false;  ///< as far as it was known when it failed
   };
   /// An answer that `confirm` can ask for again.
   struct Sample {
@@ -149,6 +149,8 @@ class ExternalCalls {
   Index keep(Index call, const Footprint& path, const std::vector<Index>& arguments,
              const AnswerTree::Leaf& leaf);
   [[nodiscard]] unsigned choice_of(const std::string& call) const;
+  /// All that a handle rests on.
+  [[nodiscard]] std::set<Index> choosing_calls_of(Index handle) const;
   /// Notes which calls choose, and which of their values an answer rests on.
   void blame(Index call, const std::vector<Index>& objects, const std::vector<Index>& read,
              const ExternalResult& result, bool handle);
@@ -173,7 +175,16 @@ class ExternalCalls {
   Choices choices_;
   std::vector<std::pair<std::string, ChoosingCall>> choosing_;
   std::map<std::string, Index> choosing_index_;
-  std::map<Index, std::set<Index>> rests_on_;  ///< handles, and calls that chose them
+  /// What handles are of: the calls that chose them, and other handles that were read for them. One
+  /// handle may come of several calls, also after something has failed by it.
+  struct Origin {
+    std::set<Index> choosing, read;
+  };
+  std::map<Index, Origin> origins_;
+  std::set<Index> rest_on_choice_;  ///< handles, as far as it was known when they were made
+  /// By what failures read, which calls failed so, and how often.
+  std::map<Index, std::map<Index, std::uint64_t>> failures_;
+  std::map<Index, std::map<Index, std::uint64_t>> failures_of_own_choice_;  ///< by choosing call
   std::uint64_t pause_after_ = 0, in_vain_ = 0;
   std::size_t failed_ = 0;  ///< calls that had no value so far, by choices
   bool early_ = false;      ///< functions are stopped where they read what no argument names

@@ -48,6 +48,19 @@ class Limits {
   }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
+  /// What was held while it lives is given back when it ends.
+  class Scope {
+   public:
+    explicit Scope(Limits& limits) : limits_(limits), held_(limits.held_) {}
+    ~Scope() { limits_.held_ = held_; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Limits& limits_;
+    std::size_t held_;
+  };
+
  private:
   const SolveOptions& options_;
   Statistics& statistics_;

@@ -6,6 +6,7 @@
 #include <kaboum/world/world.h>
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -79,6 +80,8 @@ class Simulation {
   std::set<std::string> done_;                       ///< nodes with geometric states
   std::string where_;                                ///< for messages
   std::vector<std::optional<std::size_t>> mounted_;  ///< what each object is on, in a node
+  /// Sets of constraints that the plan's mates name, by the objects that are mated.
+  std::map<std::string, std::set<std::string>> mates_;
   std::set<std::size_t> carried_;  ///< objects that a motion of the node has carried
   SimulationReport report_;
 };

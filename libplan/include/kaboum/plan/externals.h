@@ -58,7 +58,8 @@ struct Answer {
   /// search with it fails, it is not proved that there is no plan.
   bool chosen = false;
   /// Among how many things `Question::choice` decides which one is preferred; 0: there is nothing
-  /// to choose. Where the search fails by what rests on it, it begins anew with another choice.
+  /// to choose. Where the search fails by what rests on it, it begins anew with another choice. Not
+  /// looked at where something is impossible: that is so whatever is chosen.
   unsigned choices = 0;
   /// True where it is impossible by what somebody has listed only, as grasps are: others might do.
   /// Where a search fails by that, there may be a plan all the same.
