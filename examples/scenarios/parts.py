@@ -33,6 +33,33 @@ def box(size, center=(0, 0, 0)):
     return mesh
 
 
+def quads(vertices, faces):
+    mesh = Mesh()
+    mesh.vertices = list(vertices)
+    mesh.triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
+    return mesh
+
+
+def crate(size, wall):
+    """An open box with outer sides `size`; its floor is as thick as its walls. Stands on z = 0."""
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    x, y, z = size[0] / 2, size[1] / 2, size[2]
+    rings = [(x, y, 0), (x, y, z), (x - wall, y - wall, z), (x - wall, y - wall, wall)]  # outside below, rim, floor
+    vertices = [(sx * a, sy * b, h) for a, b, h in rings for sx, sy in corners]
+    around = [(r + k, r + (k + 1) % 4, r + 4 + (k + 1) % 4, r + 4 + k) for r in (0, 4, 8) for k in range(4)]
+    return quads(vertices, [(3, 2, 1, 0), *around, (12, 13, 14, 15)])
+
+
+def rack(size, board):
+    """A board, a back at the greatest x and a roof, open at the least x and at the ends along y. The board's top is z = 0."""
+    x, y, z = size[0] / 2, size[1] / 2, size[2]
+    outline = [(-x, -board), (x, -board), (x, z + board), (-x, z + board), (-x, z), (x - board, z), (x - board, 0), (-x, 0)]
+    vertices = [(a, side, h) for side in (-y, y) for a, h in outline]
+    ends = [(0, 1, 6, 7), (1, 2, 5, 6), (2, 3, 4, 5)]
+    return quads(vertices, ends + [tuple(8 + k for k in face[::-1]) for face in ends] +
+                 [(k, 8 + k, 8 + (k + 1) % 8, (k + 1) % 8) for k in range(8)])
+
+
 def revolve(profile, closed=False):
     """A profile of (radius, height), from below to above on the outside; `closed`: a loop, as of a tube. Open profiles begin and
     end on the axis."""

@@ -33,7 +33,7 @@ class Cell:
         self.robots, self.objects, self.meshes, self.shapes = {}, {}, {}, {}
         self.files = {}  # of robots that are not made here
         self.epsilon = epsilon
-        self.allowed = []
+        self.allowed, self.regions = [], []
 
     def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand"):
         urdf, meshes, along = made
@@ -53,6 +53,10 @@ class Cell:
         self.shapes[name] = f"{shape}.off"
         self.objects[name] = {"pose": {"position": list(position), "rpy": list(rpy)}, "features": list(features), "grasps": list(grasps)}
 
+    def region(self, name, size, position):
+        """A box that things may be asked to lie in."""
+        self.regions.append({"name": name, "pose": {"position": list(position)}, "shape": {"box": {"size": list(size)}}})
+
     def make(self, folder):
         folder.mkdir(parents=True, exist_ok=True)
         for file, text in self.meshes.items():
@@ -69,6 +73,8 @@ class Cell:
         for thing in cell["objects"]:
             thing.update(self.objects[thing["name"]])
         cell["allowed_contacts"] = self.allowed
+        if self.regions:
+            cell["regions"] = self.regions
         (folder / "cell.json").write_text(json.dumps(cell, indent=2) + "\n")
 
 
@@ -148,14 +154,15 @@ def domain_of(o, name):
 
 
 def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}):
-    """All that comes after scene and problem. @param compare  what the last line says more of a plan."""
+    """All that comes after scene and problem. @param domain  None where the problem is a task in a few lines.
+    @param compare  what the last line says more of a plan."""
     out = o.out.resolve()
     cell.make(out)
-    (out / "problem.kpl").write_text(problem_text)
+    task = out / ("problem.kpl" if domain else "problem.task")
+    task.write_text(problem_text)
     if o.scene_only:
         return 0
-    domain, task, scene = str(HERE / name / domain), str(out / "problem.kpl"), str(out / "cell.json")
-    plan, files = str(out / "plan.json"), [domain, task, "--scene", scene]
+    plan, files = str(out / "plan.json"), [*([str(HERE / name / domain)] if domain else []), str(task), "--scene", str(out / "cell.json")]
     result = {"scenario": name, "n": o.n, "seed": o.seed, "solved": False, "actions": 0, "nodes": 0, "leaves": 0, "plan_s": 0.0,
               "predicate_calls": 0, "ik_calls": 0, "executed_branches": 0, "samples": 0, "collisions": 0, "limit_violations": 0}
 
@@ -198,7 +205,10 @@ def grasp(name, z, y, at):
     x = [y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]]
     rows = [x, list(y), list(z)]  # from the object to the tool
     position = [-sum(r[k] * at[k] for k in range(3)) for r in rows]
-    roll, yaw = math.atan2(rows[2][1], rows[2][2]), math.atan2(rows[1][0], rows[0][0])
+    if math.hypot(rows[2][1], rows[2][2]) > 1e-9:
+        roll, yaw = math.atan2(rows[2][1], rows[2][2]), math.atan2(rows[1][0], rows[0][0])
+    else:  # pitch of a right angle: only the sum or the difference of the two is determined
+        roll, yaw = 0.0, math.atan2(-rows[0][1], rows[1][1])
     return {"name": name, "position": position, "rpy": [roll, math.asin(max(-1.0, min(1.0, -rows[2][0]))), yaw]}
 
 

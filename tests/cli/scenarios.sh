@@ -95,6 +95,30 @@ expect 2 'set KABOUM_MESHES' env KABOUM_MESHES= "$S/remove/run" 2 --real ur5 --o
 scenario circular-rearrange 3 6 1 --move
 grep -q 'action move' circular-rearrange/domain.kpl || fail "no action move"
 P=$BIN/kaboum-plan
+scenario logistics 2 8 1 --task
+scenario logistics 2 14 1
+# Parcels are held from the side in the rack and from above in crates; a tall one is not inside of the flat crate.
+D=$S/logistics/domain.kpl
+"$S/logistics/run" 1 --scene-only --out parcel || fail "one parcel"
+for kept in above side; do
+  python3 -c 'import json, sys
+cell = json.load(open("parcel/cell.json"))
+for thing in cell["objects"]:
+    thing["grasps"] = [g for g in thing["grasps"] if g["name"].startswith(sys.argv[1])]
+json.dump(cell, open(f"parcel/{sys.argv[1]}.json", "w"))' "$kept"
+done
+# stowed GOAL FOLDER CELL: whether there is a plan, the code and what is said of it.
+stowed() {
+  sed "s/^goal:.*/goal: $1/" "$D" >stowed.kpl
+  expect "$4" "$5" "$P" solve stowed.kpl "$2/problem.kpl" --scene "$2/$3.json" -o none.json --explain --timeout 3 --no-cache
+}
+stowed 'K(isStowed(o1))' parcel cell 0 solved
+stowed 'K(isHeld(o1))' parcel above 7 'fetch(robot1, o1, home): impossible.*and rack'
+stowed 'K(isHeld(o1))' parcel side 0 solved
+stowed 'K(isStowed(o1))' parcel side 7 'put(robot2, o1, flat, home): not found.*and flat'
+stowed 'K(isOn(o2, flat))' logistics cell 0 solved
+stowed 'K(isOn(o2, flat)) \& K(isStowed(o2))' logistics cell 7 'inside(o2, in-flat): impossible'
+rm none.json
 D=$S/bimanual-assembly/domain.kpl
 # Handing over is in the plan, and there is none without it.
 scenario bimanual-assembly 4 7 1 --hand-over
