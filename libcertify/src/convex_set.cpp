@@ -347,6 +347,10 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          search.other_means(found));
   }
+  if (request.body_kind == SetRequest::BodyKind::Spheres)
+    throw Error(ErrorCode::LimitReached,
+                "no spheres were found that pass the exact check (" + wrong +
+                    "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
 }

@@ -99,7 +99,8 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return out;
 }
 
-/// A number with a unit behind it or as the next word; `at` goes past what was read.
+/// A number with a unit behind it or as the next word; `at` goes past what was read. Only 0 needs
+/// no unit.
 std::optional<double> number(const std::vector<std::string>& words, std::size_t& at,
                              const Units& units) {
   if (at >= words.size()) return std::nullopt;
@@ -111,7 +112,7 @@ std::optional<double> number(const std::vector<std::string>& words, std::size_t&
   std::size_t next = at + 1;
   if (unit.empty() && next < words.size() && units.contains(words[next])) unit = words[next++];
   const auto known = units.find(unit);
-  if (!unit.empty() && known == units.end()) return std::nullopt;
+  if (known == units.end() && !(unit.empty() && value == 0)) return std::nullopt;
   at = next;
   return unit.empty() ? value : value * known->second;
 }
@@ -283,7 +284,8 @@ void ManipulationTask::read_mate(const std::string& rest, std::size_t number_of_
       fail(number_of_line,
            "'" + part +
                "': expected 'FEATURE RELATION FEATURE [VALUE] [within VALUE [and ANGLE]]'; "
-               "distance and angle have a value, in mm, cm, m, rad or deg");
+               "distance and angle have a value; lengths are in mm, cm or m, angles in deg or rad, "
+               "tolerances above 0");
     mate.relations.push_back(std::move(relation));
   }
   if (mate.relations.size() > kMostRelations)

@@ -57,7 +57,7 @@ world::Transform pose_in(const json& j) {
     refuse_volume("a number of a pose is 1e6 at most");
   world::Transform out;
   for (int k = 0; k < 9; ++k) out.linear(k / 3, k % 3) = v[static_cast<std::size_t>(k)];
-  for (int k = 0; k < 3; ++k) out.translation[k] = v[static_cast<std::size_t>(9 + k)];
+  for (int k = 0; k < 3; ++k) out.translation[k] = v[static_cast<std::size_t>(k) + 9];
   if (!(defect_of(out.linear) <= kMostDefect) || !(out.linear.determinant() > 0))
     refuse_volume("the first nine numbers of a pose are a rotation, row by row");
   return out;

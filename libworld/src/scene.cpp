@@ -140,6 +140,10 @@ class Parser : detail::SceneRobot {
 
   void require_order(const Located& at, double from, double to) const {
     if (from > to) fail(at, "no value is within the bounds: 'from' is above 'to'");
+    if (from > 0 || to < 0)
+      fail(at,
+           "the stated pose is to be one of the family, where the value is 0: 'from' is 0 or "
+           "below, 'to' 0 or above");
   }
 
   /// A line, or the normal of a plane, of the object that was read last: by its name, or stated.

@@ -74,6 +74,9 @@ END
 wrong "1: 'bottom distance seat': expected" <<'END'
 mate seated: bottom distance seat
 END
+wrong "1: 'bottom distance seat 1': expected" <<'END'
+mate seated: bottom distance seat 1
+END
 wrong "1: 'bottom distance seat 1 deg': expected" <<'END'
 mate seated: bottom distance seat 1 deg
 END

@@ -62,6 +62,14 @@ expect 3 'cut.yaml:3' "$V" robot arm.urdf --spheres cut.yaml
 printf 'collision_spheres:\n  base:\n    - center: [0, 0]\n      radius: 1\n' >two.yaml
 expect 3 'two.yaml:3: .*three numbers' "$V" robot arm.urdf --spheres two.yaml
 expect 2 'RESULT or --spheres' "$V" robot arm.urdf
+expect 2 'state one' "$V" robot arm.urdf arm.urdf --spheres one.yaml
+# Nothing that was asked for is passed over.
+for option in '--epsilon 1%' --prepare --raw '--max-work 1'; do
+  # shellcheck disable=SC2086
+  expect 2 "${option%% *}" "$V" robot arm.urdf --spheres one.yaml $option
+done
+sed '/hand:/,$d' one.yaml >base.yaml
+shows 1 '1 link has none' "$V" robot arm.urdf --spheres base.yaml
 # Spherised URDF; and shapes of it that are no spheres.
 sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"/>|<sphere radius="0.6"/>|' arm.urdf >spheres.urdf
 shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf

@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,9 @@ constexpr const char* kClaims =
     "Solid claim: points about which one mesh winds at least once are so in the other.\n"
     "Surface claim: every triangle of the enclosed mesh lies in the solid of the enclosing one.\n"
     "Both are answered; --claims says which decide the exit code.";
+
+/// Options of verdicts on robots that count where spheres are judged.
+constexpr std::array<std::string_view, 3> kOfSpheres{"geometry", "links", "package-path"};
 
 /// A command.
 /// @param decide  what it does
@@ -137,23 +141,32 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "A result of bcd-decompose or bmesh-decimate: bound-verify robot INPUT.urdf DIR/INPUT.urdf "
       "--prepare, with --visual, --links, --drop-sheets and --package-path where these were given, "
       "and --prepare=wrap where that was; their --html-report has the command.",
-      [&o] {
+      [&o, &app] {
         require_none(contradiction(o.robot.how));
-        if (o.robot.result.empty() == o.robot.spheres.empty())
+        if (o.robot.result.empty() && o.robot.spheres.empty())
+          throw Error(ErrorCode::InvalidArgument, "robot: RESULT or --spheres FILE is needed");
+        if (!o.robot.result.empty() && !o.robot.spheres.empty())
           throw Error(ErrorCode::InvalidArgument,
-                      "robot: either RESULT or --spheres FILE is needed, not both");
-        if (!o.robot.spheres.empty()) return verify_spheres(o.robot, o.common);
-        return verify_robot(o.robot, o.common);
+                      "robot: RESULT and --spheres are two results to be judged: state one");
+        if (o.robot.spheres.empty()) return verify_robot(o.robot, o.common);
+        std::vector<std::string> others{"--raw"};
+        for (const auto& option : verify::robot_verdict_options())
+          if (std::ranges::find(kOfSpheres, option.name) == kOfSpheres.end())
+            others.push_back("--" + std::string(option.name));
+        require_absent(*app.get_subcommand("robot"), "--spheres", others);
+        return verify_spheres(o.robot, o.common);
       });
   add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
   c->add_option("RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)")
       ->type_name("FILE");
-  c->add_option("--spheres", o.robot.spheres,
-                "Instead of RESULT, spheres of the links, in their frames: cuRobo's YAML "
-                "(collision_spheres) or a URDF with spheres as collision shapes. Decides of each "
-                "link whether its own spheres hold its triangles, as the files have them, and the "
-                "solid that they bound; else says how much of its surface is outside, and how "
-                "deep. Of the other options, --geometry, --links and --package-path count")
+  c->add_option(
+       "--spheres", o.robot.spheres,
+       "Instead of RESULT, spheres of the links, in their frames: cuRobo's YAML "
+       "(collision_spheres) or a URDF with spheres as collision shapes. Decides of each "
+       "link whether its own spheres hold its triangles, as the files have them, and the "
+       "solid that they bound; else says how much of its surface is outside, and how "
+       "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links "
+       "and --package-path may be stated")
       ->type_name("FILE");
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);

@@ -203,8 +203,9 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
                     (o.how.shapes.visual ? std::string() : "; try --geometry visual"));
   for (const std::string& note : spheres.notes)
     log(common.quiet, "note: " + o.spheres + ": " + note);
-  std::size_t held = 0, count = 0;
+  std::size_t held = 0, count = 0, bare = 0;
   for (const LinkJudged& link : judged) {
+    bare += link.spheres == 0 ? 1 : 0;
     held += link.answer == Answer::Verified ? 1 : 0;
     count += link.spheres;
   }
@@ -226,8 +227,12 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
   if (!common.quiet)
     out << name_of(all) << ": " << count << " spheres hold " << held << " of " << judged.size()
         << " links; " << percent(lower) << " to " << percent(upper)
-        << " % of the surface is outside its own link's spheres, by " << number(deepest)
-        << " at the most" << std::endl;
+        << " % of the surface is outside its own link's spheres"
+        << (deepest > 0 ? ", by " + number(deepest) + " at the most" : std::string())
+        << (bare > 0
+                ? "; " + std::to_string(bare) + (bare == 1 ? " link has none" : " links have none")
+                : std::string())
+        << std::endl;
   return exit_code(all);
 }
 
