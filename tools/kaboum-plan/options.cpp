@@ -11,7 +11,8 @@
 namespace kaboum::tools {
 
 void add_inputs(CLI::App& app, PlanOptions& o) {
-  app.add_option("DOMAIN", o.task.domain, "Domain file (.kpl, .pddl), or - for stdin; or a task of usual actions (.task)")
+  app.add_option("DOMAIN", o.task.domain,
+                 "Domain file (.kpl, .pddl), or - for stdin; or a task of usual actions (.task)")
       ->required()
       ->type_name("FILE");
   add_request_options(app,
