@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace kaboum::plan {
@@ -48,7 +49,10 @@ class ChoiceSearch {
     std::uint64_t spared = 0;  ///< blames of other calls
     std::size_t order = 0;
     Choices choices;
-    [[nodiscard]] auto operator<=>(const Candidate&) const = default;
+    [[nodiscard]] bool operator<(const Candidate& o) const {
+      return std::tie(not_needed, blamed_calls, spared, order) <
+             std::tie(o.not_needed, o.blamed_calls, o.spared, o.order);
+    }
   };
   using Candidates = std::set<Candidate>;
 
