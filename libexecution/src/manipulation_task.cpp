@@ -196,7 +196,74 @@ std::set<std::pair<std::size_t, std::size_t>> standing(const world::World& world
   return out;
 }
 
+std::string call(const std::string& name, const std::vector<std::string>& arguments) {
+  std::string out = name;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    out.append(i == 0 ? "(" : ", ").append(arguments[i]);
+  return out + ")";
+}
+
 }  // namespace
+
+/// The text of a problem as it grows.
+class ManipulationTask::ProblemText {
+ public:
+  /// @throws Error{InvalidInput} for a name that is none in KPL.
+  void declare(const std::string& type, const std::string& name) {
+    if (!is_name(name))
+      throw Error(ErrorCode::InvalidInput,
+                  "the scene's name '" + name +
+                      "' cannot be said in a task: names are letters, digits, '_' and '-'");
+    std::string& names = constants_[type];
+    names.append(names.empty() ? "" : ", ").append(name);
+  }
+  void know(const std::string& fact) {
+    if (facts_.insert(fact).second)
+      known_.append(known_.empty() ? "K(" : ",\n  K(").append(fact).append(")");
+  }
+  void want(const std::string& fact) {
+    goal_.append(goal_.empty() ? "K(" : " & K(").append(fact).append(")");
+  }
+  [[nodiscard]] std::string text() const {
+    std::string all;
+    for (const auto& [type, names] : constants_)
+      all.append(all.empty() ? "" : "; ").append(type).append(" ").append(names);
+    return "constants: " + all + "\ninit:\n  " + known_ + "\nclosed: all\ngoal: " + goal_ + "\n";
+  }
+
+ private:
+  std::map<std::string, std::string> constants_;
+  std::set<std::string> facts_;
+  std::string known_, goal_;
+};
+
+/// Robots, objects, and where they are at first.
+void ManipulationTask::say_what_there_is(const world::World& world, ProblemText& out) {
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    const std::string& name = world.robots[r].name;
+    out.declare("robot", name);
+    out.know(call("conf", {name}) + " = home");
+    bool free = true;
+    for (std::size_t o = 0; o < world.objects.size(); ++o) {
+      if (!world.attachments[o] || world.attachments[o]->robot != r) continue;
+      out.know(call("isHolding", {name, world.objects[o].name}));
+      out.know(call("isHeld", {world.objects[o].name}));
+      free = false;
+    }
+    if (free) out.know(call("isFree", {name}));
+  }
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const world::Object& object = world.objects[o];
+    const bool movable = is_movable(world, o);
+    out.declare(movable ? "movable" : "fixed", object.name);
+    if (has_point(object, "top")) out.know(call("canSupport", {object.name}));
+    if (!movable) continue;
+    out.know(call("pose", {object.name}) + " = start");
+    if (has_point(object, "bottom")) out.know(call("canStand", {object.name}));
+  }
+  for (const auto& [above, below] : standing(world))
+    out.know(call("on", {world.objects[above].name, world.objects[below].name}));
+}
 
 ManipulationTask::ManipulationTask(const std::string& text, std::string name)
     : text_(text), name_(std::move(name)) {
@@ -340,9 +407,9 @@ void ManipulationTask::add_mates(world::World& world) const {
     object_named(world, goal.object, goal.line);
     object_named(world, goal.other, goal.line);
     for (const Relation& r : mate->relations) {
-      const auto feature = [&](const std::string& object, const std::string& name) {
+      const auto feature = [&](std::string object, const std::string& name) {
         try {
-          return find_feature(world, object + (name.starts_with('.') ? "" : "/") + name);
+          return find_feature(world, object.append(name.starts_with('.') ? "" : "/").append(name));
         } catch (const Error& error) {
           fail(mate->line, error.what());
         }
@@ -366,89 +433,55 @@ void ManipulationTask::add_mates(world::World& world) const {
 }
 
 std::string ManipulationTask::problem(const world::World& world) const {
-  std::map<std::string, std::string> constants;
-  std::string known, goal;
-  const auto add = [](std::string& to, const std::string& item, const char* between) {
-    to += (to.empty() ? "" : between) + item;
-  };
-  const auto declare = [&](const std::string& type, const std::string& name) {
-    if (!is_name(name))
-      fail(1, "the scene's name '" + name +
-                  "' cannot be said in a task: names are letters, digits, '_' and '-'");
-    add(constants[type], name, ", ");
-  };
-  const auto know = [&](const std::string& fact) { add(known, "K(" + fact + ")", ",\n  "); };
-  for (std::size_t r = 0; r < world.robots.size(); ++r) {
-    const std::string& name = world.robots[r].name;
-    declare("robot", name);
-    know("conf(" + name + ") = home");
-    std::string held;
-    for (std::size_t o = 0; o < world.objects.size(); ++o)
-      if (world.attachments[o] && world.attachments[o]->robot == r) {
-        know("isHolding(" + name + ", " + world.objects[o].name + ")");
-        know("isHeld(" + world.objects[o].name + ")");
-        held = world.objects[o].name;
-      }
-    if (held.empty()) know("isFree(" + name + ")");
+  ProblemText out;
+  try {
+    say_what_there_is(world, out);
+  } catch (const Error& error) {
+    fail(1, error.what());
   }
-  for (std::size_t o = 0; o < world.objects.size(); ++o) {
-    const world::Object& object = world.objects[o];
-    const bool movable = is_movable(world, o);
-    declare(movable ? "movable" : "fixed", object.name);
-    if (has_point(object, "top")) know("canSupport(" + object.name + ")");
-    if (!movable) continue;
-    know("pose(" + object.name + ") = start");
-    if (has_point(object, "bottom")) know("canStand(" + object.name + ")");
-  }
-  for (const auto& [above, below] : standing(world))
-    know("on(" + world.objects[above].name + ", " + world.objects[below].name + ")");
-  std::set<std::string> seats;
-  for (const Goal& g : goals_) {
-    const std::size_t o = object_named(world, g.object, g.line);
-    const world::Object& object = world.objects[o];
-    const auto need = [&](bool has, const std::string& what) {
-      if (!has) fail(g.line, what);
-    };
-    need(is_movable(world, o), "no robot can grasp " + g.object +
-                                   ": it has no grasps that fit a tool (kaboum-scene grasps)");
-    if (g.kind == Goal::Kind::Hold) {
-      need(g.other.empty() || world.find_robot(g.other).has_value(),
-           "the scene has no robot '" + g.other + "'");
-      add(goal,
-          g.other.empty() ? "K(isHeld(" + g.object + "))"
-                          : "K(isHolding(" + g.other + ", " + g.object + "))",
-          " & ");
-      continue;
-    }
-    const world::Object& below = world.objects[object_named(world, g.other, g.line)];
-    need(g.object != g.other, g.object + " is put on itself");
-    if (!g.mate.empty()) {
-      declare("mate", set_name(g));
-      know("isMate(" + set_name(g) + ", " + g.object + ", " + g.other + ")");
-      add(goal, "K(isMated(" + g.object + ", " + set_name(g) + "))", " & ");
-      continue;
-    }
-    const bool seat = has_plane(object, "mount") &&
-                      (has_plane(below, "seat") || has_plane(below, "seat/" + g.object));
-    if (seat)
-      need(has_point(below, "entry/" + g.object) || has_point(below, "entry"),
-           g.other + " has a seat, but no point 'entry' from which things slide onto it");
-    if (seat && seats.insert(g.object + " " + g.other).second)
-      know("isSeat(" + g.other + ", " + g.object + ")");
-    need(seat || has_point(object, "bottom"),
-         g.object + " has no point 'bottom' to stand on (kaboum-scene places)");
-    need(seat || has_point(below, "top"),
-         g.other + " has no point 'top' to put things on (kaboum-scene places)");
-    add(goal, "K(on(" + g.object + ", " + g.other + "))", " & ");
-  }
-  std::string out = "-- " + name_ + "\n";
+  for (const Goal& goal : goals_) say(goal, world, out);
+  std::string comment = "-- " + name_ + "\n";
   std::istringstream lines(text_);
-  for (std::string line; std::getline(lines, line);) out += "--   " + line + "\n";
-  out += "constants: ";
-  std::string all;
-  for (const auto& [type, names] : constants) add(all, type + " " + names, "; ");
-  out += all + "\ninit:\n  " + known + "\nclosed: all\ngoal: " + goal + "\n";
-  return out;
+  for (std::string line; std::getline(lines, line);)
+    comment.append("--   ").append(line).append("\n");
+  return comment + out.text();
+}
+
+/// A goal, and what is known for it. @throws Error{InvalidInput} where it cannot be.
+void ManipulationTask::say(const Goal& g, const world::World& world, ProblemText& out) const {
+  const auto need = [&](bool has, const std::string& what) {
+    if (!has) fail(g.line, what);
+  };
+  const std::size_t o = object_named(world, g.object, g.line);
+  const world::Object& object = world.objects[o];
+  need(is_movable(world, o), "no robot can grasp " + g.object +
+                                 ": it has no grasps that fit a tool (kaboum-scene grasps)");
+  if (g.kind == Goal::Kind::Hold) {
+    need(g.other.empty() || world.find_robot(g.other).has_value(),
+         "the scene has no robot '" + g.other + "'");
+    out.want(g.other.empty() ? call("isHeld", {g.object}) : call("isHolding", {g.other, g.object}));
+    return;
+  }
+  const world::Object& below = world.objects[object_named(world, g.other, g.line)];
+  need(g.object != g.other, g.object + " is put on itself");
+  if (!g.mate.empty()) {
+    out.declare("mate", set_name(g));
+    out.know(call("isMate", {set_name(g), g.object, g.other}));
+    out.want(call("isMated", {g.object, set_name(g)}));
+    return;
+  }
+  const bool seat = has_plane(object, "mount") &&
+                    (has_plane(below, "seat") || has_plane(below, "seat/" + g.object));
+  if (seat) {
+    need(has_point(below, "entry/" + g.object) || has_point(below, "entry"),
+         g.other + " has a seat, but no point 'entry' from which things slide onto it");
+    out.know(call("isSeat", {g.other, g.object}));
+  }
+  need(seat || has_point(object, "bottom"),
+       g.object + " has no point 'bottom' to stand on (kaboum-scene places)");
+  need(seat || has_point(below, "top"),
+       g.other + " has no point 'top' to put things on (kaboum-scene places)");
+  out.want(call("on", {g.object, g.other}));
 }
 
 }  // namespace kaboum::execution

@@ -46,6 +46,9 @@ class ManipulationTask {
     std::string mate;           ///< may be empty
   };
 
+  class ProblemText;
+  static void say_what_there_is(const world::World& world, ProblemText& out);
+  void say(const Goal& goal, const world::World& world, ProblemText& out) const;
   void read_line(const std::string& line, std::size_t number);
   void read_mate(const std::string& rest, std::size_t number);
   void read_put(const std::vector<std::string>& words, std::size_t number);
