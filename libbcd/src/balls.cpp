@@ -34,12 +34,13 @@ constexpr int kPieceCuts = 24;  ///< of a triangle
 constexpr std::size_t kMostSamples = 12'000;
 constexpr std::size_t kMostPoints = 20'000;  ///< after which the best found is enough
 
-struct Effortful {
+/// Amounts of work of a search.
+struct SearchEffort {
   std::size_t samples, steps;
   int refinements;
 };
 
-Effortful effort_of(Effort effort) {
+SearchEffort effort_of(Effort effort) {
   switch (effort) {
     case Effort::Fast:
       return {800, 500, 1};
@@ -181,7 +182,7 @@ class BallSearch {
     for (std::size_t i = 0; i < at.size(); ++i) {
       points_.push_back(at[i]);
       if (found[2 * i].distance < 0) centers_.push_back(found[2 * i]);
-      // Where the solid is thin there may be no other.
+      // Centres on the surface: the only ones where the solid is thin.
       if (i % 8 == 0) centers_.push_back(found[2 * i + 1]);
       // A part of the medial centres stand for the inside.
       if (i % 8 == 0 && found[2 * i].distance < 0) points_.push_back(found[2 * i].at);
@@ -246,7 +247,7 @@ class BallSearch {
         centers_.begin(),
         centers_.begin() + static_cast<std::ptrdiff_t>(std::min(kept, centers_.size())));
     for (std::uint32_t& c : choice) {
-      if (c < out.size() && c < kept) continue;
+      if (c < kept) continue;
       out.push_back(centers_[c]);
       c = static_cast<std::uint32_t>(out.size() - 1);
     }
@@ -456,7 +457,7 @@ class BallSearch {
 
   const Mesh& mesh_;
   const BallOptions& options_;
-  Effortful effort_;
+  SearchEffort effort_;
   geom::DistanceQuery query_;
   geom::WindingNumber winding_;
   geom::Box3 box_;

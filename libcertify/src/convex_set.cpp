@@ -34,7 +34,7 @@ constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
 constexpr double kSumUp = 1 + 0x1p-50;
 
-/// What of the request spheres cannot have; null: nothing.
+/// Reason why spheres cannot be what is asked for, to stand behind "spheres"; null: they can.
 const char* flaw_of_spheres(const SetRequest& r) {
   if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
   if (r.min_thickness > 0) return "cannot be thickened";

@@ -5,6 +5,7 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/checker.h>
 #include <kaboum/world/features.h>
+#include <kaboum/world/grasp_family.h>
 
 #include <algorithm>
 #include <charconv>
@@ -79,7 +80,7 @@ const Units kLengths = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}},
 /// Six would fix a pose.
 constexpr std::size_t kMostRelations = 32;
 constexpr const char* kBlanks = " \t\r";
-/// What bounding sets of things that stand on each other are at most apart, beside ε. [length]
+/// Largest gap between bounding sets of things that stand on each other, beside ε. [length]
 constexpr double kStandingGap = 5e-3;
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -140,13 +141,10 @@ bool has_plane(const world::Object& object, const std::string& name) {
   });
 }
 
-/// A grasp called "TOOL/NAME" is for that tool only.
 bool may_grasp(const world::RobotModel& robot, const world::Object& object) {
   return std::ranges::any_of(object.grasps, [&](const world::Grasp& grasp) {
-    const std::size_t slash = grasp.name.find('/');
-    return std::ranges::any_of(robot.tools, [&](const world::ToolFrame& tool) {
-      return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
-    });
+    return std::ranges::any_of(robot.tools,
+                               [&](const world::ToolFrame& tool) { return fits(tool, grasp); });
   });
 }
 
@@ -157,8 +155,8 @@ bool is_movable(const world::World& world, std::size_t object) {
          });
 }
 
-/// What each object stands on at first: what it is in contact with when it sinks a little, allowed
-/// contacts too; of what it touches as it is, only what is not above it.
+/// Pairs of an object and one that it stands on at first: it comes in contact with that one when it
+/// sinks a little, allowed contacts too. Of those it touches as it is, none that is above it.
 std::set<std::pair<std::size_t, std::size_t>> standing(const world::World& world) {
   world::World strict = world;
   std::erase_if(strict.allowed, [](const std::array<world::Item, 2>& pair) {

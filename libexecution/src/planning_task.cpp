@@ -57,7 +57,7 @@ struct PlanningTask::Data {
 
 namespace {
 
-/// Whether the file has a task of usual actions, by its name.
+/// True of the name of a file with a task of usual actions.
 bool is_manipulation_task(const std::string& file) { return file.ends_with(".task"); }
 
 /// The texts of a task of usual actions, and the scene that they are of.

@@ -20,11 +20,6 @@ using world::Transform;
 
 }  // namespace
 
-bool fits(const world::ToolFrame& tool, const world::Grasp& grasp) {
-  const std::size_t slash = grasp.name.find('/');
-  return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
-}
-
 bool is_at(const world::Transform& tool, const world::Grasp& grasp,
            const world::Transform& object) {
   const Transform member = world::nearest_member(grasp, inverse(tool) * object);

@@ -83,9 +83,6 @@ class MotionSequence {
                                                  const motion::PathOptions& options) const;
 };
 
-/// Whether a tool may hold an object by a grasp: "TOOL/NAME" names the tools that may.
-bool fits(const world::ToolFrame& tool, const world::Grasp& grasp);
-
 /// Whether a tool holds an object by a grasp, or by any member of its family. Both poses are to one
 /// frame.
 bool is_at(const world::Transform& tool, const world::Grasp& grasp, const world::Transform& object);

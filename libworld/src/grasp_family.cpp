@@ -1,4 +1,5 @@
-// Members of grasps that leave something free: how they are drawn, and told from other poses.
+// Tools that fit grasps; members of grasps that leave something free: how they are drawn, and told
+// from other poses.
 //
 // A member moves the tool, as the stated pose has it, by a turn about an axis of the object and
 // then by slides: M = S T with T x = p + R (x - p). The object's pose in the tool's frame is then
@@ -52,6 +53,11 @@ double within(const FreeTurn& turn, double angle) {
 std::size_t freedoms_of(const Grasp& grasp) { return grasp.slides.size() + (grasp.turn ? 1 : 0); }
 
 }  // namespace
+
+bool fits(const ToolFrame& tool, const Grasp& grasp) {
+  const std::size_t slash = grasp.name.find('/');
+  return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
+}
 
 bool is_family(const Grasp& grasp) { return freedoms_of(grasp) > 0; }
 

@@ -28,10 +28,17 @@ constexpr double kStep = 0.01;  // between samples [rad]
 /// A configuration whose tool looks straight down.
 const std::vector<double> kDown = {0, -0.3, 1.5, 0, 1.941592654, 0};
 
+using Words = std::map<std::string, std::string>;
+
+/// The state at first.
+const Words kAllAtStart = {{"conf(left)", "home"},
+                           {"conf(right)", "home"},
+                           {"pose(block)", "start"},
+                           {"pose(socket)", "start"},
+                           {"pose(wall)", "start"}};
+
 class Actions : public ::testing::Test {
  protected:
-  using Words = std::map<std::string, std::string>;
-
   /// The block in a hand, everything else where it is at first.
   Words holding(std::size_t robot, std::size_t grasp, const std::vector<double>& q) {
     const world::Attachment held = arms_.hold(robot, grasp);
@@ -222,11 +229,7 @@ TEST_F(Actions, WhatIsBeyondReachDoesNotHangOnTheObjectsFrame) {
 }
 
 TEST_F(Actions, AnswersSayAmongHowManyGraspsTheyChose) {
-  Words words = {{"conf(left)", "home"},
-                 {"conf(right)", "home"},
-                 {"pose(socket)", "start"},
-                 {"pose(wall)", "start"},
-                 {"pose(block)", "start"}};
+  Words words = kAllAtStart;
   for (unsigned choice = 0; choice <= 5; ++choice) {
     const Answer answer = ask(all_, "fetch", {"left", "block", "home"}, words, 6, choice);
     ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
@@ -681,11 +684,7 @@ void expect_at_side(const Transform& held) {
 TEST(GraspFamilies, AreReachedAndTakenAtAnyMember) {
   const TwoArms arms = with_family();
   const plan::ExternalBindings all = manipulation::bind_externals(arms.world, {});
-  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
-                                                    {"conf(right)", "home"},
-                                                    {"pose(block)", "start"},
-                                                    {"pose(socket)", "start"},
-                                                    {"pose(wall)", "start"}};
+  const Words words = kAllAtStart;
   const Answer there = ask(all, "reach", {"left", "block"}, words);
   ASSERT_EQ(there.kind, Answer::Kind::Value) << there.reason;
   const std::vector<double> q = motions_of(there).back().path.back();
@@ -706,11 +705,7 @@ TEST(GraspFamilies, ASearchMayPreferOneMemberAfterTheOther) {
   grasps = {grasps[0]};
   grasps[0].turn = world::FreeTurn{};
   const plan::ExternalBindings all = manipulation::bind_externals(arms.world, {});
-  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
-                                                    {"conf(right)", "home"},
-                                                    {"pose(block)", "start"},
-                                                    {"pose(socket)", "start"},
-                                                    {"pose(wall)", "start"}};
+  const Words words = kAllAtStart;
   const unsigned choices = ask(all, "reach", {"left", "block"}, words).choices;
   EXPECT_EQ(choices, 8U);
   std::set<long> turns;
@@ -747,11 +742,7 @@ TEST(GraspFamilies, NotFoundIsNoProofButDistanceIs) {
 TEST(GraspFamilies, TheLowestRankIsTakenWhereItDoes) {
   TwoArms arms;
   std::vector<world::Grasp>& grasps = arms.world.objects[TwoArms::kBlock].grasps;
-  const std::map<std::string, std::string> words = {{"conf(left)", "home"},
-                                                    {"conf(right)", "home"},
-                                                    {"pose(block)", "start"},
-                                                    {"pose(socket)", "start"},
-                                                    {"pose(wall)", "start"}};
+  const Words words = kAllAtStart;
   for (const std::size_t first : {0U, 1U, 2U}) {
     for (world::Grasp& grasp : grasps) grasp.rank = 1;
     grasps[first].rank = 0;

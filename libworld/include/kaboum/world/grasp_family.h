@@ -4,9 +4,12 @@
 
 #include <vector>
 
-/// Poses of a grasp that leaves something free: a tool anywhere round an axis, along an edge, or on
-/// two parallel faces. docs/scene.md.
+/// Grasps: the tools that may use them, and the poses of those that leave something free, a tool
+/// anywhere round an axis, along an edge, or on two parallel faces. docs/scene.md.
 namespace kaboum::world {
+
+/// True if a tool may hold an object by a grasp: one called "TOOL/NAME" is for that tool only.
+bool fits(const ToolFrame& tool, const Grasp& grasp);
 
 /// Whether a grasp leaves anything free.
 bool is_family(const Grasp& grasp);
