@@ -33,7 +33,7 @@ class Cell:
         self.robots, self.objects, self.meshes, self.shapes = {}, {}, {}, {}
         self.files = {}  # of robots that are not made here
         self.epsilon = epsilon
-        self.allowed, self.regions = [], []
+        self.allowed, self.regions, self.constraints = [], [], []
 
     def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand"):
         urdf, meshes, along = made
@@ -75,6 +75,8 @@ class Cell:
         cell["allowed_contacts"] = self.allowed
         if self.regions:
             cell["regions"] = self.regions
+        if self.constraints:
+            cell["constraints"] = self.constraints
         (folder / "cell.json").write_text(json.dumps(cell, indent=2) + "\n")
 
 

@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/checker.h>
+#include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/features.h>
 #include <kaboum/world/grasp_family.h>
 
@@ -311,10 +312,12 @@ void ManipulationTask::read_mate(const std::string& rest, std::size_t number_of_
     fail(number_of_line, "a second mate '" + name[0] + "'");
   Mate mate{number_of_line, name[0], {}};
   for (const std::string& part : parts_of(rest.substr(colon + 1), ';')) {
-    const std::vector<std::string> words = words_of(part);
+    std::vector<std::string> words = words_of(part);
+    Relation relation;
+    relation.preferred = !words.empty() && words[0] == "prefer";
+    if (relation.preferred) words.erase(words.begin());
     if (words.size() < 3)
       fail(number_of_line, "expected 'FEATURE RELATION FEATURE [VALUE]', not '" + part + "'");
-    Relation relation;
     relation.first = words[0];
     relation.second = words[2];
     std::vector<std::string> names;
@@ -355,7 +358,9 @@ void ManipulationTask::read_mate(const std::string& rest, std::size_t number_of_
   }
   if (mate.relations.size() > kMostRelations)
     fail(number_of_line, "more than " + std::to_string(kMostRelations) + " relations in a mate");
-  if (mate.relations.empty()) fail(number_of_line, "the mate '" + mate.name + "' has no relation");
+  if (std::ranges::all_of(mate.relations, &Relation::preferred))
+    fail(number_of_line, "the mate '" + mate.name + "' has no relation" +
+                             (mate.relations.empty() ? "" : " but what is preferred"));
   mates_.push_back(std::move(mate));
 }
 
@@ -424,8 +429,10 @@ void ManipulationTask::add_mates(world::World& world) const {
       } catch (const Error& error) {
         fail(mate->line, error.what());
       }
-      set.constraints.push_back(std::move(c));
+      (r.preferred ? set.preferred : set.constraints).push_back(std::move(c));
     }
+    if (const auto found = find_contradiction(set.constraints))
+      fail(mate->line, "the mate '" + mate->name + "': " + describe(set.constraints, *found));
     world.constraints.push_back(std::move(set));
   }
 }

@@ -33,6 +33,7 @@ class ManipulationTask {
     kinematics::Relation relation = kinematics::Relation::Coincident;
     std::string first, second;  ///< of what is put, and of what it is put on
     std::optional<double> value, within, within_angle;
+    bool preferred = false;
   };
   struct Mate {
     std::size_t line = 0;

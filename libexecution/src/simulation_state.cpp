@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 namespace kaboum::execution {
@@ -32,6 +33,91 @@ std::optional<std::string> word(const plan::Model& model, const plan::KnownState
       !model.is_a(static_cast<plan::Index>(object - model.objects.begin()), symbol->parameters[0]))
     return std::string(otherwise);
   return known.value(function, {name});
+}
+
+/// How far a point is from a surface that is raised along its normal: by the corners of its outline
+/// in coordinates of its plane.
+double off_surface(const world::Feature& surface, const geom::Transform& pose,
+                   const geom::Vec3& point, double raised) {
+  const geom::Vec3 normal = pose.linear * surface.direction;
+  const geom::Vec3 off = point - pose * surface.point;
+  const double above = off.dot(normal) - raised;
+  const geom::Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
+  if (surface.outline.empty())
+    return std::hypot(above, std::max(0.0, std::hypot(off.dot(x), off.dot(y)) - surface.radius));
+  std::vector<Eigen::Vector2d> corners;
+  corners.reserve(surface.outline.size());
+  for (const geom::Vec3& corner : surface.outline) {
+    const geom::Vec3 c = pose.linear * (corner - surface.point);
+    corners.emplace_back(c.dot(x), c.dot(y));
+  }
+  const Eigen::Vector2d p(off.dot(x), off.dot(y));
+  bool inside = true;
+  double beside = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d from = corners[i], along = corners[(i + 1) % corners.size()] - from,
+                          to = p - from;
+    inside = inside && along.x() * to.y() - along.y() * to.x() >= 0;
+    const double share = std::clamp(along.dot(to) / along.squaredNorm(), 0.0, 1.0);
+    beside = std::min(beside, (to - share * along).norm());
+  }
+  return std::hypot(above, inside ? 0.0 : beside);
+}
+
+world::ToleratedConstraint swapped(world::ToleratedConstraint c) {
+  std::swap(c.first, c.second);
+  return c;
+}
+
+/// Whether a constraint is met, by formulas of its own. Tolerances are of the first feature's
+/// point, or of the point where one feature is none.
+/// @param a, b  poses of what the features are fixed to
+bool meets(const world::ToleratedConstraint& c, const geom::Transform& a,
+           const geom::Transform& b) {
+  using Kind = world::Feature::Kind;
+  using kinematics::Relation;
+  const Kind first = c.first.feature.kind, second = c.second.feature.kind;
+  const geom::Vec3 apart = a * c.first.feature.point - b * c.second.feature.point,
+                   u = a.linear * c.first.feature.direction,
+                   v = b.linear * c.second.feature.direction;
+  // Distance of the first one's point from the second, or of the point from what is none.
+  const auto from = [&](Kind kind, const geom::Vec3& direction) {
+    return kind == Kind::Point  ? apart.norm()
+           : kind == Kind::Line ? apart.cross(direction).norm()
+                                : std::abs(apart.dot(direction));
+  };
+  if (first == Kind::Surface || second == Kind::Surface) {
+    const bool surface_first = first == Kind::Surface;
+    const world::Feature& surface = surface_first ? c.first.feature : c.second.feature;
+    if (c.relation == Relation::Coincident || c.relation == Relation::Distance)
+      return off_surface(surface, surface_first ? a : b,
+                         surface_first ? b * c.second.feature.point : a * c.first.feature.point,
+                         c.value) <= c.within + kSame;
+  }
+  const double distance = second == Kind::Point ? from(first, u) : from(second, v);
+  const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+  const bool mixed = (first == Kind::Line) != (second == Kind::Line);  // a line and what is flat
+  switch (c.relation) {
+    case Relation::Distance:
+      return std::abs(distance - c.value) <= c.within + kSame;
+    case Relation::Coincident: {
+      if (distance > c.within + kSame) return false;
+      if (first == Kind::Point || second == Kind::Point) return true;
+      const double off = std::min(angle, std::numbers::pi - angle);
+      return (mixed ? std::numbers::pi / 2 - off : off) <= c.within_angle + kSame;
+    }
+    case Relation::Parallel:
+    case Relation::Perpendicular: {
+      const double off = std::min(angle, std::numbers::pi - angle);
+      const bool along = (c.relation == Relation::Parallel) != mixed;
+      return (along ? off : std::numbers::pi / 2 - off) <= c.within_angle + kSame;
+    }
+    case Relation::Angle:
+      // From a plane to a line: towards its normal.
+      return std::abs((mixed ? std::numbers::pi / 2 - angle : angle) - c.value) <=
+             c.within_angle + kSame;
+  }
+  return false;
 }
 
 }  // namespace
@@ -93,6 +179,13 @@ bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t lin
     for (const world::Grasp& grasp : world.objects[object].grasps)
       if (tool.link == link) {
         const geom::Transform at = judge::product(link_pose, tool.pose);
+        if (!grasp.constraints.empty()) {
+          const auto is_met = [&](const world::ToleratedConstraint& c) {
+            return meets(c, at, object_pose) || meets(swapped(c), object_pose, at);
+          };
+          if (std::ranges::all_of(grasp.constraints, is_met)) return true;
+          continue;
+        }
         const geom::Transform member =
             world::nearest_member(grasp, judge::product(inverse(at), object_pose));
         if (same(judge::product(at, member), object_pose)) return true;
@@ -120,8 +213,6 @@ bool is_on_seat(const world::World& world, std::size_t object, const geom::Trans
 bool is_mated(const world::World& world, const std::set<std::string>& sets, std::size_t object,
               const geom::Transform& object_pose, std::size_t onto,
               const geom::Transform& onto_pose) {
-  using Kind = world::Feature::Kind;
-  using kinematics::Relation;
   const auto pose_of = [&](const world::FixedFeature& f) {
     return f.to != world::FixedFeature::To::Object ? nullptr
            : f.index == object                     ? &object_pose
@@ -130,43 +221,9 @@ bool is_mated(const world::World& world, const std::set<std::string>& sets, std:
   };
   const auto is_met = [&](world::ToleratedConstraint c) {
     // Tolerances are of the point of what was moved.
-    if (c.first.index == onto) std::swap(c.first, c.second);
+    if (c.first.index == onto) c = swapped(c);
     const geom::Transform *a = pose_of(c.first), *b = pose_of(c.second);
-    if (a == nullptr || b == nullptr || a == b) return false;
-    const Kind first = c.first.feature.kind, second = c.second.feature.kind;
-    const geom::Vec3 apart = *a * c.first.feature.point - *b * c.second.feature.point,
-                     u = a->linear * c.first.feature.direction,
-                     v = b->linear * c.second.feature.direction;
-    // Distance of the first one's point from the second, or of the point from what is none.
-    const auto from = [&](Kind kind, const geom::Vec3& direction) {
-      return kind == Kind::Point  ? apart.norm()
-             : kind == Kind::Line ? apart.cross(direction).norm()
-                                  : std::abs(apart.dot(direction));
-    };
-    const double distance = second == Kind::Point ? from(first, u) : from(second, v);
-    const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-    const bool mixed = first != Kind::Point && second != Kind::Point && first != second;
-    switch (c.relation) {
-      case Relation::Distance:
-        return std::abs(distance - c.value) <= c.within + kSame;
-      case Relation::Coincident: {
-        if (distance > c.within + kSame) return false;
-        if (first == Kind::Point || second == Kind::Point) return true;
-        const double off = std::min(angle, std::numbers::pi - angle);
-        return (mixed ? std::numbers::pi / 2 - off : off) <= c.within_angle + kSame;
-      }
-      case Relation::Parallel:
-      case Relation::Perpendicular: {
-        const double off = std::min(angle, std::numbers::pi - angle);
-        const bool along = (c.relation == Relation::Parallel) != mixed;
-        return (along ? off : std::numbers::pi / 2 - off) <= c.within_angle + kSame;
-      }
-      case Relation::Angle:
-        // From a plane to a line: towards its normal.
-        return std::abs((mixed ? std::numbers::pi / 2 - angle : angle) - c.value) <=
-               c.within_angle + kSame;
-    }
-    return false;
+    return a != nullptr && b != nullptr && a != b && meets(c, *a, *b);
   };
   return std::ranges::any_of(world.constraints, [&](const world::ConstraintSet& set) {
     return sets.contains(set.name) && std::ranges::all_of(set.constraints, is_met);

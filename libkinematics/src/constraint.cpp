@@ -3,6 +3,7 @@
 #include <kaboum/kinematics/constraint.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,6 +26,10 @@ std::pair<Vec3, Vec3> perpendiculars(const Vec3& d) {
   return {a, d.cross(a)};
 }
 
+Vec3 onto_plane(const Surface& s, const Vec3& p) {
+  return p - (p - s.position).dot(s.normal) * s.normal;
+}
+
 PosedFeature see(const Feature& feature, const Transform& frame) {
   PosedFeature s;
   s.origin = frame.translation;
@@ -39,9 +44,11 @@ PosedFeature see(const Feature& feature, const Transform& frame) {
     s.point = frame * point->position;
   } else if (const auto* line = std::get_if<Line>(&feature)) {
     place(line->position, line->direction);
+  } else if (const auto* plane = std::get_if<Plane>(&feature)) {
+    place(plane->position, plane->normal);
   } else {
-    const auto& plane = std::get<Plane>(feature);
-    place(plane.position, plane.normal);
+    const auto& surface = std::get<Surface>(feature);
+    place(surface.position, surface.normal);
   }
   return s;
 }
@@ -58,6 +65,22 @@ class Rows {
     add_point(u / length_);
     if (frame == 1) first_.back().tail<3>() += u.cross(between_ / length_).transpose();
     if (frame == 2) second_.back().tail<3>() += u.cross(between_ / length_).transpose();
+  }
+  /// How far p₁ is beside a surface of the second frame, in its plane.
+  void beside(const Surface& surface, const Transform& frame) {
+    const Vec3 in_frame = frame.linear.transpose() * (a_.point - frame.translation);
+    const Vec3 off =
+        frame.linear * (onto_plane(surface, in_frame) - nearest_point(surface, in_frame));
+    const double far = off.norm();
+    add(far / length_);
+    if (!(far > 0)) return;
+    // The nearest point stays where it is in the second frame, to first order along u.
+    const Vec3 u = off / (far * length_);
+    const Vec3 arm = a_.point - a_.origin, other = a_.point - b_.origin;
+    first_.back().head<3>() = u.transpose();
+    first_.back().tail<3>() = arm.cross(u).transpose();
+    second_.back().head<3>() = -u.transpose();
+    second_.back().tail<3>() = -other.cross(u).transpose();
   }
   /// u · v, u fixed to the first frame, v to the second.
   void dot(const Vec3& u, const Vec3& v) {
@@ -150,11 +173,25 @@ class Rows {
   Four<Eigen::Matrix<double, 1, 6>> first_, second_;
 };
 
-/// Kinds of the two features as one number: point 0, line 1, plane 2.
+/// Kinds of the two features as one number: point 0, line 1, plane 2 (of surfaces, theirs).
 constexpr std::size_t kinds(std::size_t first, std::size_t second) { return 3 * first + second; }
+/// Of a surface's size: how far corners may be off its plane, and an edge, or an area at its
+/// square, is longer; how far an outline may be from convex.
+constexpr double kFlat = 1e-9, kConvex = 1e-12;
 constexpr std::size_t kPointPoint = kinds(0, 0), kPointLine = kinds(0, 1),
                       kPointPlane = kinds(0, 2), kLineLine = kinds(1, 1), kLinePlane = kinds(1, 2),
                       kPlanePlane = kinds(2, 2);
+
+/// A surface as the plane that it is a part of.
+std::size_t kind_of(const Feature& feature) { return std::min<std::size_t>(feature.index(), 2); }
+
+bool is_surface(const Feature& feature) { return std::holds_alternative<Surface>(feature); }
+
+/// Whether a relation is about where a point is on a surface.
+bool is_on_surface(const Constraint& c) {
+  return (is_surface(c.first.feature) || is_surface(c.second.feature)) &&
+         (c.relation == Relation::Coincident || c.relation == Relation::Distance);
+}
 
 bool supported(Relation relation, std::size_t pair) {
   const bool with_point = pair == kPointPoint || pair == kPointLine || pair == kPointPlane;
@@ -195,8 +232,40 @@ void directions(Rows& rows, const PosedFeature& a, const PosedFeature& b, bool a
   rows.dot(a.other, b.direction);
 }
 
+/// Off its plane, and beside it.
+Cost on_surface(const Constraint& c, const PosedFeature& a, PosedFeature b, const Transform& frame,
+                double length) {
+  const auto& surface = std::get<Surface>(c.second.feature);
+  b.point += c.value * b.direction;
+  Rows rows(a, b, length);
+  rows.along(b.direction, 2);
+  rows.beside(surface, frame);
+  return rows.result();
+}
+
 const char* name_of(const Feature& feature) {
-  return feature.index() == 0 ? "point" : feature.index() == 1 ? "line" : "plane";
+  constexpr std::array<const char*, 4> kNames{"point", "line", "plane", "surface"};
+  return kNames[feature.index()];
+}
+
+/// A convex polygon in its plane with the corners that way round, or a disc; of some area.
+bool is_bounded_surface(const Surface& s) {
+  if (s.outline.empty()) return s.radius > 0 && std::isfinite(s.radius);
+  const std::size_t n = s.outline.size();
+  double size = 0, area = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 a = s.outline[i] - s.position, b = s.outline[(i + 1) % n] - s.position;
+    size = std::max(size, a.norm());
+    area += 0.5 * s.normal.dot(a.cross(b));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 &a = s.outline[i], edge = s.outline[(i + 1) % n] - a;
+    const bool flat = std::abs(s.normal.dot(a - s.position)) <= kFlat * size;
+    if (!flat || !(edge.norm() > kFlat * size)) return false;
+    for (const Vec3& p : s.outline)
+      if (s.normal.dot(edge.cross(p - a)) < -kConvex * size * edge.norm()) return false;
+  }
+  return n >= 3 && std::isfinite(size) && area > kFlat * size * size;
 }
 
 bool is_unit(const Feature& feature) {
@@ -204,10 +273,58 @@ bool is_unit(const Feature& feature) {
     return line->position.allFinite() && std::abs(line->direction.norm() - 1) < 1e-9;
   if (const auto* plane = std::get_if<Plane>(&feature))
     return plane->position.allFinite() && std::abs(plane->normal.norm() - 1) < 1e-9;
+  if (const auto* surface = std::get_if<Surface>(&feature))
+    return surface->position.allFinite() && std::abs(surface->normal.norm() - 1) < 1e-9;
   return std::get<Point>(feature).position.allFinite();
 }
 
 }  // namespace
+
+Vec3 nearest_point(const Surface& s, const Vec3& p) {
+  const Vec3 flat = onto_plane(s, p);
+  if (s.outline.empty()) {
+    const Vec3 out = flat - s.position;
+    return out.norm() <= s.radius ? flat : Vec3(s.position + s.radius * out.normalized());
+  }
+  bool inside = true;
+  Vec3 nearest = s.outline.front();
+  for (std::size_t i = 0; i < s.outline.size(); ++i) {
+    const Vec3& a = s.outline[i];
+    const Vec3 edge = s.outline[(i + 1) % s.outline.size()] - a;
+    inside = inside && s.normal.dot(edge.cross(flat - a)) >= 0;
+    const double share = std::clamp(edge.dot(flat - a) / edge.squaredNorm(), 0.0, 1.0);
+    const Vec3 on_edge = a + share * edge;
+    if ((on_edge - flat).squaredNorm() < (nearest - flat).squaredNorm()) nearest = on_edge;
+  }
+  return inside ? flat : nearest;
+}
+
+Vec3 point_at(const Surface& s, double u, double v) {
+  if (s.outline.empty()) {
+    const auto [side, other] = perpendiculars(s.normal);
+    const double angle = 2 * kPi * v;
+    return s.position +
+           s.radius * std::sqrt(u) * (std::cos(angle) * side + std::sin(angle) * other);
+  }
+  // Of the triangles of a fan, the one that u falls in by their areas.
+  const Vec3& apex = s.outline.front();
+  const auto area = [&](std::size_t i) {
+    return s.normal.dot((s.outline[i] - apex).cross(s.outline[i + 1] - apex));
+  };
+  double total = 0;
+  for (std::size_t i = 1; i + 1 < s.outline.size(); ++i) total += area(i);
+  double rest = u * total;
+  std::size_t i = 1;
+  while (i + 2 < s.outline.size() && rest >= area(i)) rest -= area(i++);
+  const double along = std::sqrt(std::clamp(rest / area(i), 0.0, 1.0));
+  return apex + along * ((1 - v) * (s.outline[i] - apex) + v * (s.outline[i + 1] - apex));
+}
+
+Surface shifted(Surface surface, double by) {
+  surface.position += by * surface.normal;
+  for (Vec3& p : surface.outline) p += by * surface.normal;
+  return surface;
+}
 
 const char* name_of(Relation relation) {
   switch (relation) {
@@ -239,7 +356,8 @@ Cost cost(const Constraint& c, const Transform& first, const Transform& second, 
     return out;
   }
   const PosedFeature a = see(c.first.feature, first), b = see(c.second.feature, second);
-  const std::size_t pair = kinds(i, k);
+  if (is_on_surface(c)) return on_surface(c, a, b, second, length);
+  const std::size_t pair = kinds(kind_of(c.first.feature), kind_of(c.second.feature));
   Rows rows(a, b, length);
   switch (c.relation) {
     case Relation::Coincident:
@@ -268,9 +386,13 @@ void require_valid(const Constraint& c) {
   };
   if (!is_unit(c.first.feature) || !is_unit(c.second.feature))
     fail("a position is not finite or a direction not of unit length");
-  const std::size_t i = c.first.feature.index(), k = c.second.feature.index();
+  for (const Feature* f : {&c.first.feature, &c.second.feature})
+    if (const auto* surface = std::get_if<Surface>(f); surface != nullptr)
+      if (!is_bounded_surface(*surface))
+        fail("a surface is a disc with a radius above 0, or a flat convex outline with an area");
+  const std::size_t i = kind_of(c.first.feature), k = kind_of(c.second.feature);
   const std::size_t pair = kinds(std::min(i, k), std::max(i, k));
-  if (!supported(c.relation, pair)) {
+  if (!supported(c.relation, pair) || (is_on_surface(c) && pair != kPointPlane)) {
     fail(std::string(name_of(c.relation)) + " of a " + name_of(c.first.feature) + " and a " +
          name_of(c.second.feature) + " is not defined");
   }

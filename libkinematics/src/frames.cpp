@@ -33,6 +33,10 @@ Feature placed(Feature feature, const Transform& pose) {
   std::visit([&](auto& f) { f.position = pose * f.position; }, feature);
   if (auto* line = std::get_if<Line>(&feature)) turn(line->direction);
   if (auto* plane = std::get_if<Plane>(&feature)) turn(plane->normal);
+  if (auto* surface = std::get_if<Surface>(&feature)) {
+    turn(surface->normal);
+    for (Vec3& p : surface->outline) p = pose * p;
+  }
   return feature;
 }
 

@@ -53,6 +53,7 @@ std::array<Vec3, 3> directions_of(const Feature& feature) {
   const Vec3* d = nullptr;
   if (const auto* line = std::get_if<Line>(&feature)) d = &line->direction;
   if (const auto* plane = std::get_if<Plane>(&feature)) d = &plane->normal;
+  if (const auto* surface = std::get_if<Surface>(&feature)) d = &surface->normal;
   if (d == nullptr) return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   const Vec3 side = d->unitOrthogonal();
   return {*d, side, d->cross(side)};

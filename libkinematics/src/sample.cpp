@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -136,6 +137,7 @@ class ConstraintSampler::Impl {
       for (const FrameId& id : {c.first.frame, c.second.frame})
         if (id.kind == Kind::Link) forms_[id.index].reset();
     if (!(length_ > 0)) length_ = 1;
+    find_aims();
     for (std::size_t i = 0; i < problem_.robots.size(); ++i)
       frames_.add_robot(problem_.robots[i], forms_[i].has_value());
     for (std::size_t i = 0; i < problem_.objects.size(); ++i) frames_.add_object();
@@ -192,9 +194,39 @@ class ConstraintSampler::Impl {
     random_ = unused;
   }
 
-  /// Random joints, and the poses that they give; random poses of objects.
+  /// The first of the surfaces on which a frame has a point: there any point of the surface is
+  /// aimed at, evenly spread. Points on its other surfaces are projected.
+  void find_aims() {
+    std::vector<std::array<FrameId, 2>> known;
+    for (std::size_t i = 0; i < constraints_.size(); ++i) {
+      Constraint& c = constraints_[i];
+      if (c.relation != Relation::Coincident && c.relation != Relation::Distance) continue;
+      const bool first = std::holds_alternative<Surface>(c.first.feature);
+      if (!first && !std::holds_alternative<Surface>(c.second.feature)) continue;
+      const std::array<FrameId, 2> frames{c.first.frame, c.second.frame},
+          other{c.second.frame, c.first.frame};
+      if (std::ranges::find(known, frames) != known.end() ||
+          std::ranges::find(known, other) != known.end())
+        continue;
+      known.push_back(frames);
+      Feature& feature = (first ? c.first : c.second).feature;
+      Surface surface = shifted(std::get<Surface>(feature), c.value);
+      feature = surface;
+      c.relation = Relation::Coincident;
+      c.value = 0;
+      aims_.push_back({i, first, std::move(surface)});
+    }
+  }
+
+  /// Random joints, and the poses that they give; random poses of objects; random points of
+  /// surfaces.
   void start() {
     joints_.clear();
+    for (const Aim& aim : aims_) {
+      Constraint& c = constraints_[aim.constraint];
+      const double u = random_.between(0, 1), v = random_.between(0, 1);
+      (aim.first ? c.first : c.second).feature = Point{point_at(aim.surface, u, v)};
+    }
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];
       std::vector<double> q;
@@ -348,7 +380,15 @@ class ConstraintSampler::Impl {
   }
 
   ConstraintProblem problem_;
+  /// A point of a surface that each draw aims at, as a constraint of two points.
+  struct Aim {
+    std::size_t constraint = 0;
+    bool first = false;  ///< whether the surface is its first feature
+    Surface surface;
+  };
+
   std::vector<Constraint> constraints_;  ///< with as few features of links as may be
+  std::vector<Aim> aims_;
   SampleOptions options_;
   Random random_;
   double length_ = 0;

@@ -368,10 +368,11 @@ const world::ConstraintSet& constraints_named(const Geometry& geometry, const st
 std::vector<std::size_t> things_of(const world::ConstraintSet& set, world::FixedFeature::To kind,
                                    std::vector<std::size_t> first = {}) {
   std::vector<std::size_t> out = std::move(first);
-  for (const world::ToleratedConstraint& c : set.constraints)
-    for (const world::FixedFeature* feature : {&c.first, &c.second})
-      if (feature->to == kind && std::ranges::find(out, feature->index) == out.end())
-        out.push_back(feature->index);
+  for (const std::vector<world::ToleratedConstraint>* some : {&set.constraints, &set.preferred})
+    for (const world::ToleratedConstraint& c : *some)
+      for (const world::FixedFeature* feature : {&c.first, &c.second})
+        if (feature->to == kind && std::ranges::find(out, feature->index) == out.end())
+          out.push_back(feature->index);
   return out;
 }
 
@@ -397,10 +398,12 @@ Answer mate(Geometry& geometry, const Question& question) {
   const auto is_of = [](const world::FixedFeature& feature, std::size_t object) {
     return feature.to == world::FixedFeature::To::Object && feature.index == object;
   };
-  if (!std::ranges::all_of(set.constraints, [&](const world::ToleratedConstraint& c) {
-        return (is_of(c.first, o) && is_of(c.second, onto)) ||
-               (is_of(c.first, onto) && is_of(c.second, o));
-      }))
+  const auto is_between = [&](const world::ToleratedConstraint& c) {
+    return (is_of(c.first, o) && is_of(c.second, onto)) ||
+           (is_of(c.first, onto) && is_of(c.second, o));
+  };
+  if (!std::ranges::all_of(set.constraints, is_between) ||
+      !std::ranges::all_of(set.preferred, is_between))
     throw Error(ErrorCode::InvalidInput, "the constraints '" + set.name + "' are not between " +
                                              question.arguments[1] + " and " +
                                              question.arguments[2] + " alone, as a mate's are");

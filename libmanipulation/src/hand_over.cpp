@@ -4,6 +4,9 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/motion/goals.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/constraint_conflict.h>
+#include <kaboum/world/features.h>
+#include <kaboum/world/grasp_family.h>
 
 #include <Eigen/Geometry>
 
@@ -134,8 +137,18 @@ bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set) {
   if (!motion::is_of_motion(geometry_.world, state_, robot, set))
     return fail(Answer::Kind::Impossible, "'" + set.name + "' is not between what moves with " +
                                               model.name + " now and what stays");
-  const std::vector<motion::PathConstraint> constraints =
-      motion::path_constraints(geometry_.world, state_, robot, set);
+  if (const auto far = find_beyond_reach(robot, set))
+    return fail(Answer::Kind::Impossible, model.name + " does not reach so far as '" + set.name +
+                                              "' asks: " + describe(set.constraints[*far]));
+  fail(Answer::Kind::NotFound, "no configuration was found that meets '" + set.name + "'");
+  for (std::size_t count = set.preferred.size() + 1; count > 0; --count)
+    if (satisfy(robot, motion::path_constraints(geometry_.world, state_, robot, set, count - 1)))
+      return true;
+  return false;
+}
+
+bool Sequence::satisfy(std::size_t robot, const std::vector<motion::PathConstraint>& constraints) {
+  const world::RobotModel& model = geometry_.world.robots[robot];
   const std::uint32_t link = constraints.front().link;
   const motion::Goals drawn = motion::constraint_goals(
       model, {model.kinematics.links[link].name, link, {}}, constraints, state_.q[robot],
@@ -149,11 +162,25 @@ bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set) {
             motion::ConstraintAnswer::Outcome::Kept)
       goals.configurations.push_back(std::move(word));
   }
-  if (goals.configurations.empty())
-    return fail(Answer::Kind::NotFound, "no configuration was found that meets '" + set.name + "'");
-  if (!go(robot, goals)) return false;
+  if (goals.configurations.empty() || !go(robot, goals)) return false;
   chosen_ = true;
   return true;
+}
+
+/// The first constraint that is farther away than the robot reaches, by its number.
+std::optional<std::size_t> Sequence::find_beyond_reach(std::size_t robot,
+                                                       const world::ConstraintSet& set) const {
+  for (std::size_t i = 0; i < set.constraints.size(); ++i) {
+    world::ToleratedConstraint c = set.constraints[i];
+    c.first = at_state(geometry_.world, state_, c.first);
+    c.second = at_state(geometry_.world, state_, c.second);
+    if (c.second.to == world::FixedFeature::To::Link && c.second.index == robot)
+      std::swap(c.first, c.second);
+    if (c.second.to == world::FixedFeature::To::World &&
+        world::is_beyond_reach(geometry_.world.robots[robot], c))
+      return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace kaboum::manipulation

@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/grasp_family.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ constexpr int kTurns = 8;
 /// Members of a family of grasps that are drawn; with each attempt twice as many.
 constexpr std::size_t kDraws = 16;
 constexpr unsigned kMostDoublings = 3;
+static_assert(kDraws << kMostDoublings == world::kMostMembers);
 /// Of these, as many are choices that a search may prefer.
 constexpr std::size_t kChoices = 8;
 /// More than sums of lengths lose. [1]
@@ -55,7 +57,7 @@ std::vector<Sequence::Hold> Sequence::holds(std::size_t robot, std::size_t objec
       if (!fits(tool, grasp)) continue;
       const std::size_t members = is_family(grasp) ? draws : 1;
       for (std::size_t i = 0; i < members; ++i)
-        out.push_back({&grasp, &tool, member_of(grasp, draw_member(grasp, i))});
+        out.push_back({&grasp, &tool, drawn_member(grasp, i)});
     }
   return out;
 }
@@ -119,20 +121,9 @@ bool Sequence::is_beyond_reach(std::size_t robot, std::size_t object) const {
   if (tools.empty()) return false;
   for (const world::Grasp& grasp : thing.grasps)
     aside = std::max(aside, farthest_from(grasp, ball.center) - ball.radius);
-  const robot::Robot& robot_of = model.kinematics;
   return std::ranges::all_of(tools, [&](const world::ToolFrame& tool) {
-    const kinematics::Arm arm =
-        kinematics::arm_of(robot_of, robot_of.links[0].name, robot_of.links[tool.link].name);
-    // From one axis to the next nothing but sliding changes how far their points are apart.
-    double longest = tool.pose.translation.norm() + aside;
-    geom::Vec3 at = geom::Vec3::Zero();
-    for (const kinematics::Axis& axis : arm.axes) {
-      longest += (axis.point - at).norm();
-      at = axis.point;
-      if (!axis.turns) longest += axis.rate * std::max(std::abs(axis.lower), std::abs(axis.upper));
-    }
-    longest += (arm.tool.translation - at).norm();
-    return distance > longest * (1 + kRounding);
+    const double longest = longest_reach(model, tool.link, tool.pose.translation);
+    return distance > (longest + aside) * (1 + kRounding);
   });
 }
 

@@ -78,6 +78,9 @@ class Sequence : public MotionSequence {
   /// Whether no tool comes as near to the object as the grasps that are listed have it, however the
   /// robot stretches: then no other grasp is in reach either.
   [[nodiscard]] bool is_beyond_reach(std::size_t robot, std::size_t object) const;
+  [[nodiscard]] std::optional<std::size_t> find_beyond_reach(std::size_t robot,
+                                                             const world::ConstraintSet& set) const;
+  bool satisfy(std::size_t robot, const std::vector<motion::PathConstraint>& constraints);
   /// By the one grasp that the question's choice prefers; nullopt: it prefers none.
   std::optional<Goals> preferred_goals(std::size_t robot, std::size_t object);
   /// "o1, held by its grasp 'side'"

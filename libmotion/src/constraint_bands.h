@@ -21,6 +21,8 @@ struct ConstraintBand {
   geom::Vec3 own = geom::Vec3::Zero();  ///< x in the link's frame
   geom::Vec3 center = geom::Vec3::Zero();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();  ///< a projection
+  /// What x is to be near, instead; then low is 0.
+  std::optional<kinematics::Surface> surface = {};
   double low = 0, high = 0;
   Measure measure = Measure::Length;
   double value = 0, within = 0;  ///< that the bounds are of [length or rad]
@@ -28,6 +30,7 @@ struct ConstraintBand {
   [[nodiscard]] geom::Vec3 residual(const geom::Transform& link_in_world) const {
     const geom::Vec3 x =
         is_direction ? geom::Vec3(link_in_world.linear * own) : geom::Vec3(link_in_world * own);
+    if (surface) return x - nearest_point(*surface, x);
     return across * (x - center);
   }
   /// How far a residual's norm is off. [length or rad]

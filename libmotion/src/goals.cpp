@@ -19,8 +19,13 @@ kinematics::Feature seen_from(const kinematics::Feature& feature, const Transfor
     return kinematics::Point{to * point->position};
   if (const auto* line = std::get_if<kinematics::Line>(&feature))
     return kinematics::Line{to * line->position, (to.linear * line->direction).normalized()};
-  const auto& plane = std::get<kinematics::Plane>(feature);
-  return kinematics::Plane{to * plane.position, (to.linear * plane.normal).normalized()};
+  if (const auto* plane = std::get_if<kinematics::Plane>(&feature))
+    return kinematics::Plane{to * plane->position, (to.linear * plane->normal).normalized()};
+  auto surface = std::get<kinematics::Surface>(feature);
+  surface.position = to * surface.position;
+  surface.normal = (to.linear * surface.normal).normalized();
+  for (geom::Vec3& corner : surface.outline) corner = to * corner;
+  return surface;
 }
 
 }  // namespace
@@ -90,6 +95,18 @@ Goals constraint_goals(const world::RobotModel& robot, const world::ToolFrame& t
         std::ranges::find(out.configurations, q) == out.configurations.end())
       out.configurations.push_back(std::move(q));
   }
+  return out;
+}
+
+Goals preferred_goals(const world::World& world, std::size_t robot, const world::ToolFrame& tool,
+                      const world::ConstraintSet& set, const std::vector<double>& start,
+                      std::uint64_t seed) {
+  Goals out;
+  for (std::size_t count = set.preferred.size() + 1; count > 0 && out.configurations.empty();
+       --count)
+    out = constraint_goals(world.robots.at(robot), tool,
+                           path_constraints(world, initial_state(world), robot, set, count - 1),
+                           start, seed);
   return out;
 }
 

@@ -38,7 +38,7 @@ constexpr std::size_t kInstantsTold = 256;  // instants
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::InvalidArgument, what); }
 
-enum Kind : std::size_t { kPoint, kLine, kPlane };
+enum Kind : std::size_t { kPoint, kLine, kPlane, kSurface };
 
 Vec3 position_of(const kinematics::Feature& f) {
   return std::visit([](const auto& x) { return x.position; }, f);
@@ -46,7 +46,8 @@ Vec3 position_of(const kinematics::Feature& f) {
 
 Vec3 direction_of(const kinematics::Feature& f) {
   if (const auto* line = std::get_if<kinematics::Line>(&f)) return line->direction.normalized();
-  return std::get<kinematics::Plane>(f).normal.normalized();
+  if (const auto* plane = std::get_if<kinematics::Plane>(&f)) return plane->normal.normalized();
+  return std::get<kinematics::Surface>(f).normal.normalized();
 }
 
 bool moves_with(const world::FixedFeature& feature, std::size_t robot) {
@@ -107,6 +108,12 @@ class Bands {
     if (c.resting.index() == kLine)
       band.across = Eigen::Matrix3d::Identity() - along(direction_of(c.resting));
     if (c.resting.index() == kPlane) band.across = along(direction_of(c.resting));
+    if (const auto* surface = std::get_if<kinematics::Surface>(&c.resting)) {
+      band.surface = shifted(*surface, c.value);
+      band.value = 0;
+      band.high = c.within / kOutward;
+      return;
+    }
     band.low = std::max(0.0, c.value - c.within) * kOutward;
     band.high = (c.value + c.within) / kOutward;
   }
@@ -161,6 +168,13 @@ double least_share(const Vec3& a, const Vec3& b) {
 /// The least norm on the straight line between two vectors.
 double least_norm(const Vec3& a, const Vec3& b) { return (a + least_share(a, b) * (b - a)).norm(); }
 
+/// No point of a surface is farther from the origin. [length]
+double reach_of(const kinematics::Surface& surface) {
+  double out = surface.position.norm() + surface.radius;
+  for (const Vec3& corner : surface.outline) out = std::max(out, corner.norm());
+  return out;
+}
+
 /// One band along one segment.
 class BandCheck {
  public:
@@ -173,9 +187,11 @@ class BandCheck {
     second_ = !motion.moves()     ? 0
               : band.is_direction ? bounds.turn() * bounds.turn()
                                   : bounds.derivative(2);
-    // Two points make a direction; 2^-44 is for the base, the projection and the norm.
+    // Two points make a direction; 2^-44 is for the base, the projection and the norm. Outlines of
+    // surfaces are convex up to less than 2^-36 of their size.
     error_ = ((band.is_direction ? 2 : 1) * bounds.error(0) +
-              0x1p-44 * (bounds.extent() + base_.translation.norm() + band.center.norm() + 1)) *
+              0x1p-44 * (bounds.extent() + base_.translation.norm() + band.center.norm() + 1) +
+              (band.surface ? 0x1p-36 * reach_of(*band.surface) : 0)) *
              kOutward;
   }
 
@@ -208,7 +224,8 @@ class BandCheck {
   bool stays(double begin, double end, const Vec3& first, const Vec3& last) {
     const double length = end - begin;
     // Between two instants a vector is off the line between its values by an eighth of the second
-    // derivative, times the square of the time, at most.
+    // derivative, times the square of the time, at most. On that line the distance from what is
+    // convex is largest at an end.
     const double room = 0.125 * second_ * length * length * kOutward;
     const double most = std::max(first.norm(), last.norm());
     if (most + room + error_ <= band_.high &&
@@ -300,18 +317,24 @@ const char* name_of(ConstraintAnswer::Outcome outcome) {
 
 bool is_of_motion(const world::World& world, const world::WorldState& state, std::size_t robot,
                   const world::ConstraintSet& set) {
-  return std::ranges::all_of(set.constraints, [&](const world::ToleratedConstraint& c) {
+  const auto is_of = [&](const world::ToleratedConstraint& c) {
     return moves_with(at_state(world, state, c.first), robot) !=
            moves_with(at_state(world, state, c.second), robot);
-  });
+  };
+  return std::ranges::all_of(set.constraints, is_of) && std::ranges::all_of(set.preferred, is_of);
 }
 
 std::vector<PathConstraint> path_constraints(const world::World& world,
                                              const world::WorldState& state, std::size_t robot,
-                                             const world::ConstraintSet& set) {
+                                             const world::ConstraintSet& set,
+                                             std::size_t preferred) {
   std::vector<PathConstraint> out;
   const world::RobotModel& model = world.robots.at(robot);
-  for (const world::ToleratedConstraint& c : set.constraints) {
+  std::vector<world::ToleratedConstraint> all = set.constraints;
+  all.insert(all.end(), set.preferred.begin(),
+             set.preferred.begin() +
+                 static_cast<std::ptrdiff_t>(std::min(preferred, set.preferred.size())));
+  for (const world::ToleratedConstraint& c : all) {
     std::array<world::FixedFeature, 2> features{at_state(world, state, c.first),
                                                 at_state(world, state, c.second)};
     const auto moves = [&](const world::FixedFeature& f) { return moves_with(f, robot); };
@@ -376,7 +399,10 @@ void require_keepable(const PathConstraint& c, const robot::Robot& robot) {
   const std::size_t moving = c.moving.index(), resting = c.resting.index();
   const bool positions = c.relation == Relation::Coincident || c.relation == Relation::Distance;
   if (positions && resting < moving)
-    refuse(std::string("whether a ") + (moving == kLine ? "line" : "plane") +
+    refuse(std::string("whether a ") +
+           (moving == kLine    ? "line"
+            : moving == kPlane ? "plane"
+                               : "surface") +
            " that moves holds a " + (resting == kPoint ? "point" : "line") +
            " that stays is not decided; let the smaller one move");
 }

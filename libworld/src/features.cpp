@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace kaboum::world {
 namespace {
@@ -85,14 +87,11 @@ class Search {
                    FixedFeature fixed, const Transform& pose = {}) {
     frames_.push_back(own);
     if (own != frame) return;
-    for (const FramePart& p : kParts) {
-      if (part != p.name) continue;
-      Feature feature{name_, p.kind, Vec3::Zero(), Vec3::Zero()};
-      if (p.kind != Feature::Kind::Point) feature.direction = Vec3::Unit(p.axis);
-      fixed.feature = moved(feature, pose);
-      found_.push_back(std::move(fixed));
-      return;
-    }
+    std::optional<Feature> feature = find_frame_part(part);
+    if (!feature) return;
+    feature->name = name_;
+    fixed.feature = moved(*feature, pose);
+    found_.push_back(std::move(fixed));
   }
 
   const World& world_;
@@ -101,7 +100,63 @@ class Search {
   std::vector<std::string> names_, frames_;
 };
 
+/// Distance of a point from a point, line, plane or surface.
+double distance_from(const Feature& f, const Vec3& p) {
+  switch (f.kind) {
+    case Feature::Kind::Point:
+      return (p - f.point).norm();
+    case Feature::Kind::Line:
+      return (p - f.point).cross(f.direction).norm();
+    case Feature::Kind::Plane:
+      return std::abs((p - f.point).dot(f.direction));
+    default:
+      return (p - nearest_point(std::get<kinematics::Surface>(kinematics_feature(f)), p)).norm();
+  }
+}
+
 }  // namespace
+
+bool is_met(const ToleratedConstraint& c, const Transform& first, const Transform& second) {
+  using Kind = Feature::Kind;
+  using kinematics::Relation;
+  Feature a = moved(c.first.feature, first), b = moved(c.second.feature, second);
+  if (a.kind > b.kind) std::swap(a, b);
+  const double apart = distance_from(b, a.point);
+  if (c.relation == Relation::Distance) {
+    if (b.kind != Kind::Surface) return std::abs(apart - c.value) <= c.within;
+    return distance_from(moved(b, {Eigen::Matrix3d::Identity(), c.value * b.direction}), a.point) <=
+           c.within;
+  }
+  if (c.relation == Relation::Coincident && apart > c.within &&
+      (a.kind != b.kind || distance_from(a, b.point) > c.within))
+    return false;
+  if (a.kind == Kind::Point) return true;
+  const bool mixed = (a.kind == Kind::Line) != (b.kind == Kind::Line);
+  const double angle =
+      std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
+  if (c.relation == Relation::Angle)
+    return std::abs((mixed ? std::numbers::pi / 2 - angle : angle) - c.value) <= c.within_angle;
+  const double skew = std::min(angle, std::numbers::pi - angle);
+  const bool aligned = (c.relation != Relation::Perpendicular) != mixed;
+  return (aligned ? skew : std::numbers::pi / 2 - skew) <= c.within_angle;
+}
+
+std::optional<Feature> find_frame_part(std::string_view part) {
+  const auto* const found = std::ranges::find(kParts, part, &FramePart::name);
+  if (found == kParts.end()) return std::nullopt;
+  Feature out{std::string(part), found->kind};
+  if (found->kind != Feature::Kind::Point) out.direction = Vec3::Unit(found->axis);
+  return out;
+}
+
+std::string describe(const ToleratedConstraint& c) {
+  return std::string(name_of(c.relation))
+      .append(" '")
+      .append(c.first.feature.name)
+      .append("' '")
+      .append(c.second.feature.name)
+      .append("'");
+}
 
 FixedFeature find_feature(const World& world, const std::string& name) {
   return Search(world, name).run();
@@ -112,6 +167,7 @@ Feature moved(const Feature& feature, const Transform& pose) {
   out.point = pose * feature.point;
   if (feature.kind != Feature::Kind::Point)
     out.direction = (pose.linear * feature.direction).normalized();
+  for (Vec3& corner : out.outline) corner = pose * corner;
   return out;
 }
 
@@ -132,7 +188,8 @@ bool is_usual_constraint(std::string_view name) {
 kinematics::Feature kinematics_feature(const Feature& f) {
   if (f.kind == Feature::Kind::Point) return kinematics::Point{f.point};
   if (f.kind == Feature::Kind::Line) return kinematics::Line{f.point, f.direction};
-  return kinematics::Plane{f.point, f.direction};
+  if (f.kind == Feature::Kind::Plane) return kinematics::Plane{f.point, f.direction};
+  return kinematics::Surface{f.point, f.direction, f.outline, f.radius};
 }
 
 kinematics::Constraint kinematics_constraint(const ToleratedConstraint& c) {

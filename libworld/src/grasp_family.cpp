@@ -7,13 +7,16 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
+#include <kaboum/kinematics/sample.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/features.h>
 #include <kaboum/world/grasp_family.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace kaboum::world {
@@ -59,7 +62,35 @@ bool fits(const ToolFrame& tool, const Grasp& grasp) {
   return slash == std::string::npos || grasp.name.substr(0, slash) == tool.name;
 }
 
-bool is_family(const Grasp& grasp) { return freedoms_of(grasp) > 0; }
+bool is_family(const Grasp& grasp) { return freedoms_of(grasp) > 0 || !grasp.constraints.empty(); }
+
+Transform drawn_member(const Grasp& grasp, std::size_t index) {
+  if (grasp.constraints.empty()) return member_of(grasp, draw_member(grasp, index));
+  ensure(!grasp.members.empty(), "holds that meet the constraints of a grasp");
+  return grasp.members[index % grasp.members.size()];
+}
+
+std::vector<Transform> draw_members(const std::vector<ToleratedConstraint>& constraints,
+                                    double size) {
+  using FrameKind = kinematics::FrameId::Kind;
+  kinematics::ConstraintProblem problem;
+  problem.objects.push_back({Vec3::Constant(-size), Vec3::Constant(size)});
+  for (const ToleratedConstraint& c : constraints)
+    problem.constraints.push_back({c.relation,
+                                   {{FrameKind::World}, kinematics_feature(c.first.feature)},
+                                   {{FrameKind::Object, 0}, kinematics_feature(c.second.feature)},
+                                   c.value});
+  kinematics::SampleOptions options;
+  options.length = size;
+  kinematics::ConstraintSampler sampler(std::move(problem), options);
+  std::vector<Transform> out;
+  while (out.size() < kMostMembers) {
+    const auto sample = sampler.next();
+    if (!sample) break;
+    out.push_back(sample->at.objects.front());
+  }
+  return out;
+}
 
 Transform member_of(const Grasp& grasp, const std::vector<double>& values) {
   ensure(values.size() == freedoms_of(grasp), "as many values as are free");
@@ -88,6 +119,11 @@ std::vector<double> draw_member(const Grasp& grasp, std::size_t index) {
 
 Transform nearest_member(const Grasp& grasp, const Transform& pose) {
   if (!is_family(grasp)) return grasp.pose;
+  if (!grasp.constraints.empty())
+    return std::ranges::all_of(grasp.constraints,
+                               [&](const auto& c) { return is_met(c, {}, pose); })
+               ? pose
+               : grasp.pose;
   const Transform moved = inverse(pose) * grasp.pose;
   const Eigen::Matrix3d& r = moved.linear;
   double angle = 0;
@@ -116,7 +152,29 @@ Transform nearest_member(const Grasp& grasp, const Transform& pose) {
   return member_of(grasp, values);
 }
 
+namespace {
+
+/// Where a point of the tool is near a point of the object, or on a surface of it.
+double farthest_by_constraints(const Grasp& grasp, const Vec3& point) {
+  double out = std::numeric_limits<double>::infinity();
+  for (const ToleratedConstraint& c : grasp.constraints) {
+    const bool near = c.relation == kinematics::Relation::Coincident ||
+                      c.relation == kinematics::Relation::Distance;
+    const Feature &of_tool = c.first.feature, &other = c.second.feature;
+    if (!near || of_tool.kind != Feature::Kind::Point) continue;
+    if (other.kind != Feature::Kind::Point && other.kind != Feature::Kind::Surface) continue;
+    double size = other.radius;
+    for (const Vec3& corner : other.outline) size = std::max(size, (corner - other.point).norm());
+    out = std::min(out, of_tool.point.norm() + std::abs(c.value) + c.within + size +
+                            (other.point - point).norm());
+  }
+  return out;
+}
+
+}  // namespace
+
 double farthest_from(const Grasp& grasp, const Vec3& point) {
+  if (!grasp.constraints.empty()) return farthest_by_constraints(grasp, point);
   const Vec3 origin = inverse(grasp.pose).translation;
   double out = (origin - point).norm();
   if (const auto& turn = grasp.turn) {

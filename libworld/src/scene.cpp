@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/length_unit.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/features.h>
 #include <kaboum/world/grasp_family.h>
 #include <kaboum/world/scene.h>
@@ -26,6 +27,8 @@ constexpr double kRounding = 1e-9;
 /// Of slides and turns. [length or rad]
 constexpr double kFarthestBound = 1e6;
 constexpr double kLastRank = 100;
+/// Of features of the tool that holds an object.
+constexpr std::string_view kOfTool = "tool.";
 
 class Parser : detail::SceneRobot {
  public:
@@ -75,7 +78,7 @@ class Parser : detail::SceneRobot {
     Object out{name, pose_of_object, std::move(outer), std::move(inner), {}, {}, shape};
     std::set<std::string> taken;
     for (const Located& f : list(o, "features")) {
-      known(f, {"name", "point", "line", "plane"});
+      known(f, {"name", "point", "line", "plane", "surface"});
       out.features.push_back(feature(f, taken));
     }
     if (const Located* upright = find(o, "upright")) {
@@ -91,8 +94,9 @@ class Parser : detail::SceneRobot {
 
   /// Of the object that was read last.
   void add_grasp(const Located& g) {
-    known(g, {"name", "position", "rpy", "quaternion", "slides", "turn", "rank"});
+    known(g, {"name", "position", "rpy", "quaternion", "slides", "turn", "rank", "all"});
     Grasp out{string(need(g, "name")), pose(g)};
+    if (find(g, "all") != nullptr) add_constraints_of(g, out);
     for (const Located& s : list(g, "slides")) {
       known(s, {"along", "from", "to"});
       FreeSlide slide;
@@ -132,6 +136,44 @@ class Parser : detail::SceneRobot {
     world_.objects.back().grasps.push_back(std::move(out));
   }
 
+  /// Of a grasp of the object that was read last: between the tool that holds it and the object.
+  void add_constraints_of(const Located& g, Grasp& out) const {
+    for (const char* stated : {"position", "rpy", "quaternion", "slides", "turn"})
+      if (const Located* member = find(g, stated))
+        fail(*member, std::string("a grasp with constraints ('all') has no '") + stated + "'");
+    for (const Located& one : array(need(g, "all"))) {
+      out.constraints.push_back(
+          constraint(one, [&](const Located& value) { return feature_of_grasp(value); }));
+      ToleratedConstraint& c = out.constraints.back();
+      if (c.second.to == FixedFeature::To::World) std::swap(c.first, c.second);
+    }
+    if (out.constraints.empty())
+      fail(need(g, "all"), "at least one constraint is expected in 'all'");
+    require_no_contradiction(need(g, "all"), out.constraints);
+    out.members = draw_members(out.constraints, 2 * world_.objects.back().outer.ball().radius);
+    if (out.members.empty())
+      fail(g,
+           "no hold was found that meets these constraints: look at their values, and at where "
+           "the features are");
+    out.pose = out.members.front();
+  }
+
+  /// "tool.PART" of the tool that holds, else a feature of the object that was read last.
+  FixedFeature feature_of_grasp(const Located& value) const {
+    const std::string& name = string(value);
+    if (name.starts_with(kOfTool)) {
+      auto part = find_frame_part(std::string_view(name).substr(kOfTool.size()));
+      if (!part) fail(value, "a tool has the parts origin, x, y, z, xy, yz and zx, as in 'tool.z'");
+      part->name = name;
+      return {FixedFeature::To::World, 0, 0, std::move(*part)};
+    }
+    FixedFeature out = feature_named(value);
+    if (out.to != FixedFeature::To::Object || out.index + 1 != world_.objects.size())
+      fail(value, "'" + name + "' is neither a part of the tool, as 'tool.z', nor a feature of '" +
+                      world_.objects.back().name + "', whose grasp this is");
+    return out;
+  }
+
   double bound(const Located& value) const {
     const double out = number(value);
     if (!(std::abs(out) <= kFarthestBound)) fail(value, "a number from -1e6 to 1e6 is expected");
@@ -159,8 +201,8 @@ class Parser : detail::SceneRobot {
       fail(value, "'" + value.text + "' is no feature of the object '" +
                       world_.objects.back().name + "', whose grasp this is");
     if (out.feature.kind == Feature::Kind::Point)
-      fail(value,
-           "'" + value.text + "' is a point: a line, or a plane for its normal, is expected");
+      fail(value, "'" + value.text +
+                      "' is a point: a line, or a plane or surface for its normal, is expected");
     return out.feature;
   }
 
@@ -244,6 +286,9 @@ class Parser : detail::SceneRobot {
       const auto found = std::find_if(grasps.begin(), grasps.end(),
                                       [&](const Grasp& g) { return g.name == string(*grasp); });
       if (found == grasps.end()) fail(*grasp, "the object has no grasp '" + grasp->text + "'");
+      if (!found->constraints.empty())
+        fail(*grasp, "the grasp '" + grasp->text +
+                         "' is by constraints, which many poses meet: give a pose instead");
       if (find(a, "position") != nullptr || find(a, "rpy") != nullptr ||
           find(a, "quaternion") != nullptr)
         fail(*grasp, "give either a grasp or a pose, not both");
@@ -275,7 +320,7 @@ class Parser : detail::SceneRobot {
   }
 
   void add_constraints(const Located& c) {
-    known(c, {"name", "all"});
+    known(c, {"name", "all", "prefer"});
     const Located& name = need(c, "name");
     for (const ConstraintSet& other : world_.constraints)
       if (other.name == string(name)) fail(name, "the name '" + name.text + "' is used twice");
@@ -286,15 +331,48 @@ class Parser : detail::SceneRobot {
     ConstraintSet out{name.text, {}};
     for (const Located& one : array(need(c, "all"))) out.constraints.push_back(constraint(one));
     if (out.constraints.empty()) fail(c, "at least one constraint is expected in 'all'");
+    for (const Located& one : list(c, "prefer")) out.preferred.push_back(constraint(one));
+    require_consistent(c, out);
     world_.constraints.push_back(std::move(out));
   }
 
+  /// Refuses what no poses meet. @param all  where the constraints stand
+  void require_no_contradiction(const Located& all,
+                                const std::vector<ToleratedConstraint>& constraints) const {
+    if (const auto found = find_contradiction(constraints))
+      fail(all.items[found->front()], describe(constraints, *found));
+  }
+
+  /// Refuses what no poses meet, or no robot reaches.
+  void require_consistent(const Located& c, const ConstraintSet& set) const {
+    const Located& all = need(c, "all");
+    require_no_contradiction(all, set.constraints);
+    for (std::size_t i = 0; i < set.constraints.size(); ++i) {
+      ToleratedConstraint one = set.constraints[i];
+      if (one.second.to == FixedFeature::To::Link) std::swap(one.first, one.second);
+      if (one.first.to != FixedFeature::To::Link || one.second.to != FixedFeature::To::World)
+        continue;
+      const RobotModel& robot = world_.robots[one.first.index];
+      if (is_beyond_reach(robot, one))
+        fail(all.items[i], "'" + robot.name + "' does not reach so far, whatever its joints are: " +
+                               describe(set.constraints[i]));
+    }
+  }
+
   ToleratedConstraint constraint(const Located& c) const {
+    return constraint(c, [&](const Located& value) { return feature_named(value); });
+  }
+
+  template <typename FindFeature>
+  ToleratedConstraint constraint(const Located& c, const FindFeature& find_named) const {
     known(c, {"relation", "first", "second", "value", "within", "within_angle"});
     ToleratedConstraint out;
     out.relation = relation(need(c, "relation"));
-    out.first = feature_named(need(c, "first"));
-    out.second = feature_named(need(c, "second"));
+    out.first = find_named(need(c, "first"));
+    out.second = find_named(need(c, "second"));
+    if (out.first.to == out.second.to && out.first.index == out.second.index &&
+        out.first.link == out.second.link)
+      fail(c, "both features are fixed to the same thing: nothing can be moved to meet that");
     using kinematics::Relation;
     const bool measured = out.relation == Relation::Distance || out.relation == Relation::Angle;
     const Located* value = find(c, "value");

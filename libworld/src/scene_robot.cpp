@@ -14,6 +14,10 @@ namespace kaboum::world::detail {
 
 using Kind = Located::Kind;
 
+/// Corners of an outline at most; how far they may be off its plane, of its size.
+constexpr std::size_t kMostCorners = 256;
+constexpr double kFlat = 1e-6;
+
 std::uint32_t SceneRobot::link_of(const robot::Robot& robot, const Located& value) const {
   const std::string& name = string(value);
   if (const auto link = robot.find_link(name)) return *link;
@@ -160,8 +164,55 @@ SceneRobot::Loaded SceneRobot::link_set(const Located& entry, const char* direct
 void SceneRobot::add_features(const Located& r, RobotModel& out) const {
   std::set<std::string> taken;
   for (const Located& f : list(r, "features")) {
-    known(f, {"name", "link", "point", "line", "plane"});
+    known(f, {"name", "link", "point", "line", "plane", "surface"});
     out.features.push_back({link_of(out.kinematics, need(f, "link")), feature(f, taken)});
+  }
+}
+
+/// A disc, or a convex outline in a plane. The plane of an outline is the one that fits its area.
+void SceneRobot::read_surface(const Located& s, Feature& out) const {
+  out.kind = Feature::Kind::Surface;
+  if (find(s, "outline") == nullptr) {
+    known(s, {"point", "normal", "radius"});
+    out.point = vector(need(s, "point"));
+    out.direction = unit_vector(need(s, "normal"));
+    out.radius = number(need(s, "radius"));
+    if (!(out.radius > 0))
+      fail(need(s, "radius"), "an empty surface: a radius above 0 is expected");
+    return;
+  }
+  known(s, {"outline"});
+  const Located& outline = need(s, "outline");
+  for (const Located& corner : array(outline)) out.outline.push_back(vector(corner));
+  if (out.outline.size() < 3 || out.outline.size() > kMostCorners)
+    fail(outline, "from 3 to " + std::to_string(kMostCorners) + " corners are expected");
+  out.point = Vec3::Zero();
+  for (const Vec3& corner : out.outline)
+    out.point += corner / static_cast<double>(out.outline.size());
+  Vec3 area = Vec3::Zero();
+  for (std::size_t i = 0; i < out.outline.size(); ++i)
+    area +=
+        (out.outline[i] - out.point).cross(out.outline[(i + 1) % out.outline.size()] - out.point);
+  if (!(area.norm() > 0)) fail(outline, "an empty surface: its corners are on a line");
+  out.direction = area.normalized();
+  double size = 0, off = 0;
+  for (Vec3& corner : out.outline) {
+    const double above = out.direction.dot(corner - out.point);
+    size = std::max(size, (corner - out.point).norm());
+    off = std::max(off, std::abs(above));
+    corner -= above * out.direction;
+  }
+  if (off > kFlat * size) fail(outline, "the corners of a surface are in one plane");
+  const kinematics::PlacedFeature surface{
+      {kinematics::FrameId::Kind::Object, 0},
+      kinematics::Surface{out.point, out.direction, out.outline, out.radius}};
+  try {
+    require_valid(kinematics::Constraint{
+        kinematics::Relation::Coincident, surface, {{}, kinematics::Point{}}, 0});
+  } catch (const Error&) {
+    fail(outline,
+         "the corners of a surface go round a convex outline once, counterclockwise as seen from "
+         "outside, each at another place");
   }
 }
 
@@ -169,9 +220,12 @@ Feature SceneRobot::feature(const Located& f, std::set<std::string>& taken) cons
   Feature out;
   const Located& name = need(f, "name");
   out.name = string(name);
-  const Located *point = find(f, "point"), *line = find(f, "line"), *plane = find(f, "plane");
-  if ((point != nullptr ? 1 : 0) + (line != nullptr ? 1 : 0) + (plane != nullptr ? 1 : 0) != 1)
-    fail(f, "a feature is one of 'point', 'line' and 'plane'");
+  const Located *point = find(f, "point"), *line = find(f, "line"), *plane = find(f, "plane"),
+                *surface = find(f, "surface");
+  if ((point != nullptr ? 1 : 0) + (line != nullptr ? 1 : 0) + (plane != nullptr ? 1 : 0) +
+          (surface != nullptr ? 1 : 0) !=
+      1)
+    fail(f, "a feature is one of 'point', 'line', 'plane' and 'surface'");
   if (point != nullptr) {
     out.point = vector(*point);
   } else if (line != nullptr) {
@@ -179,13 +233,18 @@ Feature SceneRobot::feature(const Located& f, std::set<std::string>& taken) cons
     out.kind = Feature::Kind::Line;
     out.point = vector(need(*line, "point"));
     out.direction = unit_vector(need(*line, "direction"));
+  } else if (surface != nullptr) {
+    read_surface(*surface, out);
   } else {
     known(*plane, {"point", "normal"});
     out.kind = Feature::Kind::Plane;
     out.point = vector(need(*plane, "point"));
     out.direction = unit_vector(need(*plane, "normal"));
   }
-  const char* kind = point != nullptr ? "point" : line != nullptr ? "line" : "plane";
+  const char* kind = point != nullptr   ? "point"
+                     : line != nullptr  ? "line"
+                     : plane != nullptr ? "plane"
+                                        : "surface";
   if (!taken.insert(std::string(kind).append(" '").append(out.name) + "'").second)
     fail(name, std::string("the ") + kind + " '" + out.name + "' is there twice");
   return out;

@@ -17,8 +17,8 @@ class SceneRobot : public SceneSets {
   std::uint32_t link_of(const robot::Robot& robot, const Located& value) const;
   std::size_t tool_of(const RobotModel& robot, const Located& value) const;
 
-  /// The point, line or plane of an object with these members. @param taken  kinds and names of
-  /// others, to which its own are added.
+  /// The point, line, plane or surface of an object with these members. @param taken  kinds and
+  /// names of others, to which its own are added.
   Feature feature(const Located& f, std::set<std::string>& taken) const;
 
  private:
@@ -37,6 +37,7 @@ class SceneRobot : public SceneSets {
                   const File& urdf, bool visual);
   void add_shapes(const Located& r, const File& urdf, bool visual, RobotModel& out);
   void add_features(const Located& r, RobotModel& out) const;
+  void read_surface(const Located& s, Feature& out) const;
 
   AllowedPair pair_of(const RobotModel& robot, const Located& value,
                       AllowedPair::Reason reason) const;

@@ -341,10 +341,9 @@ py::array constraint_goals(const WorldValue& in, const std::string& name, const 
   const world::RobotModel& model = in.world().robots[index];
   const std::vector<double> from = start_of(model, start);
   const motion::Goals goals = run(0, [&] {
-    const std::vector<motion::PathConstraint> constraints = motion::path_constraints(
-        in.world(), initial_state(in.world()), index, in.world().constraint_set(name));
-    return motion::constraint_goals(model, motion::moving_frame(model, tool.value_or("")),
-                                    constraints, from, seed);
+    return motion::preferred_goals(in.world(), index,
+                                   motion::moving_frame(model, tool.value_or("")),
+                                   in.world().constraint_set(name), from, seed);
   });
   return goals_array(goals, model);
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "arms.h"
+#include "surfaces.h"
 
 namespace kaboum::test {
 namespace {
@@ -27,10 +28,11 @@ Vec3 random_point(std::mt19937_64& random) {
   return {unit(random), unit(random), unit(random)};
 }
 
-/// 0: point, 1: line, 2: plane.
+/// 0: point, 1: line, 2: plane, 3: surface.
 Feature random_feature(int kind, std::mt19937_64& random) {
   if (kind == 0) return Point{random_point(random)};
   if (kind == 1) return Line{random_point(random), random_direction(random)};
+  if (kind == 3) return random_surface(random, 0.5);
   return Plane{random_point(random), random_direction(random)};
 }
 
@@ -53,7 +55,10 @@ const std::vector<Case> kCases = {
     {Relation::Distance, 0, 2, 0.3, 1},    {Relation::Angle, 1, 1, 1.1, 1},
     {Relation::Angle, 2, 2, 2.5, 1},       {Relation::Angle, 1, 2, -0.6, 1},
     {Relation::Distance, 0, 0, 0, 1},      {Relation::Distance, 0, 1, 0, 1},
-    {Relation::Distance, 0, 2, 0, 1}};
+    {Relation::Distance, 0, 2, 0, 1},      {Relation::Coincident, 0, 3, 0, 2},
+    {Relation::Distance, 0, 3, 0.3, 2},    {Relation::Parallel, 3, 3, 0, 2},
+    {Relation::Parallel, 1, 3, 0, 1},      {Relation::Perpendicular, 2, 3, 0, 1},
+    {Relation::Angle, 3, 3, 2.5, 1},       {Relation::Angle, 1, 3, -0.6, 1}};
 
 Constraint random_constraint(const Case& c, bool swapped, std::mt19937_64& random) {
   Constraint out{c.relation,
@@ -109,6 +114,10 @@ double violation(const Constraint& c, const Transform& frame) {
       point = t * x->position;
       direction = t.linear * x->normal;
     }
+    if (const auto* x = std::get_if<Surface>(&p.feature)) {
+      point = t * x->position;
+      direction = t.linear * x->normal;
+    }
   };
   const bool swap = c.first.feature.index() > c.second.feature.index();
   Vec3 p, q, d, e;
@@ -122,7 +131,12 @@ double violation(const Constraint& c, const Transform& frame) {
                                     : std::abs((p - q).dot(e));
   const double angle = std::atan2(d.cross(e).norm(), d.dot(e));
   const double skew = std::min(angle, kPi - angle), square = std::abs(angle - kPi / 2);
-  const bool line_plane = first == 1 && second == 2;
+  const bool line_plane = first == 1 && second >= 2;
+  if (first == 0 && second == 3) {
+    const PlacedFeature& surface = swap ? c.first : c.second;
+    const Transform back = surface.frame == kWorld ? Transform{} : inverse(frame);
+    return distance_from_surface<double>(std::get<Surface>(surface.feature), back * p, c.value);
+  }
   switch (c.relation) {
     case Relation::Coincident:
       return away + (first == 0 ? 0 : line_plane ? square : skew);
@@ -454,6 +468,65 @@ TEST(Sampling, WhatCannotBeMetHasNoSamples) {
   EXPECT_FALSE(ConstraintSampler(problem).next());
 }
 
+TEST(Surfaces, NearestPointsAreNearestAndPointsAreEvenlySpread) {
+  std::mt19937_64 random(11);
+  for (int round = 0; round < 200; ++round) {
+    const Surface s = random_surface(random, 1);
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 p = s.position + 2 * random_point(random);
+      EXPECT_NEAR((nearest_point(s, p) - p).norm(), distance_from_surface<double>(s, p, 0), 1e-12);
+      EXPECT_LT(distance_from_surface<double>(s, nearest_point(s, p), 0), 1e-12);
+      EXPECT_LT(distance_from_surface<double>(shifted(s, 0.5), nearest_point(s, p), -0.5), 1e-12);
+    }
+  }
+  // Of a square and of a disc, as many points on each side of a line through the middle, and as
+  // many as there is area within half of the size.
+  const Surface square{{0, 0, 0}, {0, 0, 1}, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, 0};
+  const Surface disc{{0, 0, 0}, {0, 0, 1}, {}, 1};
+  constexpr int kPoints = 100;
+  int left = 0, inner = 0, round_inner = 0;
+  for (int i = 0; i < kPoints; ++i)
+    for (int k = 0; k < kPoints; ++k) {
+      const double u = (i + 0.5) / kPoints, v = (k + 0.5) / kPoints;
+      const Vec3 p = point_at(square, u, v);
+      EXPECT_LT(distance_from_surface<double>(square, p, 0), 1e-12);
+      left += p.x() < 0 ? 1 : 0;
+      inner += p.cwiseAbs().maxCoeff() < 0.5 ? 1 : 0;
+      round_inner += point_at(disc, u, v).norm() < 0.5 ? 1 : 0;
+    }
+  EXPECT_NEAR(left, kPoints * kPoints / 2, kPoints);
+  EXPECT_NEAR(inner, kPoints * kPoints / 4, kPoints);
+  EXPECT_NEAR(round_inner, kPoints * kPoints / 4, kPoints);
+}
+
+TEST(Sampling, APointOnASurfaceIsAnywhereOnIt) {
+  // A cup stands upright on a square table, its rim's point over a smaller one.
+  const Surface table{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 0};
+  const Surface shelf{{0.5, 0.5, 0.2}, {0, 0, 1}, {}, 0.3};
+  ConstraintProblem problem{
+      {},
+      {{}},
+      {{Relation::Distance, {kWorld, table}, {kObject, Point{}}, 0.1},
+       {Relation::Angle, {kObject, Line{}}, {kWorld, Line{}}, 0},
+       {Relation::Coincident, {kObject, Point{{0, 0, 0.1}}}, {kWorld, shelf}}}};
+  ConstraintSampler both(problem);
+  problem.constraints.pop_back();
+  ConstraintSampler one(problem);
+  std::set<std::pair<int, int>> cells;
+  for (int i = 0; i < 400; ++i) {
+    const auto anywhere = one.next();
+    ASSERT_TRUE(anywhere);
+    const Vec3 at = anywhere->at.objects[0].translation;
+    EXPECT_NEAR(at.z(), 0.1, 1e-8);
+    cells.emplace(static_cast<int>(4 * at.x()), static_cast<int>(4 * at.y()));
+    const auto sample = both.next();
+    if (!sample) continue;
+    EXPECT_LT((sample->at.objects[0].translation - Vec3(0.5, 0.5, 0.1)).norm(), 0.3 + 1e-8);
+  }
+  EXPECT_EQ(cells.size(), 16U);
+  EXPECT_GT(both.tally().samples, 100U);
+}
+
 std::string message_of(const Constraint& c) {
   ConstraintProblem problem{{}, {{}}, {c}};
   try {
@@ -471,6 +544,18 @@ TEST(Sampling, SaysWhatIsWrongWithConstraints) {
   says({Relation::Parallel, {kObject, Point{}}, {kWorld, Line{}}},
        "parallel of a point and a line is not defined (constraint 0");
   says({Relation::Distance, {kObject, Line{}}, {kWorld, Line{}}, 1}, "not defined");
+  const Surface disc{{0, 0, 0}, {0, 0, 1}, {}, 1};
+  says({Relation::Coincident, {kObject, disc}, {kWorld, Line{}}},
+       "coincident of a surface and a line is not defined");
+  says({Relation::Coincident, {kObject, disc}, {kWorld, disc}}, "not defined");
+  says({Relation::Parallel, {kObject, Point{}}, {kWorld, disc}}, "not defined");
+  for (const Surface& none :
+       {Surface{}, Surface{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {1, 0, 0}}, 0},
+        Surface{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 0},
+        Surface{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0},
+        Surface{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {1, 0, 0.1}, {0, 1, 0}}, 0},
+        Surface{{0, 0, 0}, {0, 0, 1}, {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}}, 0}})
+    says({Relation::Coincident, {kObject, Point{}}, {kWorld, none}}, "convex outline");
   says({Relation::Distance, {kObject, Point{}}, {kWorld, Line{}}, -1}, "at least 0");
   says({Relation::Angle, {kObject, Line{}}, {kWorld, Line{}}, 4}, "within 0 and pi");
   says({Relation::Angle, {kObject, Line{}}, {kWorld, Plane{}}, 2}, "-pi/2 and pi/2");

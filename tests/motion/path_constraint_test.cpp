@@ -10,6 +10,7 @@
 #include <cmath>
 #include <random>
 
+#include "kinematics/surfaces.h"
 #include "random_scene.h"
 #include "world/worlds.h"
 
@@ -23,6 +24,7 @@ using kinematics::Line;
 using kinematics::Plane;
 using kinematics::Point;
 using kinematics::Relation;
+using kinematics::Surface;
 using Kept = ConstraintAnswer::Outcome;
 using Wide = Eigen::Matrix<long double, 3, 1>;
 using WideMatrix = Eigen::Matrix<long double, 3, 3>;
@@ -110,6 +112,7 @@ Feature random_feature(std::size_t kind, std::mt19937_64& random) {
   const Vec3 at = between(random, 0, 0.5) * random_direction(random);
   if (kind == 0) return Point{at};
   if (kind == 1) return Line{at, random_direction(random)};
+  if (kind == 3) return test::random_surface(random, 0.3);
   return Plane{at, random_direction(random)};
 }
 
@@ -135,15 +138,23 @@ Deviation deviation_of(const PathConstraint& c, const WidePose& pose, int sense)
       position = plane->position.cast<long double>();
       direction = plane->normal.cast<long double>();
     }
+    if (const auto* surface = std::get_if<Surface>(&f)) {
+      position = surface->position.cast<long double>();
+      direction = surface->normal.cast<long double>();
+    }
   };
   read(c.moving, p, u);
   read(c.resting, r, d);
   p = pose.linear * p + pose.translation;
   u = pose.linear * u;
   const std::size_t moving = c.moving.index(), resting = c.resting.index();
-  const bool mixed = moving != 0 && resting != 0 && moving != resting;
+  const bool mixed = moving != 0 && resting != 0 && (moving == 1) != (resting == 1);
   const long double right = std::acos(-1.0L) / 2;
   Deviation out;
+  if (moving == 0 && resting == 3) {
+    out.length = test::distance_from_surface<long double>(std::get<Surface>(c.resting), p, c.value);
+    return out;
+  }
   const auto distance = [&] {
     const Wide way = p - r;
     if (resting == 0) return way.norm();
@@ -214,7 +225,9 @@ const std::vector<Combination> kCombinations{
     {Relation::Parallel, 1, 1},   {Relation::Parallel, 2, 2},      {Relation::Parallel, 1, 2},
     {Relation::Parallel, 2, 1},   {Relation::Perpendicular, 1, 1}, {Relation::Perpendicular, 2, 2},
     {Relation::Angle, 1, 1},      {Relation::Perpendicular, 1, 2}, {Relation::Perpendicular, 2, 1},
-    {Relation::Angle, 2, 2},      {Relation::Angle, 1, 2},         {Relation::Angle, 2, 1}};
+    {Relation::Angle, 2, 2},      {Relation::Angle, 1, 2},         {Relation::Angle, 2, 1},
+    {Relation::Coincident, 0, 3}, {Relation::Distance, 0, 3},      {Relation::Parallel, 3, 1},
+    {Relation::Parallel, 3, 2},   {Relation::Perpendicular, 1, 3}, {Relation::Angle, 3, 3}};
 
 class EachRelation : public ::testing::TestWithParam<std::size_t> {};
 
@@ -616,7 +629,10 @@ TEST(ConstraintGoals, MeetTheConstraintsWithinTheLimits) {
                                     {"relation": "parallel", "first": "arm/flange.x", "second": "world.y"}]},
         {"name": "elbow", "all": [{"relation": "distance", "first": "arm/l2.origin", "second": "world.zx", "value": 0.5}]},
         {"name": "nowhere", "all": [{"relation": "coincident", "first": "arm/flange.origin", "second": "world.xy"},
-                                    {"relation": "distance", "first": "arm/flange.origin", "second": "world.origin", "value": 9}]}])",
+                                    {"relation": "distance", "first": "arm/flange.origin", "second": "world.origin", "value": 2}]},
+        {"name": "preferred", "all": [{"relation": "distance", "first": "arm/l2.origin", "second": "world.zx", "value": 0.5}],
+         "prefer": [{"relation": "parallel", "first": "arm/flange.x", "second": "world.y"},
+                    {"relation": "coincident", "first": "arm/flange.origin", "second": "world.xy"}]}])",
       R"("tools": [{"name": "flange", "link": "l3", "position": [1, 0, 0]}])"));
   const world::RobotModel& robot = world.robots[0];
   const auto goals_of = [&](const char* name, std::uint64_t seed) {
@@ -636,6 +652,17 @@ TEST(ConstraintGoals, MeetTheConstraintsWithinTheLimits) {
   for (const std::vector<double>& q : elbow.configurations)
     EXPECT_NEAR(std::abs(std::sin(q[0])), 0.5, 2e-3);
   EXPECT_TRUE(goals_of("nowhere", 1).configurations.empty());
+  // The first preference is met, as the second one cannot be.
+  const Goals preferred =
+      preferred_goals(world, 0, robot.tools[0], world.constraint_set("preferred"), {0, 0, 0}, 1);
+  EXPECT_GT(preferred.configurations.size(), 2U);
+  for (const std::vector<double>& q : preferred.configurations) {
+    EXPECT_NEAR(std::abs(std::sin(q[0])), 0.5, 2e-3);
+    EXPECT_NEAR(std::cos(q[0] + q[1] + q[2]), 0, 0.021);
+  }
+  EXPECT_EQ(
+      path_constraints(world, initial_state(world), 0, world.constraint_set("preferred"), 9).size(),
+      3U);
   EXPECT_EQ(goals_of("on-wall", 1).configurations, wall.configurations);
   EXPECT_NE(goals_of("on-wall", 2).configurations, wall.configurations);
 }

@@ -245,5 +245,71 @@ TEST_F(GraspScene, WhatHasNoMembersOrNoAxisIsRefused) {
                  {"no robot has the tool 'hnd'", "did you mean 'hand'"});
 }
 
+TEST_F(GraspScene, MayBeAllHoldsThatMeetConstraints) {
+  // From the side, anywhere round the axis and between two heights: the tool's tip on the axis.
+  const World world = files_.world(scene(
+      R"({"name": "hand/side", "rank": 1, "all": [
+          {"relation": "coincident", "first": "tool.origin", "second": "cup/axis", "within": 0.001},
+          {"relation": "perpendicular", "first": "cup.z", "second": "tool.z", "within_angle": 0.01},
+          {"relation": "distance", "first": "tool.origin", "second": "cup/tip", "value": 0.03, "within": 0.005}]})"));
+  const Grasp& grasp = world.objects[1].grasps.at(0);
+  EXPECT_TRUE(is_family(grasp));
+  EXPECT_EQ(grasp.members.size(), kMostMembers);
+  EXPECT_EQ(grasp.rank, 1U);
+  double turned = 0;
+  for (std::size_t i = 0; i < kMostMembers; ++i) {
+    const Transform pose = drawn_member(grasp, i);
+    // Where the tool is in the object's frame.
+    const Vec3 tip = -(pose.linear.transpose() * pose.translation);
+    const Vec3 z = pose.linear.transpose().col(2);
+    EXPECT_LT(tip.head<2>().norm(), 1e-8) << i;
+    EXPECT_NEAR(std::abs(tip.z() - 0.05), 0.03, 1e-8) << i;
+    EXPECT_NEAR(z.z(), 0, 1e-8) << i;
+    turned += z.x() > 0 ? 1 : 0;
+    EXPECT_TRUE(is_same(nearest_member(grasp, pose), pose, 0)) << i;
+    // Within the tolerances it is at a member, beyond it at none.
+    for (const double off : {0.0009, 0.0011}) {
+      Transform aside = pose;
+      aside.translation += off * (pose.linear * Vec3::UnitX());
+      EXPECT_EQ(is_same(nearest_member(grasp, aside), aside, 1e-9), off < 0.001) << i;
+    }
+    EXPECT_LE((tip - Vec3(1, 2, 3)).norm(), farthest_from(grasp, {1, 2, 3}));
+  }
+  EXPECT_GT(turned, kMostMembers / 4);
+  EXPECT_LT(turned, 3 * kMostMembers / 4);
+  // The same file gives the same members.
+  EXPECT_TRUE(is_same(drawn_member(files_
+                                       .world(scene(
+                                           R"({"name": "hand/side", "rank": 1, "all": [
+          {"relation": "coincident", "first": "tool.origin", "second": "cup/axis", "within": 0.001},
+          {"relation": "perpendicular", "first": "cup.z", "second": "tool.z", "within_angle": 0.01},
+          {"relation": "distance", "first": "tool.origin", "second": "cup/tip", "value": 0.03, "within": 0.005}]})"))
+                                       .objects[1]
+                                       .grasps.at(0),
+                                   77),
+                      drawn_member(grasp, 77), 0));
+}
+
+TEST_F(GraspScene, ConstraintsOfGraspsAreOfTheToolAndTheObject) {
+  const auto all = [](const std::string& constraint, const std::string& more = "") {
+    return R"({"name": "g", "all": [)" + constraint + "]" + more + "}";
+  };
+  const std::string one =
+      R"({"relation": "coincident", "first": "tool.origin", "second": "cup/axis"})";
+  expect_refused(all(one, R"(, "position": [0, 0, 1])"), {"has no 'position'"});
+  expect_refused(all(one, R"(, "turn": {"about": "cup.z"})"), {"has no 'turn'"});
+  expect_refused(all(""), {"at least one constraint"});
+  expect_refused(all(R"({"relation": "coincident", "first": "tool.tip", "second": "cup/axis"})"),
+                 {"a tool has the parts origin"});
+  expect_refused(all(R"({"relation": "coincident", "first": "tool.origin", "second": "mat.z"})"),
+                 {"neither a part of the tool"});
+  expect_refused(all(R"({"relation": "coincident", "first": "cup.origin", "second": "cup/axis"})"),
+                 {"fixed to the same thing"});
+  expect_refused(
+      all(one +
+          R"(, {"relation": "distance", "first": "tool.origin", "second": "cup.z", "value": 0.1})"),
+      {"contradict each other", "coincident 'tool.origin' 'cup/axis'"});
+}
+
 }  // namespace
 }  // namespace kaboum::world

@@ -76,11 +76,9 @@ void add_constraint_goals(MoveRequest& r, const MoveOptions& o) {
   std::size_t number = o.to.size() + o.to_pose.size();
   for (const std::string& name : o.reach) {
     ++number;
-    const std::vector<motion::PathConstraint> constraints = motion::path_constraints(
-        r.scene.world, initial_state(r.scene.world), r.robot, r.scene.world.constraint_set(name));
-    const motion::Goals goals =
-        motion::constraint_goals(r.model(), motion::moving_frame(r.model(), o.keep.tool),
-                                 constraints, r.start, o.search.seed);
+    const motion::Goals goals = motion::preferred_goals(
+        r.scene.world, r.robot, motion::moving_frame(r.model(), o.keep.tool),
+        r.scene.world.constraint_set(name), r.start, o.search.seed);
     for (const std::vector<double>& q : goals.configurations) {
       r.goals.push_back(q);
       r.numbers.push_back(number);

@@ -18,7 +18,20 @@ struct Line {
 struct Plane {
   Vec3 position = Vec3::Zero(), normal = Vec3::UnitZ();
 };
-using Feature = std::variant<Point, Line, Plane>;
+/// A bounded part of a plane: a convex polygon, or a disc.
+struct Surface {
+  Vec3 position = Vec3::Zero(), normal = Vec3::UnitZ();  ///< in its plane; of a disc the centre
+  std::vector<Vec3> outline = {};  ///< corners, counterclockwise against the normal; none: a disc
+  double radius = 0;               ///< of the disc [length]
+};
+using Feature = std::variant<Point, Line, Plane, Surface>;
+
+/// The point of a surface that is nearest to another one.
+Vec3 nearest_point(const Surface& surface, const Vec3& p);
+/// A point of a surface. Over 0 ≤ u, v < 1 they are evenly spread.
+Vec3 point_at(const Surface& surface, double u, double v);
+/// A surface moved along its normal. [length]
+Surface shifted(Surface surface, double by);
 
 /// The frame that a feature is fixed to.
 struct FrameId {
@@ -35,13 +48,15 @@ struct PlacedFeature {
 };
 
 /// Relation of two features to each other. Source: [gaschler2016] Table 5.1; Coincident(Line,
-/// Plane), Angle, and the Perpendicular relations of lines are added. Features of one relation may
-/// come in either order.
+/// Plane), Angle, the Perpendicular relations of lines, and surfaces are added. Features of one
+/// relation may come in either order. The direction of a surface is its plane's normal.
 enum class Relation {
-  Coincident,     ///< point and point, line, plane; line and line, plane; plane and plane
+  Coincident,     ///< point and point, line, plane, surface; line and line, plane; plane and plane
   Parallel,       ///< lines, planes, line and plane; either direction
   Perpendicular,  ///< lines, planes, line and plane
-  Distance,       ///< point and point, line, plane: `value`, above or equal 0 [length]
+  /// point and point, line, plane: `value`, above or equal 0 [length]; of a surface, the point is
+  /// on the surface moved by so much along its normal
+  Distance,
   Angle,  ///< between the directions of lines or normals, 0 … π; or from a plane to a line
           ///< towards the plane's normal, −π/2 … π/2: `value` [rad]
 };

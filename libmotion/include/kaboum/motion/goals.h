@@ -41,4 +41,11 @@ Goals constraint_goals(const world::RobotModel& robot, const world::ToolFrame& t
                        std::span<const PathConstraint> constraints,
                        const std::vector<double>& start, std::uint64_t seed, std::size_t most = 16);
 
+/// The same for constraints of a scene, in its first state. Where some are preferred: with all of
+/// them, else without the least important one, and so on until goals are found.
+/// @throws Error{InvalidArgument} as path_constraints
+Goals preferred_goals(const world::World& world, std::size_t robot, const world::ToolFrame& tool,
+                      const world::ConstraintSet& set, const std::vector<double>& start,
+                      std::uint64_t seed);
+
 }  // namespace kaboum::motion

@@ -25,16 +25,18 @@ struct PathConstraint {
 };
 
 /// True if of each constraint's features one moves with the robot, or with what it carries, and the
-/// other stays.
+/// other stays; of the preferred ones, too.
 bool is_of_motion(const world::World& world, const world::WorldState& state, std::size_t robot,
                   const world::ConstraintSet& set);
 
 /// The constraints of a set, for motions of one robot while all else stays. Of two lines or planes
 /// that coincide, the one that moves has its point within the tolerance of the other.
+/// @param preferred  so many of those that the set prefers are among them, at most
 /// @throws Error{InvalidArgument} unless is_of_motion, and as require_keepable.
 std::vector<PathConstraint> path_constraints(const world::World& world,
                                              const world::WorldState& state, std::size_t robot,
-                                             const world::ConstraintSet& set);
+                                             const world::ConstraintSet& set,
+                                             std::size_t preferred = 0);
 
 /// The constraint of an object that a link carries: it leans by no more than an angle from how it
 /// stands in the scene.

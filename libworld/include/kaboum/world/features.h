@@ -17,6 +17,17 @@ namespace kaboum::world {
 ///   have the name.
 FixedFeature find_feature(const World& world, const std::string& name);
 
+/// The part of a frame of that name ("origin", "x", "xy", …), in the frame. nullopt: there is none.
+std::optional<Feature> find_frame_part(std::string_view part);
+
+/// "angle 'cup.z' 'world.z'"
+std::string describe(const ToleratedConstraint& constraint);
+
+/// Whether a constraint is met within its tolerances. Of two lines, or planes, that coincide, the
+/// second one's point is near the first one, or the first one's near the second one.
+/// @param first, second  poses of the frames that the features are fixed to, in any one frame
+bool is_met(const ToleratedConstraint& constraint, const Transform& first, const Transform& second);
+
 /// A feature of one frame in another one, in which the first has this pose.
 Feature moved(const Feature& feature, const Transform& pose);
 

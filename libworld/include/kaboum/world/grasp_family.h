@@ -14,7 +14,21 @@ bool fits(const ToolFrame& tool, const Grasp& grasp);
 /// Whether a grasp leaves anything free.
 bool is_family(const Grasp& grasp);
 
-/// The pose of one member: from the object's frame to the tool's.
+/// Members of a family that are drawn at most.
+inline constexpr std::size_t kMostMembers = 128;
+
+/// The pose of a drawn member: from the object's frame to the tool's. Of slides and turns, the
+/// first one is nearest to the stated pose.
+/// @param index  below kMostMembers; of what is no family any
+Transform drawn_member(const Grasp& grasp, std::size_t index);
+
+/// Poses that meet constraints of a tool and an object, evenly spread as far as that goes: as many
+/// as kMostMembers, or fewer where the search for one more fails.
+/// @param size  of the object: how far away a tool's features are looked for [length]
+std::vector<Transform> draw_members(const std::vector<ToleratedConstraint>& constraints,
+                                    double size);
+
+/// The pose of one member, by its slides and turn: from the object's frame to the tool's.
 /// @param values  of the slides [length], then of the turn, if there is one [rad]
 /// @pre as many as are free.
 Transform member_of(const Grasp& grasp, const std::vector<double>& values);
@@ -24,11 +38,13 @@ Transform member_of(const Grasp& grasp, const std::vector<double>& values);
 std::vector<double> draw_member(const Grasp& grasp, std::size_t index);
 
 /// The pose of the member at which a tool is, if it is at one: the turn and slides that come
-/// nearest, brought within the bounds. What is not the same pose is at no member.
+/// nearest, brought within the bounds; of constraints, the pose itself where it meets them. What is
+/// not the same pose is at no member.
 /// @param pose  from the object's frame to the tool's
 Transform nearest_member(const Grasp& grasp, const Transform& pose);
 
-/// No member has the tool's origin farther away from a point of the object. [length]
+/// No member has the tool's origin farther away from a point of the object; infinite where
+/// constraints do not bound it. [length]
 double farthest_from(const Grasp& grasp, const Vec3& point);
 
 }  // namespace kaboum::world

@@ -42,13 +42,16 @@ struct LinkShape {
   std::optional<BoundingSet> inner;
 };
 
-/// A point, line or plane of an object or a link by name, in its frame.
+/// A point, line, plane or surface of an object or a link by name, in its frame.
 struct Feature {
-  enum class Kind { Point, Line, Plane };
+  enum class Kind { Point, Line, Plane, Surface };
   std::string name;
   Kind kind = Kind::Point;
-  Vec3 point = Vec3::Zero();
-  Vec3 direction = Vec3::Zero();  ///< of unit length: along the line, or the plane's normal
+  Vec3 point = Vec3::Zero();      ///< of it; of a disc the centre
+  Vec3 direction = Vec3::Zero();  ///< of unit length: along the line, or the normal
+  /// Corners of a surface, counterclockwise against the normal; none: a disc.
+  std::vector<Vec3> outline = {};
+  double radius = 0;  ///< of a disc [length]
 };
 
 /// A feature that is fixed to a link, in the link's frame.
@@ -79,6 +82,8 @@ struct ToleratedConstraint {
 struct ConstraintSet {
   std::string name;
   std::vector<ToleratedConstraint> constraints;
+  /// Such as are met where that goes, the most important first. Nothing is claimed of them.
+  std::vector<ToleratedConstraint> preferred = {};
 };
 
 /// Two links of a robot whose contact is not looked for.
@@ -121,13 +126,17 @@ struct FreeTurn {
 };
 
 /// Hold of a tool on an object. With slides or a turn it is a family of holds: the tool is turned
-/// about the axis, then slid, by any values within the bounds (grasp_family.h).
+/// about the axis, then slid, by any values within the bounds. With constraints it is all holds
+/// that meet them (grasp_family.h).
 struct Grasp {
   std::string name;
   Transform pose;                      ///< from the object's frame to the tool's
   std::vector<FreeSlide> slides = {};  ///< at most two, not parallel
   std::optional<FreeTurn> turn = {};
   unsigned rank = 0;  ///< planners try grasps of a lower one first
+  /// Between features of the tool, which are the first ones, in its frame, and of the object.
+  std::vector<ToleratedConstraint> constraints = {};
+  std::vector<Transform> members = {};  ///< some holds that meet them; the pose is the first one
 };
 
 struct Object {
