@@ -1,11 +1,8 @@
-// Motions to places that are found at random: where one robot takes what another one holds, where
-// constraints are met, and anywhere.
+// Motions to places that are found at random: where one robot takes what another one holds, and
+// anywhere.
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
-#include <kaboum/motion/goals.h>
 #include <kaboum/robot/kinematics.h>
-#include <kaboum/world/constraint_conflict.h>
-#include <kaboum/world/features.h>
 #include <kaboum/world/grasp_family.h>
 
 #include <Eigen/Geometry>
@@ -22,8 +19,6 @@ using world::Transform;
 /// Places at which a thing may be handed over, and configurations to wander to, that are tried;
 /// more with each attempt.
 constexpr int kMeetings = 60, kWanderings = 100;
-/// Configurations that meet constraints, of which one is gone to; more with each attempt.
-constexpr std::size_t kSatisfying = 16;
 /// Ways to take a thing at such a place that are enough.
 constexpr std::size_t kEnough = 4;
 /// Members of a family of grasps that are tried at one such place: there are many places.
@@ -130,57 +125,6 @@ bool Sequence::wander(std::size_t robot) {
     }
   }
   return fail(Answer::Kind::NotFound, "no configuration to move to was found");
-}
-
-bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  if (!motion::is_of_motion(geometry_.world, state_, robot, set))
-    return fail(Answer::Kind::Impossible, "'" + set.name + "' is not between what moves with " +
-                                              model.name + " now and what stays");
-  if (const auto far = find_beyond_reach(robot, set))
-    return fail(Answer::Kind::Impossible, model.name + " does not reach so far as '" + set.name +
-                                              "' asks: " + describe(set.constraints[*far]));
-  fail(Answer::Kind::NotFound, "no configuration was found that meets '" + set.name + "'");
-  for (std::size_t count = set.preferred.size() + 1; count > 0; --count)
-    if (satisfy(robot, motion::path_constraints(geometry_.world, state_, robot, set, count - 1)))
-      return true;
-  return false;
-}
-
-bool Sequence::satisfy(std::size_t robot, const std::vector<motion::PathConstraint>& constraints) {
-  const world::RobotModel& model = geometry_.world.robots[robot];
-  const std::uint32_t link = constraints.front().link;
-  const motion::Goals drawn = motion::constraint_goals(
-      model, {model.kinematics.links[link].name, link, {}}, constraints, state_.q[robot],
-      question_.seed + question_.attempt, kSatisfying * (question_.attempt + 1));
-  Goals goals;
-  goals.all = false;
-  for (const std::vector<double>& q : drawn.configurations) {
-    std::vector<double> word = configuration_of(manipulation::word_of(q), model);
-    if (!find_out_of_limits(model.kinematics, word) &&
-        motion::check_constraints(model, {word}, constraints).outcome ==
-            motion::ConstraintAnswer::Outcome::Kept)
-      goals.configurations.push_back(std::move(word));
-  }
-  if (goals.configurations.empty() || !go(robot, goals)) return false;
-  chosen_ = true;
-  return true;
-}
-
-/// The first constraint that is farther away than the robot reaches, by its number.
-std::optional<std::size_t> Sequence::find_beyond_reach(std::size_t robot,
-                                                       const world::ConstraintSet& set) const {
-  for (std::size_t i = 0; i < set.constraints.size(); ++i) {
-    world::ToleratedConstraint c = set.constraints[i];
-    c.first = at_state(geometry_.world, state_, c.first);
-    c.second = at_state(geometry_.world, state_, c.second);
-    if (c.second.to == world::FixedFeature::To::Link && c.second.index == robot)
-      std::swap(c.first, c.second);
-    if (c.second.to == world::FixedFeature::To::World &&
-        world::is_beyond_reach(geometry_.world.robots[robot], c))
-      return i;
-  }
-  return std::nullopt;
 }
 
 }  // namespace kaboum::manipulation

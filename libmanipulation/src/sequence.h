@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "lines.h"
 #include "motion_sequence.h"
 
@@ -40,7 +42,9 @@ class Sequence : public MotionSequence {
   bool wander(std::size_t robot);
   /// To where constraints of the scene are met, between features that move with the robot or what
   /// it carries and features of things where they are.
-  bool satisfy(std::size_t robot, const world::ConstraintSet& constraints);
+  bool satisfy(std::size_t robot, const world::ConstraintSet& constraints) {
+    return satisfy(robot, constraints, [&](const Goals& goals) { return go(robot, goals); });
+  }
 
  private:
   /// A held object, as it is about to be let go.
@@ -80,7 +84,15 @@ class Sequence : public MotionSequence {
   [[nodiscard]] bool is_beyond_reach(std::size_t robot, std::size_t object) const;
   [[nodiscard]] std::optional<std::size_t> find_beyond_reach(std::size_t robot,
                                                              const world::ConstraintSet& set) const;
-  bool satisfy(std::size_t robot, const std::vector<motion::PathConstraint>& constraints);
+  /// @param reach  goes to one of some goals
+  bool satisfy(std::size_t robot, const world::ConstraintSet& constraints,
+               const std::function<bool(const Goals&)>& reach);
+  [[nodiscard]] Goals goals_that_meet(std::size_t robot,
+                                      const std::vector<motion::PathConstraint>& constraints) const;
+  /// To a goal at which an object is mounted on another one, along a straight line at last: of the
+  /// axes and normals that its constraints are about, from beyond the other one.
+  bool slide_onto(std::size_t robot, std::size_t object, std::size_t onto,
+                  const world::ConstraintSet& constraints, const Goals& goals);
   /// By the one grasp that the question's choice prefers; nullopt: it prefers none.
   std::optional<Goals> preferred_goals(std::size_t robot, std::size_t object);
   /// "o1, held by its grasp 'side'"
