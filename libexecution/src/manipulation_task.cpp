@@ -412,7 +412,10 @@ void ManipulationTask::add_mates(world::World& world) const {
     for (const Relation& r : mate->relations) {
       const auto feature = [&](std::string object, const std::string& name) {
         try {
-          return find_feature(world, object.append(name.starts_with('.') ? "" : "/").append(name));
+          object.append(name.starts_with('.') ? "" : "/").append(name);
+          world::FixedFeature out = find_feature(world, object);
+          out.feature.name = std::move(object);
+          return out;
         } catch (const Error& error) {
           fail(mate->line, error.what());
         }

@@ -9,6 +9,7 @@
 #include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace kaboum::manipulation {
 namespace ik = kaboum::kinematics;
@@ -39,6 +40,12 @@ bool is_alone(const robot::Robot& robot, const ik::Arm& arm) {
 }
 
 }  // namespace
+
+std::size_t spread(unsigned choice, std::size_t n) {
+  auto step = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(n)));
+  while (std::gcd(step, n) != 1) ++step;
+  return (choice - 1) * step % n;
+}
 
 void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
                const world::Transform& target, const std::vector<double>& from,

@@ -22,6 +22,13 @@ struct Goals {
   }
 };
 
+/// Of what is drawn, as many are choices that a search may prefer.
+inline constexpr std::size_t kChoices = 8;
+
+/// The one of 0 … n − 1 that a choice prefers: all of them for the choices 1 … n, what is near in a
+/// list far apart in time. @pre choice ≥ 1, n ≥ 1
+std::size_t spread(unsigned choice, std::size_t n);
+
 /// How goals are looked for.
 struct GoalSearch {
   std::uint64_t seed = 1;  ///< where the arm has no closed form

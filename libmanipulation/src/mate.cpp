@@ -126,7 +126,14 @@ bool Sequence::satisfy(std::size_t robot, const world::ConstraintSet& set,
   for (std::size_t count = set.preferred.size() + 1; count > 0; --count) {
     const Goals goals = goals_that_meet(
         robot, motion::path_constraints(geometry_.world, state_, robot, set, count - 1));
-    if (goals.configurations.empty() || !reach(goals)) continue;
+    if (goals.configurations.empty()) continue;
+    choices_ =
+        std::max(choices_, static_cast<unsigned>(std::min(kChoices, goals.configurations.size())));
+    Goals preferred{{}, false};
+    if (question_.choice > 0)
+      preferred.configurations = {
+          goals.configurations[spread(question_.choice, goals.configurations.size())]};
+    if (!(question_.choice > 0 && reach(preferred)) && !reach(goals)) continue;
     chosen_ = true;
     return true;
   }

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <set>
 
 namespace kaboum::manipulation {
@@ -26,17 +25,8 @@ constexpr int kTurns = 8;
 constexpr std::size_t kDraws = 16;
 constexpr unsigned kMostDoublings = 3;
 static_assert(kDraws << kMostDoublings == world::kMostMembers);
-/// Of these, as many are choices that a search may prefer.
-constexpr std::size_t kChoices = 8;
 /// More than sums of lengths lose. [1]
 constexpr double kRounding = 1e-9;
-
-/// All of 0 … n − 1 for the choices 1 … n, what is near in the list far apart in time.
-std::size_t spread(unsigned choice, std::size_t n) {
-  auto step = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(n)));
-  while (std::gcd(step, n) != 1) ++step;
-  return (choice - 1) * step % n;
-}
 
 }  // namespace
 

@@ -113,7 +113,19 @@ wrong "2: nothing is to be done" <<'END'
 mate seated: axis coincident axis
 
 END
-# Constraints that contradict each other are not met, and that is no proof.
+# Constraints that contradict each other are refused, by a proof, before anything is looked for.
 printf 'mate both: bottom distance seat 1 mm; bottom distance .origin 1 mm\nput bearing1 on tree1 by both\n' >both.task
-expect 7 'no configuration was found that meets' "$P" solve both.task --scene bearings/cell.json --no-cache -o none.json --explain
+expect 3 "both.task:1: the mate 'both': these constraints contradict each other.*'bearing1/bottom' 'tree1/seat'.*'tree1.origin'" \
+  "$P" solve both.task --scene bearings/cell.json --no-cache -o none.json
+# What no arm reaches is found out by the first call.
+printf 'mate far: bottom distance seat 9 m\nput bearing1 on tree1 by far\n' >far.task
+expect 7 'does not reach so far' "$P" solve far.task --scene bearings/cell.json --no-cache -o none.json --explain
+# Preferences are met where that goes, and said to be some.
+printf 'mate turned: axis coincident axis within 0.2 mm; axis angle axis 0 deg within 0.5 deg; bottom distance seat 1 mm within 0.2 mm; prefer .x angle .x 90 deg within 1 deg\nput bearing1 on tree1 by turned\n' >turned.task
+expect 0 solved "$P" solve turned.task --scene bearings/cell.json --no-cache -o turned.json
+shows 0 'good: 1 branch' "$P" run turned.task --scene bearings/cell.json --plan turned.json
+wrong "1: the mate 'a' has no relation but what is preferred" <<'END'
+mate a: prefer axis coincident axis
+put bearing1 on tree1 by a
+END
 exit "$FAILED"

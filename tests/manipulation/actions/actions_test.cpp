@@ -439,6 +439,62 @@ TEST_F(Actions, SatisfyGoesToAMateWhereverItIs) {
                Error);
 }
 
+TEST_F(Actions, AMateOnASurfaceIsAnywhereOnItAndMeetsWhatItPrefers) {
+  world::World world = arms_.world;
+  using kinematics::Relation;
+  using Kind = world::Feature::Kind;
+  world.objects[TwoArms::kSocket].features.push_back(
+      {"floor",
+       Kind::Surface,
+       {0, 0, 0.02},
+       Vec3::UnitZ(),
+       {{-0.02, -0.03, 0.02}, {0.02, -0.03, 0.02}, {0.02, 0.03, 0.02}, {-0.02, 0.03, 0.02}},
+       0});
+  const auto feature = [&](const std::string& name) { return world::find_feature(world, name); };
+  world::ConstraintSet mate{"on-floor", {}};
+  mate.constraints = {
+      {Relation::Distance, feature("block/bottom"), feature("socket/floor"), 0.004, 1e-3, 0.02},
+      {Relation::Angle, feature("block.z"), feature("socket.z"), 0, 1e-3, 0.01}};
+  mate.preferred = {{Relation::Angle, feature("block.x"), feature("socket.x"), 0.5, 1e-3, 0.02},
+                    {Relation::Angle, feature("block.x"), feature("socket.x"), 1.5, 1e-3, 0.02}};
+  world.constraints.push_back(mate);
+  const plan::ExternalBindings bindings = manipulation::bind_externals(world, {});
+  std::set<std::array<bool, 2>> quarters;
+  for (unsigned choice = 0; choice <= 8; ++choice) {
+    const Words words = holding(0, 0, kDown);
+    const Answer answer =
+        ask(bindings, "mate", {"left", "block", "socket", "on-floor", "home"}, words, 6, choice);
+    ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+    EXPECT_EQ(answer.choices, 8U);
+    const std::vector<Motion> motions = motions_of(answer);
+    for (const Motion& m : motions) {
+      follow(m);
+      // It is let go at the end of the last motion with the block.
+      const bool last = &m == &motions.back() || !(&m + 1)->holds.contains("block");
+      if (m.holds.contains("block") && last) {
+        const Transform socket = arms_.world.objects[TwoArms::kSocket].pose;
+        const Vec3 bottom = block() * Vec3(0, 0, -0.08) - socket.translation;
+        EXPECT_NEAR(bottom.z(), 0.024, 1.1e-3);
+        EXPECT_LT(std::abs(bottom.x()), 0.021);
+        EXPECT_LT(std::abs(bottom.y()), 0.031);
+        quarters.insert({bottom.x() > 0, bottom.y() > 0});
+        EXPECT_GT(block().linear(2, 2), std::cos(0.011));
+        EXPECT_NEAR(std::acos(block().linear(0, 0)), 0.5, 0.021) << "the first preference";
+      }
+    }
+  }
+  EXPECT_EQ(quarters.size(), 4U);
+  // Where no configuration meets the constraints, nothing is claimed; where the arm is too short,
+  // that is proved.
+  Words words = holding(0, 0, kDown);
+  words["pose(socket)"] = "at 3 0 0.02 0 0 0 1";
+  const Answer far = ask(bindings, "mate", {"left", "block", "socket", "on-floor", "home"}, words);
+  EXPECT_EQ(far.kind, Answer::Kind::Impossible);
+  EXPECT_NE(far.reason.find("does not reach so far as 'on-floor' asks: distance 'bottom' 'floor'"),
+            std::string::npos)
+      << far.reason;
+}
+
 TEST_F(Actions, TablesIAndII) {
   Words words = {
       {"pose(block)", "start"}, {"pose(socket)", "start"}, {"pose(wall)", "at 5 5 5 0 0 0 1"}};
