@@ -194,8 +194,9 @@ class ConstraintSampler::Impl {
     random_ = unused;
   }
 
-  /// The first of the surfaces on which a frame has a point: there any point of the surface is
-  /// aimed at, evenly spread. Points on its other surfaces are projected.
+  /// The first of the surfaces on which a frame has a point: there every other draw aims at a point
+  /// of the surface, evenly spread. Other draws, and points on its other surfaces, are projected:
+  /// other constraints may leave room for that only.
   void find_aims() {
     std::vector<std::array<FrameId, 2>> known;
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
@@ -225,7 +226,9 @@ class ConstraintSampler::Impl {
     for (const Aim& aim : aims_) {
       Constraint& c = constraints_[aim.constraint];
       const double u = random_.between(0, 1), v = random_.between(0, 1);
-      (aim.first ? c.first : c.second).feature = Point{point_at(aim.surface, u, v)};
+      Feature& feature = (aim.first ? c.first : c.second).feature;
+      feature = aim.surface;
+      if (tally_.draws % 2 != 0) feature = Point{point_at(aim.surface, u, v)};
     }
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];

@@ -135,7 +135,15 @@ cell = json.load(open("cell.json"))
 cell["robots"][0]["tools"] = [{"name": "end", "link": "tip", "position": [1, 0, 0]}]
 cell["constraints"] = [{"name": "off-wall", "all": [
     {"relation": "distance", "first": "world.zx", "second": "arm/end.origin", "value": 1.5, "within": 0.5}]}]
+cell["objects"][0]["features"] = [{"name": "pad", "surface": {"outline": [[0.1, 0.6, 0], [0.4, 0.6, 0], [0.4, 0.9, 0], [0.1, 0.9, 0]]}}]
+on_pad = {"relation": "coincident", "first": "arm/end.origin", "second": "box/pad"}
+cell["constraints"].append({"name": "on-pad", "all": [on_pad],
+    "prefer": [{"relation": "angle", "first": "arm/end.x", "second": "world.x", "value": 0.9, "within_angle": 0.3}]})
 json.dump(cell, open("kept.json", "w"))
+cell["constraints"].append({"name": "both", "all": [
+    {"relation": "distance", "first": "arm/end.origin", "second": "box/pad", "value": 0.1}, on_pad]})
+json.dump(cell, open("contradicting.json", "w"))
+cell["constraints"].pop()
 cell["constraints"][0]["all"][0]["second"] = "arm/ende.origin"
 json.dump(cell, open("misspelt.json", "w"))
 END
@@ -163,6 +171,18 @@ expect 0 'kept: off-wall within 0.5' "$M" kept.json --from=0.6,1 "--to-pose=$POS
 expect 0 'kept: upright' "$M" kept.json --from=0.6,1 --reach off-wall --keep upright -o wall.csv
 tail -1 wall.csv | python3 -c "from math import *; a, b = map(float, input().split(',')); y = sin(a) + sin(a + b); assert 1 <= abs(y) <= 2, y" || fail "not where it should be"
 expect 2 "did you mean 'off-wall'" "$M" kept.json --from=0.6,1 --reach off-wal -o none.csv
+# A surface is reached anywhere within its outline, as is preferred, and kept at every instant.
+expect 0 '' "$M" kept.json --from=0.6,1 --reach on-pad -o pad.csv
+tail -1 pad.csv | python3 -c "
+from math import *
+a, b = map(float, input().split(','))
+x, y = cos(a) + cos(a + b) - 1.5, sin(a) + sin(a + b)
+assert 0.099 <= x <= 0.401 and 0.599 <= y <= 0.901 and abs(abs(a + b) - 0.9) <= 0.301, (x, y, a + b)" || fail "not on the pad: $(tail -1 pad.csv)"
+END_ON_PAD=$(tail -1 pad.csv)
+expect 0 'kept: on-pad within 0.001' "$M" kept.json "--from=$END_ON_PAD" "--to=$END_ON_PAD" --keep on-pad -o stay.csv
+expect 1 "the goal breaks a constraint: 'on-pad' is off by" "$M" kept.json "--from=$END_ON_PAD" --to=0.3,0 --keep on-pad -o none.csv
+expect 3 "contradicting.json: line .*contradict each other, wherever the things are: distance 'arm/end.origin' 'box/pad', coincident 'arm/end.origin' 'box/pad'" \
+  "$M" contradicting.json --from=0.6,1 --to=0.3,0 -o none.csv
 expect 0 'kept: upright' "$M" kept.json --from=0.6,1 --to=0.3,0 --tool tip --keep upright -o tip.csv
 expect 2 "no tool or link 'tipp'; did you mean 'tip'" "$M" kept.json --from=0.6,1 --to=0.3,0 --tool tipp -o none.csv
 expect 1 "the goal breaks a constraint: 'off-wall' is off by" "$M" kept.json --from=0.6,1 --to=0.3,0 --keep off-wall -o none.csv
