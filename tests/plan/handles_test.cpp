@@ -212,6 +212,35 @@ TEST(Handles, FunctionsAreAskedWhenAStepsTurnComes) {
   for (const Algorithm a : kAll) EXPECT_EQ(with(m, a).outcome, Outcome::Unsolvable);
 }
 
+TEST(Handles, DepthFirstSearchAsksForItsPlanOnly) {
+  // Every room is left first to where the search came from. What the function returns is new each
+  // time, so with it no room would ever be the same again.
+  constexpr int kRooms = 8;
+  std::string text = doors(kRooms);
+  for (int i = 1; i <= kRooms; ++i)
+    text.insert(text.find("\ngoal"),
+                ", K(next(r" + std::to_string(i + 1) + ", r" + std::to_string(i) + "))");
+  bool shut = false;
+  ExternalBindings b;
+  b["open"] = [&](const Question& q) {
+    return shut && q.arguments[1] == "d1" ? Answer::impossible("shut")
+                                          : Answer::found(q.arguments[0] + "'");
+  };
+  const Model m = bound(text, b);
+  const Solution s = with(m, Algorithm::DepthFirst);
+  ASSERT_EQ(s.outcome, Outcome::Solved);
+  EXPECT_TRUE(check(m, s.plan).valid);
+  EXPECT_EQ(measure(m, s.plan).longest, std::size_t{kRooms});
+  EXPECT_LE(s.statistics.external_calls, kRooms + 16U);
+  // Where that plan does not hold, calls are made as the search goes on.
+  shut = true;
+  const std::string no_way_back = doors(kRooms);
+  const Model other = bound(no_way_back, b);
+  const Solution again = with(other, Algorithm::DepthFirst);
+  ASSERT_EQ(again.outcome, Outcome::Solved);
+  EXPECT_TRUE(check(other, again.plan).valid);
+}
+
 TEST(Handles, WhatStepsThatArePutOffWaitForIsSensed) {
   // Whether the function grants the step depends on what is sensed: that is branched on although
   // the search took the step for possible.
@@ -438,11 +467,21 @@ TEST(Handles, BrokenHostsAreErrorsThatNameFunctionAndState) {
                               b);
   SolveOptions o;
   o.max_memory = 4U << 20U;
-  o.algorithm = Algorithm::DepthFirst;
-  EXPECT_EQ(solve(endless, o).outcome, Outcome::Limit);
   // Whatever they return, nothing is ever done.
-  o.algorithm = Algorithm::BreadthFirst;
-  EXPECT_EQ(solve(endless, o).outcome, Outcome::Unsolvable);
+  for (const Algorithm a :
+       {Algorithm::DepthFirst, Algorithm::BreadthFirst, Algorithm::IterativeDeepening}) {
+    o.algorithm = a;
+    EXPECT_EQ(solve(endless, o).outcome, Outcome::Unsolvable) << static_cast<int>(a);
+  }
+  b["isEnd"] = [](std::span<const std::string>) { return std::string(); };
+  const Model never = bound(kWalk +
+                                "externals: g(conf) : conf; isEnd(conf)\naction go preconds: let "
+                                "?y = extern(g(at)) effects: add(Kf, at = ?y)\n"
+                                "action end preconds: extern(isEnd(at)) effects: add(Kf, done)\n"
+                                "goal: K(done)",
+                            b);
+  o.algorithm = Algorithm::DepthFirst;
+  EXPECT_EQ(solve(never, o).outcome, Outcome::Limit);
 }
 
 TEST(Handles, WhatHandlesAreNotForIsRefused) {

@@ -29,6 +29,19 @@ struct AskedSteps {
   bool apply(OperatorId step, Knowledge& state) { return task.apply(step, state); }
 };
 
+/// Steps as they are, which are asked when their turn comes: most are never taken.
+struct StepsAskedInTurn {
+  static constexpr std::size_t kMostStates = ~std::size_t{0};
+  Task& task;
+  void expand(const Word* state, std::vector<OperatorId>& steps) {
+    task.expand_unasked(state, steps);
+  }
+  bool is_possible(const Word* state, OperatorId step, std::vector<OperatorId>& outcomes) {
+    return !task.asks(step) || task.decide(state, step, outcomes);
+  }
+  bool apply(OperatorId step, Knowledge& state) { return task.apply(step, state); }
+};
+
 /// Successors of one state, made together so that the table's lines are fetched ahead.
 template <class Steps>
 struct Successors {
@@ -203,25 +216,9 @@ SearchResult search_deeper(const SearchInput& in, Steps& from) {
   return found;
 }
 
-/// Fewest steps by a search with calls put off; where its plan does not hold, with all calls made.
-template <class Search>
-SearchResult with_deferred_calls(const SearchInput& in, const Search& search) {
-  if (DeferredCalls deferred(in); deferred.possible()) {
-    SearchResult found = search(deferred.input(), deferred);
-    if (deferred.confirms(found)) return found;
-  }
-  AskedSteps asked{in.task};
-  return search(in, asked);
-}
-
-}  // namespace
-
-SearchResult breadth_first(const SearchInput& in) {
-  return with_deferred_calls(
-      in, [](const SearchInput& of, auto& from) { return search_layers(of, from); });
-}
-
-SearchResult depth_first(const SearchInput& in) {
+/// Depth-first, each state once.
+template <class Steps>
+SearchResult search_depth(const SearchInput& in, Steps& from) {
   const Index n = in.task.layout().words();
   StateStore store(n);
   Knowledge scratch(in.task.layout());
@@ -241,7 +238,7 @@ SearchResult depth_first(const SearchInput& in) {
     f.state = state;
     f.next = 0;
     const std::size_t before = f.steps.capacity();
-    in.task.expand_unasked(store[state], f.steps);
+    from.expand(store[state], f.steps);
     step_bytes += (f.steps.capacity() - before) * sizeof(OperatorId);
     ++in.statistics.expanded;
     in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, top);
@@ -257,7 +254,7 @@ SearchResult depth_first(const SearchInput& in) {
     // when it grows.
     const std::size_t frames =
         step_bytes + stack.size() * 2 * sizeof(void*) + stack.capacity() * sizeof(Frame) * 3 / 2;
-    if (in.limits.exceeded(held(store) + frames)) {
+    if (in.limits.exceeded(held(store) + frames) || store.size() > Steps::kMostStates) {
       count_states(store, in.statistics);
       return found;
     }
@@ -269,15 +266,13 @@ SearchResult depth_first(const SearchInput& in) {
     const OperatorId step = f.steps[f.next++];
     const Word* state = store[f.state];
     if (in.task.is_outcome(step) && !in.target.allowed(state, step)) continue;
-    if (in.task.asks(step)) {  // only now: most steps are never taken
-      outcomes.clear();
-      const bool possible = in.task.decide(state, step, outcomes);
-      for (const OperatorId o : outcomes)
-        if (std::find(f.steps.begin(), f.steps.end(), o) == f.steps.end()) f.steps.push_back(o);
-      if (!possible) continue;
-    }
+    outcomes.clear();
+    const bool possible = from.is_possible(state, step, outcomes);
+    for (const OperatorId o : outcomes)
+      if (std::find(f.steps.begin(), f.steps.end(), o) == f.steps.end()) f.steps.push_back(o);
+    if (!possible) continue;
     scratch.assign(state);
-    if (!in.task.apply(step, scratch)) continue;
+    if (!from.apply(step, scratch)) continue;
     ++in.statistics.generated;
     const auto [number, fresh] = store.insert(scratch.words(), scratch.hash(), f.state, step);
     if (!fresh) continue;
@@ -294,8 +289,31 @@ SearchResult depth_first(const SearchInput& in) {
   return found;
 }
 
+/// By a search with calls put off; where its plan does not hold, with calls made as `Steps` does.
+template <class Steps, class Search>
+SearchResult with_deferred_calls(const SearchInput& in, const Search& search) {
+  if (DeferredCalls deferred(in); deferred.possible()) {
+    SearchResult found = search(deferred.input(), deferred);
+    if (deferred.confirms(found)) return found;
+  }
+  Steps asked{in.task};
+  return search(in, asked);
+}
+
+}  // namespace
+
+SearchResult breadth_first(const SearchInput& in) {
+  return with_deferred_calls<AskedSteps>(
+      in, [](const SearchInput& of, auto& from) { return search_layers(of, from); });
+}
+
+SearchResult depth_first(const SearchInput& in) {
+  return with_deferred_calls<StepsAskedInTurn>(
+      in, [](const SearchInput& of, auto& from) { return search_depth(of, from); });
+}
+
 SearchResult iterative_deepening(const SearchInput& in) {
-  return with_deferred_calls(
+  return with_deferred_calls<AskedSteps>(
       in, [](const SearchInput& of, auto& from) { return search_deeper(of, from); });
 }
 

@@ -32,6 +32,7 @@ class DeferredCalls {
   void expand(const Word* state, std::vector<OperatorId>& steps) const {
     in_.task.expand_unasked(state, steps);
   }
+  static bool is_possible(const Word*, OperatorId, std::vector<OperatorId>&) { return true; }
   /// @return false: what the step does cannot be told, and nor can what the search finds be.
   bool apply(OperatorId step, Knowledge& state) {
     const bool told = in_.task.suppose(step, state);
