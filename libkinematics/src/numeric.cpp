@@ -161,7 +161,7 @@ std::vector<NumericSolution> solve_numeric_all(const Arm& arm, const Transform& 
     const bool known = std::any_of(out.begin(), out.end(),
                                    [&](const NumericSolution& o) { return same(arm, o.q, s.q); });
     if (!known) out.push_back(std::move(s));
-    return false;
+    return options.solutions > 0 && out.size() >= options.solutions;
   });
   return out;
 }

@@ -84,6 +84,9 @@ void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
   goals.all = false;
   ik::NumericOptions options;
   options.seed = search.seed;
+  options.first = reference;
+  if (arm.axes.size() > 6) options.solutions = kOfFamily * (search.attempt + 1);
+  if (search.any) options.solutions = 1;
   for (const ik::NumericSolution& solution : ik::solve_numeric_all(arm, in_base, options))
     add(solution.q);
 }

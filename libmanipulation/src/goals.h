@@ -34,11 +34,14 @@ struct GoalSearch {
   std::uint64_t seed = 1;  ///< where the arm has no closed form
   /// Of families with a free joint: more configurations are taken from them.
   unsigned attempt = 0;
+  /// Whether it is only asked if there is one: where the arm has no closed form, one is found.
+  bool any = false;
 };
 
 /// Adds those for a pose of a link in the world. Joints that do not move the link stay as in
 /// `from`; of configurations that differ by whole turns, the nearest to it is taken. Where a joint
-/// is free, configurations evenly spread over its range are.
+/// is free, configurations evenly spread over its range are; of an arm with more than six axes,
+/// whose configurations are a family, as many at random.
 void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
                const world::Transform& target, const std::vector<double>& from,
                const GoalSearch& search);

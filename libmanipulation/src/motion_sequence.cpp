@@ -109,10 +109,10 @@ bool MotionSequence::follow(std::size_t robot, const robot::Path& path) {
 }
 
 void MotionSequence::add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
-                               const Transform& target) const {
+                               const Transform& target, bool any) const {
   const Stopwatch watch;
   manipulation::add_goals(goals, geometry_.world.robots[robot], link, target, state_.q[robot],
-                          {question_.seed, question_.attempt});
+                          {question_.seed, question_.attempt, any});
   if (GeometryCounters* counters = geometry_.options.counters.get()) {
     ++counters->ik_calls;
     counters->ik_seconds += watch.seconds();

@@ -57,8 +57,9 @@ class MotionSequence {
   /// Moves an object, and what is mounted on it, to the hand or to rest.
   void carry(std::size_t object, const std::optional<world::Attachment>& held,
              const world::Transform& pose);
+  /// @param any  as of GoalSearch
   void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
-                 const world::Transform& target) const;
+                 const world::Transform& target, bool any = false) const;
   void record(std::size_t robot, const robot::Path& path);
 
   const Geometry& geometry_;

@@ -52,10 +52,10 @@ std::vector<Sequence::Hold> Sequence::holds(std::size_t robot, std::size_t objec
   return out;
 }
 
-void Sequence::add_goals_of(Goals& goals, std::size_t robot, std::size_t object,
-                            const Hold& hold) const {
+void Sequence::add_goals_of(Goals& goals, std::size_t robot, std::size_t object, const Hold& hold,
+                            bool any) const {
   add_goals(goals, robot, hold.tool->link,
-            pose_of_object(object) * inverse(hold.pose) * inverse(hold.tool->pose));
+            pose_of_object(object) * inverse(hold.pose) * inverse(hold.tool->pose), any);
   if (is_family(*hold.grasp)) goals.all = false;
 }
 
@@ -126,6 +126,15 @@ std::string Sequence::name_with_grasp(std::size_t object, const world::Attachmen
         return thing.name + ", held by its grasp '" + grasp.name + "',";
     }
   return thing.name;
+}
+
+bool Sequence::reaches_any(std::size_t robot, std::size_t object) const {
+  if (state_.absent[object] || held_by(robot, object)) return false;
+  return std::ranges::any_of(holds(robot, object, draws()), [&](const Hold& hold) {
+    Goals goals;
+    add_goals_of(goals, robot, object, hold, true);
+    return !goals.configurations.empty();
+  });
 }
 
 std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t object) {

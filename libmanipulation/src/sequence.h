@@ -15,7 +15,7 @@ class Sequence : public MotionSequence {
   // Each is true when it was done.
   /// Whether inverse kinematics knows a configuration that reaches the object by a grasp.
   bool is_in_reach(std::size_t robot, std::size_t object) {
-    return goals_in_reach(robot, object).has_value();
+    return reaches_any(robot, object) || goals_in_reach(robot, object).has_value();
   }
   /// To where a tool holds the object by one of its grasps. It may be held by another robot.
   bool reach(std::size_t robot, std::size_t object);
@@ -73,7 +73,9 @@ class Sequence : public MotionSequence {
   /// In the scene's order. @param draws  members of each family
   [[nodiscard]] std::vector<Hold> holds(std::size_t robot, std::size_t object,
                                         std::size_t draws) const;
-  void add_goals_of(Goals& goals, std::size_t robot, std::size_t object, const Hold& hold) const;
+  /// @param any  as of GoalSearch
+  void add_goals_of(Goals& goals, std::size_t robot, std::size_t object, const Hold& hold,
+                    bool any = false) const;
   /// Members of a family that this attempt draws.
   [[nodiscard]] std::size_t draws() const;
   /// @param rank  of the grasps; nullopt: of any
@@ -98,6 +100,8 @@ class Sequence : public MotionSequence {
   /// "o1, held by its grasp 'side'"
   [[nodiscard]] std::string name_with_grasp(std::size_t object,
                                             const world::Attachment& held) const;
+  /// Whether there is a configuration for some grasp; false: it takes longer to tell.
+  [[nodiscard]] bool reaches_any(std::size_t robot, std::size_t object) const;
   /// nullopt: it is out of reach.
   std::optional<Goals> goals_in_reach(std::size_t robot, std::size_t object);
   /// Turns about the vertical, or a seat's normal, that are tried.

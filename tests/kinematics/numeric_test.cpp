@@ -84,6 +84,18 @@ TEST(Numeric, StartsWhereItIsTold) {
   EXPECT_THROW(solve_numeric(arm, {}, options), Error);
 }
 
+TEST(Numeric, EndsWithAsManySolutionsAsAreAskedFor) {
+  const Arm arm = limited(arm_of(seven_axes()), 2.5);
+  const Transform target = kinematics::forward(arm, std::vector<double>{1, .5, -1, 1.5, .2, 1, -1});
+  NumericOptions options;
+  const auto all = solve_numeric_all(arm, target, options);
+  ASSERT_GT(all.size(), 5U);
+  options.solutions = 5;
+  const auto few = solve_numeric_all(arm, target, options);
+  ASSERT_EQ(few.size(), 5U);
+  for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i].q, all[i].q);
+}
+
 TEST(Numeric, NothingOutOfReach) {
   const Arm arm = limited(arm_of(rv_6sl(true)), 3);
   Transform target;

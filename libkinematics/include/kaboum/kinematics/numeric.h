@@ -14,6 +14,7 @@ struct NumericOptions {
   std::uint64_t seed = 1;
   int starts = 100;           ///< configurations to start from: the first is `first`, if given
   int iterations = 100;       ///< from each of them
+  std::size_t solutions = 0;  ///< different ones after which `solve_numeric_all` ends; 0: never
   double bound = 1e-10;       ///< on the position's error in parts of the reach, and the rotation's
   bool limits = true;         ///< whether solutions are to be within the joints' limits
   std::vector<double> first;  ///< empty: random as well
@@ -34,8 +35,9 @@ struct NumericSolution {
 std::optional<NumericSolution> solve_numeric(const Arm& arm, const Transform& target,
                                              const NumericOptions& options = {});
 
-/// The different configurations found from all starts, in the order found; perhaps not all that
-/// there are. Two are the same when no joint differs by more than 1e-6, whole turns apart.
+/// The different configurations found from all starts, or the first `solutions` of them, in the
+/// order found; perhaps not all that there are. Two are the same when no joint differs by more than
+/// 1e-6, whole turns apart.
 std::vector<NumericSolution> solve_numeric_all(const Arm& arm, const Transform& target,
                                                const NumericOptions& options = {});
 
