@@ -1091,6 +1091,12 @@ TEST(Handles, WhereAChoiceLeadsNoFurtherAnotherOneIsMade) {
     Plan other = s.plan;
     other.choices["take(home)"] = 1;
     EXPECT_FALSE(check(m, other).valid);
+    for (const std::string never : {"take(there)", "take", "grab(home)", ""}) {
+      other = s.plan;
+      other.choices[never] = 1;
+      expect_says(check(m, other).violation,
+                  "the plan states a choice of '" + never + "', a call that it never makes");
+    }
     // The first choice does; nothing is chosen anew.
     const Model first = bound(text, {{"take", take}, {"put", put("top")}});
     EXPECT_TRUE(with(first, a).plan.choices.empty());
@@ -1102,6 +1108,37 @@ TEST(Handles, WhereAChoiceLeadsNoFurtherAnotherOneIsMade) {
     expect_says(none.limit, "top does not fit");
     expect_says(none.limit, "nor with 3 sets of other choices (");
     EXPECT_EQ(calls, 4);
+  }
+}
+
+/// A search changes the choices of calls that its plan has no use for; the plan does not state
+/// them.
+TEST(Handles, PlansStateChoicesOfTheirOwnCalls) {
+  const std::string text =
+      "types: conf handle\nconstants: conf home\npredicates: done\n"
+      "functions: grasp : conf; view : conf\n"
+      "externals: take(conf) : conf; put(conf) : conf; peek(conf) : conf; show(conf) : conf\n"
+      "action take preconds: let ?g = extern(take(home)) effects: add(Kf, grasp = ?g)\n"
+      "action put preconds: let ?p = extern(put(grasp)) effects: add(Kf, done)\n"
+      "action look preconds: let ?g = extern(peek(home)) effects: add(Kf, view = ?g)\n"
+      "action show preconds: let ?p = extern(show(view)) effects: add(Kf, done)\n"
+      "goal: K(done)";
+  const auto choose = [](const Question& q) {
+    Answer a = Answer::found("way" + std::to_string(q.choice));
+    a.chosen = true;
+    a.choices = 3;
+    return a;
+  };
+  const auto put = [](const Question& q) {
+    return q.arguments[0] == "way2" ? Answer::found("there") : Answer::impossible("does not fit");
+  };
+  const auto show = [](const Question&) { return Answer::impossible("dark"); };
+  const Model m = bound(text, {{"take", choose}, {"peek", choose}, {"put", put}, {"show", show}});
+  for (const Algorithm a : kAll) {
+    const Solution s = with(m, a);
+    ASSERT_EQ(s.outcome, Outcome::Solved) << s.limit;
+    EXPECT_EQ(s.plan.choices, (Choices{{"take(home)", 2}}));
+    EXPECT_TRUE(check(m, s.plan).valid) << check(m, s.plan).violation;
   }
 }
 

@@ -52,6 +52,8 @@ class Checker {
       if (!passed_.contains(node))
         violate(v, "what " + action_text(model_, plan_.nodes[node].action) +
                        " observes contradicts what is known");
+    if (const auto call = evaluator_.unused_choice(); call && begins && result_.violation.empty())
+      result_.violation = "the plan states a choice of '" + *call + "', a call that it never makes";
     result_.valid = result_.violation.empty();
     ensure(!result_.valid || result_.leaves > 0 || !begins, "some run comes to an end of the plan");
     return result_;

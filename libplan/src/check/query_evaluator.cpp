@@ -378,7 +378,20 @@ unsigned QueryEvaluator::choice_of(Index external, const std::vector<Index>& arg
     text += (i == 0 ? "(" : ", ") + model_.name_of(arguments[i], handles_);
   if (!arguments.empty()) text += ")";
   const auto found = choices_.find(text);
-  return found == choices_.end() ? 0 : found->second;
+  if (found == choices_.end()) return 0;
+  chosen_.insert(text);
+  return found->second;
+}
+
+std::optional<std::string> QueryEvaluator::unused_choice() const {
+  for (const auto& [call, choice] : choices_) {
+    if (chosen_.contains(call)) continue;
+    const std::string name = call.substr(0, call.find('('));
+    const auto function = std::ranges::find(model_.externals, name, &Symbol::name);
+    // Queries of truth values that are decided without it need not make a call.
+    if (function == model_.externals.end() || function->range != kNone) return call;
+  }
+  return std::nullopt;
 }
 
 ExternalResult QueryEvaluator::ask(Index external, const std::vector<Index>& arguments,

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -63,6 +64,10 @@ class QueryEvaluator {
   std::optional<Index> value(const Argument& a, const std::vector<Index>& slots,
                              const RuntimeKnowledge& k) const;
 
+  /// A stated choice of a function that returns values whose call was not made so far, by its text;
+  /// nullopt: there is none.
+  [[nodiscard]] std::optional<std::string> unused_choice() const;
+
   /// What the `let`s of a precondition, among its conjuncts, say in this state.
   std::vector<Plan::Call> calls(const Query& precondition, std::vector<Index>& slots,
                                 const RuntimeKnowledge& k) const;
@@ -100,6 +105,7 @@ class QueryEvaluator {
   mutable std::map<std::pair<Index, std::vector<Index>>, ExternalResult> calls_;
   mutable DerivedFacts* derived_ = nullptr;  ///< while a query is evaluated
   mutable std::set<Fact>* noted_ = nullptr;
+  mutable std::set<std::string> chosen_;  ///< calls that were made by a stated choice
 };
 
 }  // namespace kaboum::plan

@@ -4,6 +4,8 @@
 #include <kaboum/plan/solve.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "search/choices.h"
 #include "search/contingent.h"
@@ -147,6 +149,13 @@ struct Remedies {
   bool attempts = false, choices = false, patience = false;
 };
 
+/// As choices are stated, "fetch(robot1, o1, home)".
+std::string text_of(const Model& model, const Plan::Call& call) {
+  std::string text;
+  for (const std::string& a : call.arguments) text += (text.empty() ? "(" : ", ") + a;
+  return model.externals[call.external].name + text + (text.empty() ? "" : ")");
+}
+
 /// A task that is searched with some choices of external functions.
 class ChosenSearch {
  public:
@@ -195,7 +204,7 @@ class ChosenSearch {
       if (std::ranges::any_of(functions, &ExternalFunction::takes_seed)) {
         solution.plan.seed = options_.seed;
         solution.plan.attempts = calls.attempts();
-        solution.plan.choices = choices_;
+        solution.plan.choices = choices_of(solution.plan);
       }
     }
     if (solution.outcome == Outcome::Unsolvable && !proved) {
@@ -225,6 +234,22 @@ class ChosenSearch {
     }
     if (solution.outcome != Outcome::Limit) calls.confirm();
     return {};
+  }
+
+  /// Those of calls that the plan makes; of truth values, which nodes do not list, all.
+  [[nodiscard]] Choices choices_of(const Plan& plan) const {
+    const std::vector<Symbol>& functions = task_.model().externals;
+    std::set<std::string> made;
+    for (const Plan::Node& node : plan.nodes)
+      for (const Plan::Call& call : node.calls) made.insert(text_of(task_.model(), call));
+    Choices out = choices_;
+    std::erase_if(out, [&](const auto& choice) {
+      const auto& [call, number] = choice;
+      const std::string name = call.substr(0, call.find('('));
+      return std::ranges::find(functions, name, &Symbol::name)->range != kNone &&
+             !made.contains(call);
+    });
+    return out;
   }
 
   /// Adds to a solution's figures what came since the last time.
