@@ -135,9 +135,11 @@ int solve(const PlanOptions& o) {
     report["geometry"]["answers_reused"] = task.answers_reused();
   }
   if (o.explain) {
-    const auto failures = task.failures();
-    report["explanation"] = failures_json(failures);
-    std::cerr << failures_text(failures);
+    const Explanation explanation =
+        explain(model, task.failures(), options, solution.outcome == plan::Outcome::Solved);
+    report["explanation"] = failures_json(explanation);
+    report["explanation_of_goal"] = goal_json(explanation.goal);
+    std::cerr << explanation_text(explanation);
   }
   plan::PlanSize size;
   std::string text;

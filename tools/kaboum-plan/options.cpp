@@ -52,7 +52,8 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
                 "{\"isSpillable(o1)\": false, ...}: where one is wrong, run plans again")
       ->type_name("FILE");
   s->add_flag("--explain", o.explain,
-              "Say which calls of external functions returned no value, how often, and why");
+              "Say which calls of external functions returned no value, how often, and why; where "
+              "there is no plan, also what of the goal is in the way");
   s->add_flag("--no-cache", o.no_cache,
               "Ask a scene's functions anew, and keep nothing for the next run ($KABOUM_CACHE)");
   add_common_options(*s, o.common);

@@ -432,6 +432,12 @@ std::vector<std::string> ExternalCalls::argument_names(Index call, const Word* s
   return names;
 }
 
+std::string ExternalCalls::constant_text(Index call) const {
+  const Call& c = calls_[call];
+  const auto is_read = [](Index o) { return o == kNone || is_call(o) || is_term(o); };
+  return std::ranges::any_of(c.operands, is_read) ? "" : text(c, c.operands);
+}
+
 std::string ExternalCalls::missed() const {
   if (missed_ == kNone) return "";
   const std::string& reason = payload(missed_);

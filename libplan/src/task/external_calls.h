@@ -60,6 +60,9 @@ class ExternalCalls {
 
   [[nodiscard]] const HandleTable& handles() const { return handles_; }
   [[nodiscard]] const std::string& payload(Index leaf) const { return answers_.payload(leaf); }
+  [[nodiscard]] std::size_t size() const { return calls_.size(); }
+  /// "g(a, b)"; empty: some argument is read from the state.
+  [[nodiscard]] std::string constant_text(Index call) const;
   /// The arguments of a call in a state, as names.
   std::vector<std::string> argument_names(Index call, const Word* state);
 
