@@ -1111,6 +1111,44 @@ TEST(Handles, WhereAChoiceLeadsNoFurtherAnotherOneIsMade) {
   }
 }
 
+/// What is learnt about choices counts as memory, and is given back.
+TEST(Handles, ChoicesEndWithTheLimitOfMemory) {
+  constexpr int kThings = 10;
+  std::string text = "types: conf handle, thing\nconstants: conf home; thing ";
+  std::string types, grasps;
+  for (int i = 0; i < kThings; ++i) {
+    const std::string o = "a_thing_with_a_name_that_is_rather_long_" + std::to_string(i);
+    text += (i == 0 ? "" : ", ") + o;
+    types += i == 0 ? "conf" : ", conf";
+    grasps += (i == 0 ? "grasp(" : ", grasp(") + o + ")";
+  }
+  text +=
+      "\npredicates: done\nfunctions: grasp(thing) : conf\nexternals: take(thing) : conf; fits(" +
+      types +
+      ")\naction take(?o : thing) preconds: let ?g = extern(take(?o)) effects: add(Kf, grasp(?o) = "
+      "?g)\naction end preconds: extern(fits(" +
+      grasps + ")) effects: add(Kf, done)\ninit: K(!done)\ngoal: K(done)";
+  ExternalBindings b;
+  b["take"] = [](const Question& q) {
+    Answer a = Answer::found(q.arguments[0] + " in way " + std::to_string(q.choice));
+    a.chosen = true;
+    a.choices = 1000;
+    return a;
+  };
+  b["fits"] = [](const Question&) { return Answer::impossible("too large"); };
+  const Model m = bound(text, b);
+  SolveOptions o;
+  o.algorithm = Algorithm::Greedy;
+  o.max_memory = 4U << 20U;
+  o.timeout = 60;
+  o.choices = 10;
+  expect_says(solve(m, o).limit, "nor with 10 sets of other choices");
+  o.choices = 100'000;
+  const Solution s = solve(m, o);
+  EXPECT_EQ(s.outcome, Outcome::Limit);
+  expect_says(s.limit, "memory limit reached");
+}
+
 /// A search changes the choices of calls that its plan has no use for; the plan does not state
 /// them.
 TEST(Handles, PlansStateChoicesOfTheirOwnCalls) {

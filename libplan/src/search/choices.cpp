@@ -11,6 +11,14 @@ unsigned choice_of(const Choices& choices, const std::string& call) {
   return found == choices.end() ? 0 : found->second;
 }
 
+/// A node of a tree for each, and its text.
+std::size_t bytes_of(const Choices& choices) {
+  constexpr std::size_t kNodeBytes = 96;
+  std::size_t out = kNodeBytes;
+  for (const auto& [call, choice] : choices) out += kNodeBytes + call.size();
+  return out;
+}
+
 }  // namespace
 
 void ChoiceSearch::add_failure(const Choices& choices, const ChoosingCalls& calls) {
@@ -19,6 +27,7 @@ void ChoiceSearch::add_failure(const Choices& choices, const ChoosingCalls& call
   const auto add = [&](bool needed, std::size_t count, std::uint64_t spared, Choices changed,
                        Candidates& to) {
     if (!seen_.insert(changed).second) return;
+    bytes_ += 2 * bytes_of(changed);  // seen, and to be tried
     to.insert({!needed, count, spared, seen_.size(), std::move(changed)});
   };
   const auto change = [&](bool needed) {
@@ -40,7 +49,9 @@ void ChoiceSearch::add_failure(const Choices& choices, const ChoosingCalls& call
   };
   change(true);
   Choices conflict = change(false);
-  if (!conflict.empty()) conflicts_.push_back(std::move(conflict));
+  if (conflict.empty()) return;
+  bytes_ += bytes_of(conflict);
+  conflicts_.push_back(std::move(conflict));
 }
 
 bool ChoiceSearch::holds_conflict(const Choices& choices) const {

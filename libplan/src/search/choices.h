@@ -40,6 +40,9 @@ class ChoiceSearch {
   /// Conflicts that were learnt.
   [[nodiscard]] std::size_t conflicts() const { return conflicts_.size(); }
 
+  /// About as much as is kept of what was learnt and of what may be tried.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
  private:
   /// What may be tried. First what changes what is needed, then those of searches by which few
   /// calls were blamed, then those that change what was blamed most, then the oldest.
@@ -63,6 +66,7 @@ class ChoiceSearch {
   std::set<Choices> seen_ = {{}};
   std::vector<Choices> conflicts_;  ///< with the calls that chose what is nearest, as 0
   bool one_by_one_ = true;          ///< whose turn it was
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace kaboum::plan

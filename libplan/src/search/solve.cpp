@@ -305,6 +305,25 @@ bool search_worlds(const Model& model, const SolveOptions& options, Limits& limi
   return true;
 }
 
+/// Memory that counts as held while this lives.
+class HeldBytes {
+ public:
+  explicit HeldBytes(Limits& limits) : limits_(limits) {}
+  ~HeldBytes() { limits_.give_back(bytes_); }
+  HeldBytes(const HeldBytes&) = delete;
+  HeldBytes& operator=(const HeldBytes&) = delete;
+  /// It is so much now, not less than before. @throws LimitExceeded
+  void tell(std::size_t bytes) {
+    const std::size_t more = bytes - bytes_;
+    bytes_ = bytes;
+    limits_.hold(more);
+  }
+
+ private:
+  Limits& limits_;
+  std::size_t bytes_ = 0;
+};
+
 /// Searches with other choices that are tried after each search with one more attempt.
 constexpr int kChoicesPerAttempt = 2;
 
@@ -320,6 +339,7 @@ void search_knowledge(const Model& model, const SolveOptions& options, const std
     // What was given up is no conflict of those with more patience.
     again = false;
     ChoiceSearch choices;
+    HeldBytes held(limits);
     const auto note = [&](ChosenSearch& search, const Remedies& failed) {
       if (failed.choices) choices.add_failure(search.choices(), search.choosing_calls());
       again |= failed.patience;
@@ -327,6 +347,7 @@ void search_knowledge(const Model& model, const SolveOptions& options, const std
     if (others >= options.choices) patience = 0;
     Remedies remedies = first.run(attempts, patience, solution);
     note(first, remedies);
+    held.tell(choices.bytes());
     for (bool more = true; more && (remedies.attempts || remedies.choices);) {
       more = false;
       for (int i = 0; i < kChoicesPerAttempt && others < options.choices; ++i) {
@@ -336,15 +357,18 @@ void search_knowledge(const Model& model, const SolveOptions& options, const std
         ++others;
         Solution other;
         other.statistics = solution.statistics;
-        const Limits::Scope scope(limits);
-        ChosenSearch search(model, options, std::move(*next), limits);
-        const Remedies failed = search.run(attempts, patience, other);
-        solution.statistics = other.statistics;
-        if (other.outcome == Outcome::Solved) {
-          solution = std::move(other);
-          return;
+        {
+          const Limits::Scope scope(limits);
+          ChosenSearch search(model, options, std::move(*next), limits);
+          const Remedies failed = search.run(attempts, patience, other);
+          solution.statistics = other.statistics;
+          if (other.outcome == Outcome::Solved) {
+            solution = std::move(other);
+            return;
+          }
+          note(search, failed);
         }
-        note(search, failed);
+        held.tell(choices.bytes());
       }
       if (remedies.attempts && attempts < options.attempts) {
         more = true;

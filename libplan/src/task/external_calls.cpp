@@ -16,6 +16,9 @@ namespace {
 /// Answers of each function that are asked for again; of those that take long to find, as paths do.
 constexpr std::uint8_t kConfirmed = 8, kLongConfirmed = 2;
 
+/// About as much as a node of a tree takes, with what it holds.
+constexpr std::size_t kNodeBytes = 96;
+
 /// Handle types whose values a query compares with something.
 void add_compared(const Model& model, const Query& q, std::set<Index>& types) {
   const auto add = [&](Index type) {
@@ -231,6 +234,8 @@ unsigned ExternalCalls::choice_of(const std::string& call) const {
   return found == choices_.end() ? 0 : found->second;
 }
 
+void ExternalCalls::count_noted(std::size_t nodes) { noted_bytes_ += nodes * kNodeBytes; }
+
 void ExternalCalls::blame(Index call, const std::vector<Index>& objects,
                           const std::vector<Index>& read, const ExternalResult& result,
                           bool handle) {
@@ -241,7 +246,10 @@ void ExternalCalls::blame(Index call, const std::vector<Index>& objects,
     const std::string name = text(made, objects);
     const auto [at, fresh] = choosing_index_.emplace(name, static_cast<Index>(choosing_.size()));
     own = at->second;
-    if (fresh) choosing_.emplace_back(name, ChoosingCall{choice_of(name)});
+    if (fresh) {
+      choosing_.emplace_back(name, ChoosingCall{choice_of(name)});
+      count_noted(2);
+    }
     ChoosingCall& chooses = choosing_[own].second;
     chooses.most = std::max(chooses.most, result.choices);
   }
@@ -251,14 +259,25 @@ void ExternalCalls::blame(Index call, const std::vector<Index>& objects,
   in_vain_ = value && !made.had_value ? 0 : in_vain_ + 1;
   made.had_value |= value;
   if (handle) {
-    Origin& origin = origins_[result.value];
-    if (own != kNone) origin.choosing.insert(own);
+    const auto [at, fresh] = origins_.try_emplace(result.value);
+    Origin& origin = at->second;
+    std::size_t added = fresh ? 1 : 0;
+    if (own != kNone && origin.choosing.insert(own).second) ++added;
     for (const Index object : read)
-      if (object >= model_.objects.size() || origins_.contains(object)) origin.read.insert(object);
-    if (by_choice) rest_on_choice_.insert(result.value);
+      if ((object >= model_.objects.size() || origins_.contains(object)) &&
+          origin.read.insert(object).second)
+        ++added;
+    if (by_choice && rest_on_choice_.insert(result.value).second) ++added;
+    count_noted(added);
   } else {
-    for (const Index object : read) ++failures_[object][call];
-    if (own != kNone) ++failures_of_own_choice_[own][call];
+    const auto add = [&](std::map<Index, std::map<Index, std::uint64_t>>& to, Index source) {
+      const auto [by, fresh] = to.try_emplace(source);
+      const auto [times, first] = by->second.try_emplace(call, 0);
+      ++times->second;
+      count_noted((fresh ? 1 : 0) + (first ? 1 : 0));
+    };
+    for (const Index object : read) add(failures_, object);
+    if (own != kNone) add(failures_of_own_choice_, own);
     made.failed_by_choice |= !value && by_choice;
   }
   const bool fails = !made.had_value && made.failed_by_choice;
@@ -325,7 +344,11 @@ void ExternalCalls::note(Index call, const std::vector<Index>& objects, const Fo
     refused_ = text(c, objects) + ": " + result.reason;
   if (result.kind == Answer::Kind::Impossible && result.listed && listed_.empty())
     listed_ = text(c, objects) + ": " + result.reason;
-  if (!handle) final_.insert(read.begin(), read.end());
+  if (!handle) {
+    const std::size_t before = final_.size();
+    final_.insert(read.begin(), read.end());
+    count_noted(final_.size() - before);
+  }
   const auto source = std::find_if(read.begin(), read.end(),
                                    [&](Index object) { return chosen_.contains(object); });
   if (result.kind != Answer::Kind::Value || (!result.chosen && source == read.end())) return;
@@ -335,7 +358,9 @@ void ExternalCalls::note(Index call, const std::vector<Index>& objects, const Fo
     return;
   }
   // What was known before may have been read before.
-  if (chosen_.emplace(result.value, by).second && !fresh) any_choice_ = by;
+  const bool is_new = chosen_.emplace(result.value, by).second;
+  if (is_new) count_noted(1);
+  if (is_new && !fresh) any_choice_ = by;
   chosen_types_.insert(range);
 }
 

@@ -107,7 +107,9 @@ class ExternalCalls {
 
   [[nodiscard]] std::uint64_t calls_made() const { return made_; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  [[nodiscard]] std::size_t bytes() const { return handles_.bytes() + answers_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return handles_.bytes() + answers_.bytes() + noted_bytes_;
+  }
   void seed(std::uint64_t seed, Choices choices) {
     seed_ = seed;
     choices_ = std::move(choices);
@@ -157,6 +159,8 @@ class ExternalCalls {
   /// Notes which calls choose, and which of their values an answer rests on.
   void blame(Index call, const std::vector<Index>& objects, const std::vector<Index>& read,
              const ExternalResult& result, bool handle);
+  /// So many nodes of trees were added to what is noted.
+  void count_noted(std::size_t nodes);
   /// Notes what rests on what was chosen.
   void note(Index call, const std::vector<Index>& objects, const Footprint& path,
             const ExternalResult& result, bool fresh);
@@ -199,6 +203,7 @@ class ExternalCalls {
   std::string any_choice_;  ///< a choice that anything may rest on
   std::string refused_, listed_;
   std::size_t refusals_ = 0;
+  std::size_t noted_bytes_ = 0;  ///< of what is noted about origins, choices and failures
   std::size_t bytes_told_ = 0;
   std::uint64_t made_ = 0;
   double seconds_ = 0;

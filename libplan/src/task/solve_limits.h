@@ -46,6 +46,8 @@ class Limits {
     held_ += more_bytes;
     if (check(0)) throw LimitExceeded();
   }
+  /// So much of what is held is not any more.
+  void give_back(std::size_t bytes) { held_ -= bytes; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
   /// What was held while it lives is given back when it ends.
