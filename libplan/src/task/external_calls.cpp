@@ -221,7 +221,7 @@ ExternalCalls::Reply ExternalCalls::make(Index call, const Word* state, unsigned
     missed_ = made;
     missed_call_ = text(c, objects);
   }
-  const std::size_t now = bytes();
+  const std::size_t now = bytes() + noted_bytes_;
   if (now > bytes_told_) {
     limits_.work(now - bytes_told_);
     bytes_told_ = now;

@@ -107,9 +107,8 @@ class ExternalCalls {
 
   [[nodiscard]] std::uint64_t calls_made() const { return made_; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  [[nodiscard]] std::size_t bytes() const {
-    return handles_.bytes() + answers_.bytes() + noted_bytes_;
-  }
+  /// Of handles and answers; what is noted about their origins is left out.
+  [[nodiscard]] std::size_t bytes() const { return handles_.bytes() + answers_.bytes(); }
   void seed(std::uint64_t seed, Choices choices) {
     seed_ = seed;
     choices_ = std::move(choices);
