@@ -26,16 +26,17 @@ def arguments():
     return parser.parse_args()
 
 
-def ours(o, scene, seed):
-    plan, report = o.out / f"ours-{seed}.plan.json", o.out / f"ours-{seed}.json"
-    files = [HERE / "domain.kpl", HERE / "problem.kpl", "--scene", scene]
+def ours(o, scene, seed, both):
+    name = f"ours-both-{seed}" if both else f"ours-{seed}"
+    plan, report = o.out / f"{name}.plan.json", o.out / f"{name}.json"
+    files = [HERE / "domain.kpl", HERE / ("problem-both.kpl" if both else "problem.kpl"), "--scene", scene]
     code = subprocess.run([o.bin / "kaboum-plan", "solve", *files, "--seed", str(seed), "--no-cache", "--quiet", "-o", plan,
                            "--report", report], check=False).returncode
     if code != 0:
         return {"solved": False}
     found = json.loads(report.read_text())
     subprocess.run([o.bin / "kaboum-plan", "check", *files, "--plan", plan, "--quiet"], check=True)
-    run = o.out / f"ours-{seed}.run.json"
+    run = o.out / f"{name}.run.json"
     subprocess.run([o.bin / "kaboum-plan", "run", *files, "--plan", plan, "--quiet", "--report", run], check=False)
     executed = json.loads(run.read_text())
     motions, actions = [], 0
@@ -49,10 +50,10 @@ def ours(o, scene, seed):
             "executed": [executed["samples"], executed["collisions"]]}
 
 
-def theirs(o, robot, name, seed):
-    file = o.out / f"{name}-{seed}.json"
+def theirs(o, robot, name, seed, both):
+    file = o.out / f"{name}{'-both' if both else ''}-{seed}.json"
     file.unlink(missing_ok=True)
-    subprocess.run([o.python, HERE / "theirs.py", o.pddlstream, robot, file, "--seed", str(seed)], check=False,
+    subprocess.run([o.python, HERE / "theirs.py", o.pddlstream, robot, file, "--seed", str(seed), *(["--both"] if both else [])], check=False,
                    env={**os.environ, "PYTHONHASHSEED": str(seed)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     found = json.loads(file.read_text()) if file.exists() else {"solved": False}
     if found["solved"]:
@@ -96,25 +97,29 @@ def main():
     poses = {t["name"]: judge.frame(t["pose"]["position"]) for t in world["objects"]}
     arm = judge.Arm(o.out / "iiwa14.urdf")
     seeds = range(1, o.seeds + 1)
-    results = {"ours, all links, at every instant": [ours(o, file, s) for s in seeds],
-               "PDDLStream, as it is: last link only": [theirs(o, o.pddlstream / scene.ROBOT, "theirs", s) for s in seeds],
-               "PDDLStream, all moving links": [theirs(o, o.out / "iiwa14-moving-links.urdf", "theirs-links", s) for s in seeds]}
-    pairs = {}
-    print("| | solved | planning, user s | whole process | actions | way [rad] | plans in contact | deeper than 1 mm |\n|---|---|---|---|---|---|---|---|")
-    for name, found in results.items():
-        for f in (f for f in found if f["solved"]):
-            f["way"] = sum(numpy.abs(numpy.diff(numpy.array(m["path"]), axis=0)).max(axis=1).sum() for m in f["motions"])
-            f["samples"], f["contact"], met, ends = judge.judged(arm, boxes, poses, f["motions"])
-            _, f["deep"], deep, _ = judge.judged(arm, boxes, poses, f["motions"], smaller=0.001)
-            f["end"] = ends["celery"][:3, 3].tolist()
-            pairs.setdefault(name, set()).update(met)
-        print(row(name, found), flush=True)
-    for name, met in pairs.items():
-        print(f"\n{name}, in contact: " + (", ".join(f"{a} and {b}" for a, b in sorted(met)) or "nothing"))
-    executed = [f["executed"] for f in results["ours, all links, at every instant"] if f["solved"]]
+    print("| | solved | planning, user s | whole process | actions | way [rad] | plans in contact | deeper than 1 mm |\n"
+          "|---|---|---|---|---|---|---|---|")
+    everything = {}
+    for both in (False, True):
+        blocks = "both blocks" if both else "one block"
+        results = {f"{blocks}: ours, all links, at every instant": [ours(o, file, s, both) for s in seeds],
+                   f"{blocks}: PDDLStream as it is, last link only": [theirs(o, o.pddlstream / scene.ROBOT, "theirs", s, both) for s in seeds],
+                   f"{blocks}: PDDLStream, all moving links": [theirs(o, o.out / "iiwa14-moving-links.urdf", "theirs-links", s, both) for s in seeds]}
+        for name, found in results.items():
+            for f in (f for f in found if f["solved"]):
+                f["way"] = sum(numpy.abs(numpy.diff(numpy.array(m["path"]), axis=0)).max(axis=1).sum() for m in f["motions"])
+                f["samples"], f["contact"], f["pairs"], _ = judge.judged(arm, boxes, poses, f["motions"])
+                f["deep"] = judge.judged(arm, boxes, poses, f.pop("motions"), smaller=0.001)[1]
+            print(row(name, found), flush=True)
+        everything.update(results)
+    for name, found in everything.items():
+        met = sorted({tuple(p) for f in found if f["solved"] for p in f["pairs"]})
+        print(f"\n{name}, in contact: " + (", ".join(f"{a} and {b}" for a, b in met) or "nothing"))
+    mine = [f for name, found in everything.items() if "ours" in name for f in found]
+    executed = [f["executed"] for f in mine if f["solved"]]
     print(f"\nkaboum-plan run, ours: {sum(e[0] for e in executed)} samples, {sum(e[1] for e in executed)} in contact")
-    (o.out / "results.json").write_text(json.dumps({n: [{k: v for k, v in f.items() if k != "motions"} for f in found] for n, found in results.items()}, indent=1))
-    return 0 if all(f["solved"] and not f["contact"] for f in results["ours, all links, at every instant"]) else 1
+    (o.out / "results.json").write_text(json.dumps(everything, indent=1))
+    return 0 if all(f["solved"] and not f["contact"] for f in mine) else 1
 
 
 sys.exit(main())

@@ -13,6 +13,8 @@ BOXES = {"sink": (MODELS / "sink.urdf", (-0.5, 0)), "stove": (MODELS / "stove.ur
          "radish": (MODELS / "drake/objects/block_for_pick_and_place.urdf", (0, -0.5)),
          "floor": (MODELS / "short_floor.urdf", (0, 0))}
 BLOCKS = ("celery", "radish")
+# Of sink and stove, which measure 0.25 m; theirs are drawn at random.
+PLACES = (("top", 0, 0.06), ("top2", 0, -0.06), ("top3", 0.06, 0), ("top4", -0.06, 0))
 TOOL = 0.045  # from link 7 to iiwa_link_ee_kuka, along z [m]
 GAP = 0.003  # between flange and block [m], more than the ε of the flange: theirs is half a millimetre
 
@@ -62,7 +64,7 @@ def make(root, folder, scene_tool, epsilon="0.002"):
             thing["features"] = [{"name": "bottom", "point": [0, 0, -size[2] / 2]}]
             thing["grasps"] = [{"name": f"top{k}", "position": [0, 0, size[2] / 2 + GAP], "rpy": [math.pi, 0, k * math.pi / 2]} for k in range(4)]
         elif name != "floor":
-            thing["features"] = [{"name": "top", "point": [0, 0, size[2] / 2]}]
+            thing["features"] = [{"name": name, "point": [x, y, size[2] / 2]} for name, x, y in PLACES]
         scene["objects"].append(thing)
     scene["allowed_contacts"] = [["arm/iiwa_link_0", "floor"]]
     file.write_text(json.dumps(scene, indent=1) + "\n")

@@ -48,6 +48,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--algorithm", default="adaptive")
+    parser.add_argument("--both", action="store_true", help="both blocks are to be cooked, not the one of the example")
     parser.add_argument("--max-time", type=float, default=120)
     o = parser.parse_args()
     robot_file, out = str(o.robot.resolve()), o.out.resolve()
@@ -66,6 +67,8 @@ def main():
     with open(os.devnull, "w", encoding="utf-8") as nowhere, contextlib.redirect_stdout(nowhere):
         robot, names, movable = kuka.load_world()
         problem = kuka.pddlstream_from_problem(robot, movable=movable)
+        if o.both:
+            problem = problem._replace(goal=(*problem.goal, ("Cooked", movable[1])))
         objects = {names[b]: pose_json(utils.get_pose(b)) for b in movable}
         before = user_seconds()
         plan, _, _ = kuka.solve(problem, algorithm=o.algorithm, unit_costs=False, success_cost=kuka.INF, max_time=o.max_time)
