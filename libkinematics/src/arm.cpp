@@ -146,10 +146,18 @@ Transform forward(const Arm& arm, std::span<const double> q) {
   return pose * arm.tool;
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Arm& arm, std::span<const double> q,
-                                                  Transform* pose) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> out(6, static_cast<Eigen::Index>(arm.axes.size()));
-  Transform moved;
+Jacobian jacobian(const Arm& arm, std::span<const double> q, Transform* pose) {
+  Jacobian out;
+  Transform tool;
+  jacobian(arm, {}, q, out, tool);
+  if (pose != nullptr) *pose = tool;
+  return out;
+}
+
+void jacobian(const Arm& arm, const Transform& base, std::span<const double> q, Jacobian& out,
+              Transform& pose) {
+  out.resize(6, static_cast<Eigen::Index>(arm.axes.size()));
+  Transform moved = base;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     const Axis& axis = arm.axes[i];
     const auto column = static_cast<Eigen::Index>(i);
@@ -158,15 +166,13 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Arm& arm, std::span<cons
     out.col(column).tail<3>() = axis.turns ? direction : Vec3::Zero();
     moved = moved * motion(axis, q[i]);
   }
-  const Transform tool = moved * arm.tool;
+  pose = moved * arm.tool;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     if (!arm.axes[i].turns) continue;
     auto column = out.col(static_cast<Eigen::Index>(i));
-    const Vec3 direction = column.tail<3>(), lever = tool.translation - column.head<3>();
+    const Vec3 direction = column.tail<3>(), lever = pose.translation - column.head<3>();
     column.head<3>() = direction.cross(lever);
   }
-  if (pose != nullptr) *pose = tool;
-  return out;
 }
 
 double reach(const Arm& arm) {

@@ -2,6 +2,7 @@
 // Source: [gaschler2016] App. A.3, with the corrections and for the families that
 // docs/algorithms/inverse-kinematics.md derives. x1 … z4 are axes of the frames there.
 #include <kaboum/kinematics/closed_form.h>
+#include <kaboum/kinematics/copies.h>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -91,6 +92,10 @@ class Solver {
     z_ = flange.linear.col(2);
     t_ = flange.translation;
     reach_ = f_.reach;
+    // Elsewhere Newton's method moves what is found here.
+    leave_outside_ = options.leave_outside &&
+                     form.model_error.position <= options.bound / 2 * form.reach &&
+                     form.model_error.rotation <= options.bound / 2;
   }
 
   void spherical_wrist() {
@@ -142,6 +147,13 @@ class Solver {
     return {q, std::sin(angle), std::cos(angle)};
   }
 
+  /// True if a joint's value is to be left out with all that go with it.
+  bool is_left(std::size_t joint) {
+    if (!leave_outside_ || has_copy(f_.arm.axes[joint], turn_[joint].q, kOnLimit)) return false;
+    out_.left_outside = true;
+    return true;
+  }
+
   /// `along_` is what joint 1 leaves of the wrist's place: c0 tx + s0 ty.
   template <class Next>
   void for_each_shoulder(double side, const Next& next) {
@@ -172,7 +184,7 @@ class Solver {
   void for_each_elbow(double x, double y, double second, double bend, const Next& next) {
     const double v = x * x + y * y;
     double cosine = (v - square(f_.a2) - square(second)) / (2 * f_.a2 * second);
-    if (!(std::abs(cosine) <= 1 + kBorder)) return;
+    if (!(std::abs(cosine) <= 1 + kBorder) || is_left(0)) return;
     cosine = std::min(1.0, std::max(-1.0, cosine));
     const double sine = std::sqrt(1 - square(cosine)), inner = std::atan2(sine, cosine);
     const double k1 = f_.a2 + second * cosine;
@@ -184,7 +196,9 @@ class Solver {
     for (int branch = 0; branch < (single ? 1 : 2); ++branch) {
       const double epsilon = branch == 0 ? 1 : -1, k2 = epsilon * second * sine;
       turn_[1] = folded ? kept(1) : turn(1, std::atan2(k1 * y - k2 * x, k1 * x + k2 * y));
+      if (is_left(1)) continue;
       turn_[2] = turn(2, epsilon * inner - bend);
+      if (is_left(2)) continue;
       c12_ = turn_[1].c * turn_[2].c - turn_[1].s * turn_[2].s;
       s12_ = turn_[1].s * turn_[2].c + turn_[1].c * turn_[2].s;
       next();
@@ -270,6 +284,8 @@ class Solver {
     if (position > options_.bound * reach_ + 4 * model.position ||
         rotation > options_.bound + 4 * model.rotation)
       return;
+    for (std::size_t i = 3; i < f_.arm.axes.size(); ++i)
+      if (is_left(i)) return;
     Solution& out = out_.add();
     for (std::size_t i = 0; i < 6; ++i) out.q[i] = turn_[i].q;
     out.position_error = position + model.position;
@@ -284,6 +300,7 @@ class Solver {
   const SolveOptions& options_;
   Solutions& out_;
   Vec3 n_, s_, z_, t_;  ///< the target: axes and origin of the last frame, in the first
+  bool leave_outside_ = false;
   double reach_ = 0, along_ = 0, c12_ = 1, s12_ = 0;
   unsigned shoulder_ = kRegular, elbow_ = kRegular, wrist_ = kRegular;
   unsigned free_shoulder_ = 0, free_elbow_ = 0, free_wrist_ = 0;

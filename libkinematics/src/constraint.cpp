@@ -19,11 +19,11 @@ struct PosedFeature {
 };
 
 /// Two directions perpendicular to d: a function of d alone, so that they turn with the frame.
+/// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 std::pair<Vec3, Vec3> perpendiculars(const Vec3& d) {
-  Eigen::Index least = 0;
-  d.cwiseAbs().minCoeff(&least);
-  const Vec3 a = d.cross(Vec3::Unit(least)).normalized();
-  return {a, d.cross(a)};
+  const double sign = std::copysign(1.0, d.z()), a = -1 / (sign + d.z()), b = d.x() * d.y() * a;
+  return {{1 + sign * d.x() * d.x() * a, sign * b, -sign * d.x()},
+          {b, sign + d.y() * d.y() * a, -d.y()}};
 }
 
 Vec3 onto_plane(const Surface& s, const Vec3& p) {
@@ -57,14 +57,16 @@ PosedFeature see(const Feature& feature, const Transform& frame) {
 class Rows {
  public:
   Rows(const PosedFeature& a, const PosedFeature& b, double length)
-      : a_(a), b_(b), between_(a.point - b.point), length_(length) {}
+      : a_(a), b_(b), between_(a.point - b.point), length_(length) {
+    resize(4);
+  }
 
   /// u · (p₁ − p₂), u fixed to the first frame, to the second, or to neither.
   void along(const Vec3& u, int frame) {
     add(u.dot(between_) / length_);
     add_point(u / length_);
-    if (frame == 1) first_.back().tail<3>() += u.cross(between_ / length_).transpose();
-    if (frame == 2) second_.back().tail<3>() += u.cross(between_ / length_).transpose();
+    if (frame == 1) turn_first() += u.cross(between_ / length_).transpose();
+    if (frame == 2) turn_second() += u.cross(between_ / length_).transpose();
   }
   /// How far p₁ is beside a surface of the second frame, in its plane.
   void beside(const Surface& surface, const Transform& frame) {
@@ -86,8 +88,8 @@ class Rows {
   void dot(const Vec3& u, const Vec3& v) {
     add(u.dot(v));
     const Vec3 c = u.cross(v);
-    first_.back().tail<3>() = c.transpose();
-    second_.back().tail<3>() = -c.transpose();
+    turn_first() = c.transpose();
+    turn_second() = -c.transpose();
   }
   /// The angle between u and v, or what it lacks to a right one, less a value.
   void angle(const Vec3& u, const Vec3& v, bool complement, double value) {
@@ -96,81 +98,66 @@ class Rows {
     c = sine > 1e-12 ? Vec3(c / sine) : perpendiculars(u).first;  // aligned: any way out will do
     const double sign = complement ? -1 : 1;
     add((complement ? kPi / 2 - angle : angle) - value);
-    first_.back().tail<3>() = -sign * c.transpose();
-    second_.back().tail<3>() = sign * c.transpose();
+    turn_first() = -sign * c.transpose();
+    turn_second() = sign * c.transpose();
   }
   /// Replaces all rows by their norm less a value [length]; where it is 0, any way out will do.
   void norm(double value) {
     double norm = 0;
-    for (const double v : value_) norm += v * v;
+    for (Eigen::Index i = 0; i < size_; ++i) norm += out_.value[i] * out_.value[i];
     norm = std::sqrt(norm);
-    Eigen::Matrix<double, 1, 6> first = first_.at(0), second = second_.at(0);
+    Eigen::Matrix<double, 1, 6> first = out_.first.row(0), second = out_.second.row(0);
     if (norm > 1e-14) {
       first.setZero();
       second.setZero();
-      for (std::size_t i = 0; i < value_.size(); ++i) {
-        first += value_.at(i) / norm * first_.at(i);
-        second += value_.at(i) / norm * second_.at(i);
+      for (Eigen::Index i = 0; i < size_; ++i) {
+        first += out_.value[i] / norm * out_.first.row(i);
+        second += out_.value[i] / norm * out_.second.row(i);
       }
     }
-    value_.clear();
-    first_.clear();
-    second_.clear();
+    size_ = 0;
     add(norm - value / length_);
-    first_.back() = first;
-    second_.back() = second;
+    out_.first.row(0) = first;
+    out_.second.row(0) = second;
   }
 
-  [[nodiscard]] Cost result() const {
-    Cost out;
-    const auto n = static_cast<Eigen::Index>(value_.size());
-    out.value.resize(n);
-    out.first.resize(n, 6);
-    out.second.resize(n, 6);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      out.value[i] = value_.at(i);
-      out.first.row(i) = first_.at(i);
-      out.second.row(i) = second_.at(i);
-    }
-    return out;
+  Cost result() {
+    resize(size_);
+    return out_;
   }
 
  private:
-  /// At most four of something, without memory of its own.
-  template <class T>
-  class Four {
-   public:
-    void push_back(const T& x) { items_[size_++] = x; }
-    [[nodiscard]] T& back() { return items_[size_ - 1]; }
-    [[nodiscard]] const T& at(std::size_t i) const { return items_[i]; }
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const T* begin() const { return items_; }
-    [[nodiscard]] const T* end() const { return items_ + size_; }
-    void clear() { size_ = 0; }
-
-   private:
-    T items_[4];
-    std::size_t size_ = 0;
-  };
-
-  void add(double value) {
-    value_.push_back(value);
-    first_.push_back(Eigen::Matrix<double, 1, 6>::Zero());
-    second_.push_back(Eigen::Matrix<double, 1, 6>::Zero());
+  /// What is there stays.
+  void resize(Eigen::Index rows) {
+    out_.value.conservativeResize(rows);
+    out_.first.conservativeResize(rows, Eigen::NoChange);
+    out_.second.conservativeResize(rows, Eigen::NoChange);
   }
+  void add(double value) {
+    out_.value[size_] = value;
+    out_.first.row(size_).setZero();
+    out_.second.row(size_).setZero();
+    ++size_;
+  }
+  using Part = Eigen::Block<Cost::Derivative, 1, 3>;
+  // The last row, by velocities of the origins and by angular velocities.
+  Part move_first() { return out_.first.block<1, 3>(size_ - 1, 0); }
+  Part turn_first() { return out_.first.block<1, 3>(size_ - 1, 3); }
+  Part move_second() { return out_.second.block<1, 3>(size_ - 1, 0); }
+  Part turn_second() { return out_.second.block<1, 3>(size_ - 1, 3); }
   /// g · (velocity of p₁ − velocity of p₂).
   void add_point(const Vec3& g) {
-    first_.back().head<3>() += g.transpose();
-    first_.back().tail<3>() += (a_.point - a_.origin).cross(g).transpose();
-    second_.back().head<3>() -= g.transpose();
-    second_.back().tail<3>() -= (b_.point - b_.origin).cross(g).transpose();
+    move_first() += g.transpose();
+    turn_first() += (a_.point - a_.origin).cross(g).transpose();
+    move_second() -= g.transpose();
+    turn_second() -= (b_.point - b_.origin).cross(g).transpose();
   }
 
   const PosedFeature &a_, &b_;
   Vec3 between_;
   double length_;
-  Four<double> value_;
-  Four<Eigen::Matrix<double, 1, 6>> first_, second_;
+  Cost out_;
+  Eigen::Index size_ = 0;
 };
 
 /// Kinds of the two features as one number: point 0, line 1, plane 2 (of surfaces, theirs).

@@ -56,12 +56,18 @@ std::vector<double> values(const Axis& axis, double q, std::size_t most) {
 std::optional<std::vector<double>> nearest_copy(const Arm& arm, std::span<const double> q,
                                                 std::span<const double> reference) {
   std::vector<double> out(arm.axes.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  if (!find_nearest_copy(arm, q, reference, out)) return std::nullopt;
+  return out;
+}
+
+bool find_nearest_copy(const Arm& arm, std::span<const double> q, std::span<const double> reference,
+                       std::span<double> out) {
+  for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     const auto value = nearest(arm.axes[i], q[i], reference[i]);
-    if (!value) return std::nullopt;
+    if (!value) return false;
     out[i] = *value;
   }
-  return out;
+  return true;
 }
 
 std::vector<std::vector<double>> copies(const Arm& arm, std::span<const double> q,

@@ -9,22 +9,22 @@ namespace {
 using Kind = FrameId::Kind;
 
 void add_columns(const Frame* frame, const Cost::Derivative& by_twist, Eigen::Index row,
-                 Eigen::MatrixXd& out) {
+                 Costs::Derivative& out) {
   if (frame == nullptr || frame->count == 0) return;
-  auto block = out.block(row, frame->first, by_twist.rows(), frame->count);
-  if (frame->rigid)
-    block += by_twist;
-  else
-    block.noalias() += by_twist * frame->twists;
+  for (Eigen::Index i = 0; i < by_twist.rows(); ++i) {
+    if (frame->rigid) {
+      out.block<1, 6>(row + i, frame->first) += by_twist.row(i);
+      continue;
+    }
+    for (Eigen::Index k = 0; k < frame->count; ++k)
+      out(row + i, frame->first + k) += by_twist.row(i).dot(frame->twists.col(k));
+  }
 }
 
-/// Pose and derivative, in the world, of the tool of an arm.
-void place_end(const Arm& arm, const Transform& base, std::span<const double> q, Frame& frame) {
-  Transform pose;
-  frame.twists = jacobian(arm, q, &pose);
-  frame.twists.topRows<3>() = base.linear * frame.twists.topRows<3>();
-  frame.twists.bottomRows<3>() = base.linear * frame.twists.bottomRows<3>();
-  frame.pose = base * pose;
+Cost cost_at(const Constraint& c, const Frames& frames, double length) {
+  const Transform world;
+  const Frame *a = frames.find(c.first.frame), *b = frames.find(c.second.frame);
+  return cost(c, a != nullptr ? a->pose : world, b != nullptr ? b->pose : world, length);
 }
 
 /// Fixed to another frame, in which its own has this pose.
@@ -77,10 +77,17 @@ void Frames::add_object() {
 }
 
 void Frames::place(const PlacedArm& robot, std::size_t index, const std::vector<double>& q) {
-  place_end(robot.arm, robot.base, q, tools[index]);
+  jacobian(robot.arm, robot.base, q, tools[index].twists, tools[index].pose);
   for (std::size_t k = 0; k < robot.links.size(); ++k)
-    place_end(arm_to(robot.arm, robot.links[k]), robot.base,
-              std::span(q).first(robot.links[k].axes), links[index][k]);
+    jacobian(arm_to(robot.arm, robot.links[k]), robot.base, std::span(q).first(robot.links[k].axes),
+             links[index][k].twists, links[index][k].pose);
+}
+
+void Frames::place_poses(const PlacedArm& robot, std::size_t index, const std::vector<double>& q) {
+  tools[index].pose = robot.base * forward(robot.arm, q);
+  for (std::size_t k = 0; k < robot.links.size(); ++k)
+    links[index][k].pose = robot.base * forward(arm_to(robot.arm, robot.links[k]),
+                                                std::span(q).first(robot.links[k].axes));
 }
 
 const Frame* Frames::find(const FrameId& id) const {
@@ -98,21 +105,31 @@ const Frame* Frames::find(const FrameId& id) const {
 
 void assemble(const std::vector<Constraint>& constraints, const Frames& frames, double length,
               Costs& out) {
-  const Transform world;
-  out.value.resize(static_cast<Eigen::Index>(4 * constraints.size()));
+  // As many rows as the last time: memory is used again.
   out.derivative.setZero(out.value.size(), frames.unknowns);
   Eigen::Index row = 0;
   for (const Constraint& c : constraints) {
-    const Frame *a = frames.find(c.first.frame), *b = frames.find(c.second.frame);
-    const Cost cost =
-        kinematics::cost(c, a != nullptr ? a->pose : world, b != nullptr ? b->pose : world, length);
+    const Cost cost = cost_at(c, frames, length);
+    if (row + cost.value.size() > out.value.size()) {
+      out.value.conservativeResize(row + cost.value.size());
+      out.derivative.conservativeResizeLike(
+          Costs::Derivative::Zero(out.value.size(), frames.unknowns));
+    }
     out.value.segment(row, cost.value.size()) = cost.value;
-    add_columns(a, cost.first, row, out.derivative);
-    add_columns(b, cost.second, row, out.derivative);
+    add_columns(frames.find(c.first.frame), cost.first, row, out.derivative);
+    add_columns(frames.find(c.second.frame), cost.second, row, out.derivative);
     row += cost.value.size();
   }
   out.value.conservativeResize(row);
   out.derivative.conservativeResize(row, Eigen::NoChange);
+}
+
+double largest_cost(const std::vector<Constraint>& constraints, const Frames& frames,
+                    double length) {
+  double most = 0;
+  for (const Constraint& c : constraints)
+    for (const double v : cost_at(c, frames, length).value) most = larger(most, std::abs(v));
+  return most;
 }
 
 std::vector<Constraint> without_end_links(const ConstraintProblem& problem) {

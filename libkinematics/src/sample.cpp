@@ -6,7 +6,6 @@
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/sample.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -92,15 +91,31 @@ Costs evaluate(const ConstraintProblem& problem, const Placement& at, double len
 
 double Costs::largest() const {
   double most = 0;
-  for (const double v : value)
-    if (!(std::abs(v) <= most)) {
-      if (std::isnan(v)) return v;
-      most = std::abs(v);
-    }
+  for (const double v : value) most = larger(most, std::abs(v));
   return most;
 }
 
 namespace {
+
+/// Solves A x = b for A symmetric and positive definite: L D Lᵀ in place of A, x in place of b.
+/// False: rounding has made A indefinite.
+bool solve_in_place(Eigen::MatrixXd& a, Eigen::VectorXd& b) {
+  const Eigen::Index n = b.size();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (!(a(k, k) > 0)) return false;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      const double factor = a(i, k) / a(k, k);
+      for (Eigen::Index j = i; j < n; ++j) a(j, i) -= factor * a(j, k);
+      b[i] -= factor * b[k];
+    }
+  }
+  for (Eigen::Index k = n; k-- > 0;) {
+    double sum = b[k];
+    for (Eigen::Index i = k + 1; i < n; ++i) sum -= a(i, k) * b[i];
+    b[k] = sum / a(k, k);
+  }
+  return true;
+}
 
 /// Placements at which motions are tried, and starts for them at most.
 constexpr int kProbes = 3, kProbeStarts = 12;
@@ -138,9 +153,17 @@ class ConstraintSampler::Impl {
         if (id.kind == Kind::Link) forms_[id.index].reset();
     if (!(length_ > 0)) length_ = 1;
     find_aims();
-    for (std::size_t i = 0; i < problem_.robots.size(); ++i)
+    for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       frames_.add_robot(problem_.robots[i], forms_[i].has_value());
-    for (std::size_t i = 0; i < problem_.objects.size(); ++i) frames_.add_object();
+      check_.add_robot(problem_.robots[i], false);
+    }
+    for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
+      frames_.add_object();
+      check_.add_object();
+    }
+    joints_.resize(problem_.robots.size());
+    frames_before_ = frames_;
+    joints_before_ = joints_;
     find_motions();
   }
 
@@ -222,7 +245,6 @@ class ConstraintSampler::Impl {
   /// Random joints, and the poses that they give; random poses of objects; random points of
   /// surfaces.
   void start() {
-    joints_.clear();
     for (const Aim& aim : aims_) {
       Constraint& c = constraints_[aim.constraint];
       const double u = random_.between(0, 1), v = random_.between(0, 1);
@@ -232,13 +254,13 @@ class ConstraintSampler::Impl {
     }
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       const PlacedArm& robot = problem_.robots[i];
-      std::vector<double> q;
+      std::vector<double>& q = joints_[i];
+      q.clear();
       for (const Axis& axis : robot.arm.axes) q.push_back(random_value(axis, length_, random_));
       if (forms_[i])
         frames_.tools[i].pose = robot.base * forward(robot.arm, q);
       else
         frames_.place(robot, i, q);
-      joints_.push_back(std::move(q));
     }
     for (std::size_t i = 0; i < problem_.objects.size(); ++i) {
       const FreeObject& object = problem_.objects[i];
@@ -249,13 +271,17 @@ class ConstraintSampler::Impl {
     }
   }
 
-  /// All unknowns after a step.
+  /// All unknowns after a step; what they were is kept.
   void step(const Eigen::VectorXd& change) {
+    std::swap(frames_, frames_before_);
+    std::swap(joints_, joints_before_);
+    std::swap(costs_, costs_before_);
     for (std::size_t i = 0; i < problem_.robots.size(); ++i) {
       Frame& frame = frames_.tools[i];
       const auto part = change.segment(frame.first, frame.count);
+      joints_[i] = joints_before_[i];
       if (frame.rigid) {
-        frame.pose = moved(frame.pose, part);
+        frame.pose = moved(frames_before_.tools[i].pose, part);
         continue;
       }
       const Arm& arm = problem_.robots[i].arm;
@@ -266,8 +292,16 @@ class ConstraintSampler::Impl {
       }
       frames_.place(problem_.robots[i], i, joints_[i]);
     }
-    for (Frame& frame : frames_.objects)
-      frame.pose = moved(frame.pose, change.segment(frame.first, frame.count));
+    for (std::size_t i = 0; i < frames_.objects.size(); ++i) {
+      Frame& frame = frames_.objects[i];
+      frame.pose = moved(frames_before_.objects[i].pose, change.segment(frame.first, frame.count));
+    }
+    assemble(constraints_, frames_, length_, costs_);
+  }
+  void take_back_step() {
+    std::swap(frames_, frames_before_);
+    std::swap(joints_, joints_before_);
+    std::swap(costs_, costs_before_);
   }
 
   /// Joints on a limit that a step would take past it do not take part in it.
@@ -287,34 +321,45 @@ class ConstraintSampler::Impl {
     }
   }
 
-  /// Levenberg–Marquardt with the smallest step that does it: −Jᵀ(JJᵀ + λ)⁻¹ f.
+  /// The least change of the unknowns that leads to the costs' zero, to first order and damped:
+  /// −Jᵀ(JJᵀ + λ)⁻¹ f. False where rounding leaves none.
+  bool find_change(double damping) {
+    const Costs::Derivative& j = costs_.derivative;
+    normal_.resize(j.rows(), j.rows());
+    for (Eigen::Index a = 0; a < j.rows(); ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b) normal_(a, b) = j.row(a).dot(j.row(b));
+      normal_(a, a) += damping;
+    }
+    multipliers_ = costs_.value;
+    if (!solve_in_place(normal_, multipliers_)) return false;
+    change_.setZero(j.cols());
+    for (Eigen::Index a = 0; a < j.rows(); ++a) change_ -= multipliers_[a] * j.row(a).transpose();
+    return true;
+  }
+
+  /// Levenberg–Marquardt.
   bool project() {
     assemble(constraints_, frames_, length_, costs_);
+    if (costs_.value.size() == 0) return true;
     double damping = 1e-6;
     for (int i = 0; i < options_.iterations; ++i) {
-      if (!(costs_.value.size() > 0)) return true;
       if (costs_.largest() <= options_.bound / 100) break;
       freeze(costs_);
-      normal_.noalias() = costs_.derivative * costs_.derivative.transpose();
-      normal_.diagonal().array() += damping;
-      change_.noalias() = -costs_.derivative.transpose() * normal_.ldlt().solve(costs_.value);
+      if (!find_change(damping)) {
+        damping *= 32;
+        continue;
+      }
       const double longest = change_.cwiseAbs().maxCoeff();
       if (!std::isfinite(longest)) return false;
       if (longest > 1) change_ /= longest;  // a radian, or a unit of length, at a time
-      before_.joints = joints_;
-      const Frames was = frames_;
-      const double cost = costs_.value.norm();
       step(change_);
-      assemble(constraints_, frames_, length_, costs_);
-      if (costs_.value.norm() < cost) {
+      if (costs_.value.norm() < costs_before_.value.norm()) {
         damping = std::max(damping / 8, 1e-14);
         continue;
       }
       if (damping > 1e3 || longest < 1e-13) return false;  // a local minimum
       damping *= 32;
-      frames_ = was;
-      joints_ = before_.joints;
-      assemble(constraints_, frames_, length_, costs_);
+      take_back_step();
     }
     return costs_.largest() <= options_.bound / 10;
   }
@@ -360,26 +405,31 @@ class ConstraintSampler::Impl {
     std::vector<double>& q = joints_[i];
     SolveOptions options;
     for (std::size_t k = 0; k < q.size(); ++k) options.reference[k] = q[k];  // random values
+    options.leave_outside = options_.limits;
     const Solutions found =
         solve(form, inverse(problem_.robots[i].base) * frames_.tools[i].pose, options);
-    if (found.empty()) return Solvability::None;
+    if (found.empty()) return found.left_outside ? Solvability::Outside : Solvability::None;
     const std::size_t first = random_.index(found.size());
+    Joints near;
     for (std::size_t n = 0; n < found.size(); ++n) {
       const Solution& s = found[(first + n) % found.size()];
       if (!options_.limits)
         return q.assign(s.q.begin(), s.q.begin() + q.size()), Solvability::Within;
       // Of whole turns, those near the random start.
-      const std::vector<double> start = q;
-      if (auto near = nearest_copy(form.arm, {s.q.data(), q.size()}, start)) {
-        q = std::move(*near);
+      if (find_nearest_copy(form.arm, {s.q.data(), q.size()}, q, near)) {
+        q.assign(near.begin(), near.begin() + q.size());
         return Solvability::Within;
       }
     }
     return Solvability::Outside;
   }
 
-  [[nodiscard]] double error_of(const Placement& at) const {
-    return evaluate(problem_, at, length_).largest();
+  /// The largest cost, computed anew by forward kinematics.
+  double error_of(const Placement& at) {
+    for (std::size_t i = 0; i < at.joints.size(); ++i)
+      check_.place_poses(problem_.robots[i], i, at.joints[i]);
+    for (std::size_t i = 0; i < at.objects.size(); ++i) check_.objects[i].pose = at.objects[i];
+    return largest_cost(problem_.constraints, check_, length_);
   }
 
   ConstraintProblem problem_;
@@ -399,11 +449,15 @@ class ConstraintSampler::Impl {
   std::vector<FreeMotions> motions_;  ///< of the robots that have closed forms
   std::vector<ReachBall> balls_;
   Frames frames_;
+  Frames check_;  ///< of a sample
   std::vector<std::vector<double>> joints_;
-  Placement before_;
   Costs costs_;
+  // Of the step before; and what a step is made of.
+  Frames frames_before_;
+  std::vector<std::vector<double>> joints_before_;
+  Costs costs_before_;
   Eigen::MatrixXd normal_;
-  Eigen::VectorXd change_;
+  Eigen::VectorXd multipliers_, change_;
 };
 
 ConstraintSampler::ConstraintSampler(ConstraintProblem problem, const SampleOptions& options)

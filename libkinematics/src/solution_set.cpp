@@ -621,14 +621,8 @@ class Exploration {
 bool is_at_limit(const Arm& arm, const Solution& s) {
   bool outside = false;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
-    const Axis& axis = arm.axes[i];
-    const auto within = [&](double slack) {
-      const double turn = 2 * kPi;
-      return std::floor((axis.upper + slack - s.q[i]) / turn) >=
-             std::ceil((axis.lower - slack - s.q[i]) / turn);
-    };
-    if (!within(std::max(kOnLimit, s.accuracy))) return false;
-    outside |= !within(kOnLimit);
+    if (!has_copy(arm.axes[i], s.q[i], std::max(kOnLimit, s.accuracy))) return false;
+    outside |= !has_copy(arm.axes[i], s.q[i], kOnLimit);
   }
   return outside;
 }

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <kaboum/kinematics/copies.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,38 @@ TEST_P(Families, EverySolutionReachesThePoseAndNoneIsMissed) {
   }
   // Random poses have most of the branches.
   EXPECT_GT(static_cast<double>(all) / static_cast<double>(poses), n == 6 ? 5 : 2);
+}
+
+TEST_P(Families, WhatIsLeftOutIsOutsideTheLimitsAndAllOfThat) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const std::size_t n = GetParam() == Family::FiveAxes ? 5 : 6;
+  std::size_t kept = 0, left = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    Arm arm = arm_of(random_arm(GetParam(), random));
+    for (Axis& axis : arm.axes) {
+      axis.lower = 5 * unit(random);  // some limits have nothing but whole turns apart
+      axis.upper = axis.lower + 3 + 2 * unit(random);
+    }
+    const auto form = recognise(arm);
+    ASSERT_TRUE(form);
+    const std::vector<double> q = random_joints(random, n, std::numbers::pi);
+    const Transform target = kinematics::forward(arm, q);
+    SolveOptions options;
+    options.leave_outside = true;
+    const Solutions all = solve(*form, target), within = solve(*form, target, options);
+    std::vector<Joints> expected, got;
+    for (const Solution& s : all)
+      if (nearest_copy(arm, {s.q.data(), n}, q)) expected.push_back(s.q);
+    for (const Solution& s : within) got.push_back(s.q);
+    EXPECT_EQ(got, expected);
+    EXPECT_TRUE(within.left_outside || within.size() == all.size());
+    EXPECT_FALSE(all.left_outside);
+    kept += within.size();
+    left += all.size() - within.size();
+  }
+  EXPECT_GT(kept, 15U);
+  EXPECT_GT(left, 100U);
 }
 
 INSTANTIATE_TEST_SUITE_P(ClosedForm, Families,

@@ -63,11 +63,15 @@ Arm arm_of_proximal(std::span<const robot::Dh> rows);
 /// @pre one value per axis. [rad or length]
 Transform forward(const Arm& arm, std::span<const double> q);
 
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 /// 6 × n: rows 0–2 the velocity of the tool's origin, rows 3–5 its angular velocity, both in the
 /// base's frame. `pose` receives the tool's pose when it is not null.
 /// @pre one value per axis.
-Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Arm& arm, std::span<const double> q,
-                                                  Transform* pose = nullptr);
+Jacobian jacobian(const Arm& arm, std::span<const double> q, Transform* pose = nullptr);
+/// The same in a frame where the base has a pose, into what is given, whose memory is used again.
+void jacobian(const Arm& arm, const Transform& base, std::span<const double> q, Jacobian& out,
+              Transform& pose);
 
 /// No point of the arm's axes at the tool is farther from an axis: the sum of the distances from
 /// axis to axis and to the tool's origin, with the ranges of joints that move along. [length]

@@ -59,6 +59,8 @@ class Solutions {
 
   /// Somewhere a joint is nearly free: what rounding has done to the target decides what is found.
   bool nearly_singular = false;
+  /// Some were left out: SolveOptions::leave_outside.
+  bool left_outside = false;
 
  private:
   std::array<Solution, 8> items_;
@@ -96,6 +98,9 @@ struct SolveOptions {
   Joints reference{};  ///< what free joints keep [rad]
   /// Solutions are dropped when they are farther off. The position's is times the arm's reach.
   double bound = 1e-9;
+  /// Configurations that no whole turns bring within the joints' limits are left out as soon as
+  /// that is known, which is faster. Where the model is not the arm but near it, none is.
+  bool leave_outside = false;
 };
 
 /// All configurations that reach a pose, limits and whole turns apart: up to 8 with six axes, up to

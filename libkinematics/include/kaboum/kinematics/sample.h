@@ -36,8 +36,9 @@ struct Placement {
 /// The costs of all constraints, one below the other, and their derivative by all joints and then
 /// by the twists of all objects (velocity of the origin, angular velocity).
 struct Costs {
+  using Derivative = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::VectorXd value;
-  Eigen::MatrixXd derivative;
+  Derivative derivative;
 
   /// The largest magnitude; 0 without costs; NaN when one of them is.
   [[nodiscard]] double largest() const;
