@@ -42,11 +42,8 @@ double random_angle(const WorldAxis& axis, const Vec3& p, const ReachBall& ball,
 /// A length, uniform among those that move p along the direction into the ball; the one that brings
 /// it nearest to the centre where there are none.
 double random_length(const Vec3& direction, const Vec3& p, const ReachBall& ball, Random& random) {
-  const Vec3 from = p - ball.centre;
-  const double along = from.dot(direction);
-  const double rest = along * along - from.squaredNorm() + ball.radius * ball.radius;
-  if (!(rest > 0)) return -along;
-  return -along + random.between(-std::sqrt(rest), std::sqrt(rest));
+  const Chord c = chord(p - ball.centre, direction, ball.radius);
+  return c.half > 0 ? c.middle + random.between(-c.half, c.half) : c.middle;
 }
 
 std::array<Vec3, 3> directions_of(const Feature& feature) {

@@ -6,15 +6,10 @@
 #include <functional>
 #include <vector>
 
+#include "reach_ball.h"
+
 // What constraints leave free of a tool's pose. Internal to kaboum_kinematics.
 namespace kaboum::kinematics {
-
-/// A ball that holds a point of the tool whatever the joints are, in the world.
-struct ReachBall {
-  Vec3 point = Vec3::Zero();   ///< in the tool's frame
-  Vec3 centre = Vec3::Zero();  ///< in the world
-  double radius = 0;           ///< [length]
-};
 
 /// Motions of a tool that keep all of its constraints: turns about and slides along axes of their
 /// features. They are found by trying them where the constraints are met.

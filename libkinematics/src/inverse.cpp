@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/inverse.h>
+#include <kaboum/kinematics/redundant.h>
 
 #include <algorithm>
 #include <utility>
@@ -22,6 +23,7 @@ struct InverseSearch {
 
   void add_row(const std::vector<double>& q, Row row);
   void find_in_closed_form();
+  void find_with_redundant(const RedundantArm& redundant);
   void find_numerically();
 };
 
@@ -75,6 +77,22 @@ void InverseSearch::find_in_closed_form() {
   }
 }
 
+void InverseSearch::find_with_redundant(const RedundantArm& redundant) {
+  answer.form = redundant.form;
+  answer.redundant = redundant.count;
+  RedundantOptions options;
+  options.reference = reference;
+  options.limits = !request.ignore_limits;
+  options.values = request.representatives;
+  const RedundantSolutions solutions = solve_redundant(redundant, request.target, options);
+  if (!solutions.out_of_reach)
+    answer.incomplete =
+        "joints before the last six are redundant, of whose values a sequence is tried";
+  answer.found = solutions.found.size();
+  for (const RedundantSolution& s : solutions.found)
+    add_row(s.q, {{}, s.error, s.singular, true, request.target, (1U << redundant.count) - 1});
+}
+
 void InverseSearch::find_numerically() {
   answer.incomplete = "a numeric search finds no proof";
   NumericOptions options;
@@ -106,6 +124,8 @@ InverseAnswer find_configurations(const Arm& arm, const InverseRequest& request)
                 "this one is not");
   if (search.answer.form)
     search.find_in_closed_form();
+  else if (const auto redundant = request.numeric ? std::nullopt : recognise_redundant(arm))
+    search.find_with_redundant(*redundant);
   else
     search.find_numerically();
   return std::move(search.answer);

@@ -120,15 +120,10 @@ bool solve_in_place(Eigen::MatrixXd& a, Eigen::VectorXd& b) {
 /// Placements at which motions are tried, and starts for them at most.
 constexpr int kProbes = 3, kProbeStarts = 12;
 
-/// The last frame's origin of a closed form, which its first joints place.
+/// The ball of an arm that stands in the world.
 ReachBall ball_of(const PlacedArm& robot, const ClosedForm& form) {
-  ReachBall ball;
-  ball.point = form.tool_inverse.translation;
-  ball.centre = robot.base * inverse(form.base_inverse).translation;
-  const double links = form.family == Family::SphericalWrist
-                           ? form.forearm
-                           : std::abs(form.a3) + std::abs(form.a4) + std::abs(form.d5);
-  ball.radius = std::hypot(std::abs(form.a1) + form.a2 + links, form.lateral);
+  ReachBall ball = reach_ball(form);
+  ball.centre = robot.base * ball.centre;
   return ball;
 }
 

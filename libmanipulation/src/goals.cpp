@@ -1,9 +1,11 @@
 // Inverse kinematics of a robot of a scene: all configurations where there is a closed form, with
-// some of each family that a free joint makes; those that are found elsewhere.
+// some of each family that a free joint makes; some where joints before a closed form are
+// redundant; those that are found elsewhere.
 #include "goals.h"
 
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/numeric.h>
+#include <kaboum/kinematics/redundant.h>
 #include <kaboum/kinematics/solution_set.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
@@ -79,6 +81,15 @@ void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
     for (const ik::SolutionFamily& family : set.families)
       for (const ik::Solution& solution : family.representatives)
         add(std::span(solution.q).first(arm.axes.size()));
+    return;
+  }
+  if (const auto redundant = ik::recognise_redundant(arm)) {
+    ik::RedundantOptions options;
+    options.reference = reference;
+    options.values = kOfFamily * (search.attempt + 1);
+    const ik::RedundantSolutions solutions = ik::solve_redundant(*redundant, in_base, options);
+    goals.all = goals.all && solutions.out_of_reach;
+    for (const ik::RedundantSolution& solution : solutions.found) add(solution.q);
     return;
   }
   goals.all = false;

@@ -4,6 +4,7 @@
 #include <kaboum/kinematics/closed_form.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/numeric.h>
+#include <kaboum/kinematics/redundant.h>
 #include <kaboum/robot/kinematics.h>
 
 #include <Eigen/Geometry>
@@ -19,11 +20,17 @@ constexpr double kJump = 0.5;
 /// Most that the tool turns from one waypoint to the next. [rad]
 constexpr double kTurn = 0.1;
 
-/// The configuration that reaches a pose next to another one.
-std::optional<std::vector<double>> next_to(const ik::Arm& arm,
-                                           const std::optional<ik::ClosedForm>& form,
-                                           const world::Transform& target,
+/// An arm and the closed form that it has, or that it has behind redundant joints.
+struct Solver {
+  ik::Arm arm;
+  std::optional<ik::ClosedForm> form = ik::recognise(arm);
+  std::optional<ik::RedundantArm> redundant = ik::recognise_redundant(arm);
+};
+
+/// The configuration that reaches a pose next to another one; redundant joints stay where they can.
+std::optional<std::vector<double>> next_to(const Solver& solver, const world::Transform& target,
                                            const std::vector<double>& reference) {
+  const ik::Arm& arm = solver.arm;
   std::optional<std::vector<double>> best;
   double least = kJump;
   const auto consider = [&](std::span<const double> q) {
@@ -36,12 +43,17 @@ std::optional<std::vector<double>> next_to(const ik::Arm& arm,
     least = most;
     best = std::move(near);
   };
-  if (form) {
+  if (solver.form) {
     ik::SolveOptions options;
     std::copy(reference.begin(), reference.end(), options.reference.begin());
-    for (const ik::Solution& solution : ik::solve(*form, target, options))
+    for (const ik::Solution& solution : ik::solve(*solver.form, target, options))
       consider(std::span(solution.q).first(arm.axes.size()));
-  } else {
+  } else if (solver.redundant) {
+    for (const ik::RedundantSolution& solution :
+         ik::solve_with_redundant(*solver.redundant, target, reference))
+      consider(solution.q);
+  }
+  if (!solver.form && !best) {
     ik::NumericOptions options;
     options.starts = 1;
     options.first = reference;
@@ -56,8 +68,9 @@ std::optional<robot::Path> follow_line(const world::RobotModel& robot, std::uint
                                        const std::vector<double>& from, const world::Transform& to,
                                        double step) {
   const robot::Robot& kinematics = robot.kinematics;
-  const ik::Arm arm = ik::arm_of(kinematics, kinematics.links[0].name, kinematics.links[link].name);
-  const auto form = ik::recognise(arm);
+  const Solver solver{
+      ik::arm_of(kinematics, kinematics.links[0].name, kinematics.links[link].name)};
+  const ik::Arm& arm = solver.arm;
   const world::Transform start = forward(kinematics, from)[link],
                          end = ik::inverse(robot.base) * to;
   const Eigen::Quaterniond a(start.linear), b(end.linear);
@@ -72,7 +85,7 @@ std::optional<robot::Path> follow_line(const world::RobotModel& robot, std::uint
     const world::Transform target{
         a.slerp(share, b).toRotationMatrix(),
         start.translation + share * (end.translation - start.translation)};
-    const auto q = next_to(arm, form, i == count ? end : target, reference);
+    const auto q = next_to(solver, i == count ? end : target, reference);
     if (!q) return std::nullopt;
     reference = *q;
     std::vector<double> full = path.back();

@@ -18,13 +18,14 @@ struct InverseRequest {
   /// have its values, and the numeric search starts there. Empty: zeros, and
   /// starts at random. [rad or length]
   std::vector<double> reference = {};
-  bool numeric = false;             ///< even where there is a closed form
-  bool ignore_limits = false;       ///< outside the joints' limits as well
-  bool copies = false;              ///< all that differ by whole turns within the limits
-  bool free_heading = false;        ///< of arms with five axes: poses with another heading as well
-  std::size_t starts = 100;         ///< of the numeric search
-  std::uint64_t seed = 1;           ///< of the numeric search
-  std::size_t representatives = 6;  ///< of each family, about
+  bool numeric = false;        ///< even where there is a closed form
+  bool ignore_limits = false;  ///< outside the joints' limits as well
+  bool copies = false;         ///< all that differ by whole turns within the limits
+  bool free_heading = false;   ///< of arms with five axes: poses with another heading as well
+  std::size_t starts = 100;    ///< of the numeric search
+  std::uint64_t seed = 1;      ///< of the numeric search
+  /// Of each family, about; of redundant joints, values for which there are configurations.
+  std::size_t representatives = 6;
   /// Is told of each start of the numeric search; what it throws ends the work.
   std::function<void(const std::string& stage)> progress = {};
 };
@@ -45,6 +46,7 @@ struct InverseAnswer {
     Transform pose;
   };
   std::optional<ClosedForm> form;  ///< none: the search was numeric
+  std::size_t redundant = 0;       ///< joints before those of the closed form
   std::size_t found = 0;           ///< isolated ones, whatever the limits
   std::vector<Family> families;
   bool outside = false;  ///< there are families, outside the limits
@@ -55,7 +57,8 @@ struct InverseAnswer {
 };
 
 /// The configurations with which an arm reaches a pose: all of them in closed
-/// form where the arm has one, else those that a numeric search finds.
+/// form where the arm has one, some where its last six axes have one (redundant.h), else those that
+/// a numeric search finds.
 /// @throws Error{InvalidArgument} where the reference has not one value per
 /// axis, or the heading is
 ///   to be free of an arm that has not five axes and a closed form.
