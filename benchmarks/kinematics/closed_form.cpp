@@ -1,5 +1,7 @@
 // Closed-form inverse kinematics: time per pose, and round trips through the arm's own forward
 // kinematics: closed-form-benchmark [ARMS [POSES]], of each family.
+#include <kaboum/kinematics/redundant.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -55,6 +57,48 @@ void run(const DhArm& dh, std::size_t poses, std::mt19937_64& random, Tally& tal
   tally.poses += poses;
 }
 
+/// The arm on a rail of 3 m: a pose that it reaches from somewhere, and one 1 m aside, which it
+/// mostly does not.
+void run_on_rail(std::size_t poses) {
+  Arm arm = arm_of(rv_6sl(true));
+  for (Axis& axis : arm.axes) {
+    axis.lower = -2.8;
+    axis.upper = 2.9;
+  }
+  Axis rail;
+  rail.turns = false;
+  rail.direction = Vec3::UnitY();
+  rail.lower = -1.5;
+  rail.upper = 1.5;
+  arm.axes.insert(arm.axes.begin(), rail);
+  const auto redundant = recognise_redundant(arm);
+  std::mt19937_64 random(3);
+  for (const bool aside : {false, true}) {
+    std::size_t reached = 0, proved = 0, solutions = 0;
+    double time = 0, longest = 0;
+    for (std::size_t i = 0; i < poses; ++i) {
+      std::vector<double> q = random_joints(random, arm.axes.size(), 2.8);
+      q[0] = q[0] * 1.5 / 2.8;
+      Transform target = kaboum::kinematics::forward(arm, q);
+      if (aside) target.translation.x() += 1;
+      const double start = seconds();
+      const RedundantSolutions found = solve_redundant(*redundant, target);
+      const double one = seconds() - start;
+      time += one;
+      longest = std::max(longest, one);
+      reached += found.found.empty() ? 0 : 1;
+      proved += found.out_of_reach ? 1 : 0;
+      solutions += found.found.size();
+    }
+    const auto n = static_cast<double>(poses);
+    std::printf(
+        "RV-6SL on a rail of 3 m%-11s %8zu poses  %6.1f us, longest %.1f us  %.1f solutions  "
+        "reached %zu, proved out of reach %zu\n",
+        aside ? ", aside" : "", poses, time / n * 1e6, longest * 1e6,
+        static_cast<double>(solutions) / n, reached, proved);
+  }
+}
+
 void print(const char* name, const Tally& t) {
   const auto poses = static_cast<double>(t.poses);
   std::printf(
@@ -73,6 +117,7 @@ int main(int argc, char** argv) {
   Tally rv;
   for (int i = 0; i < 10; ++i) run(rv_6sl(true), poses, random, rv);
   print("RV-6SL", rv);
+  run_on_rail(poses);
   for (const Family family : {Family::SphericalWrist, Family::ParallelAxes, Family::FiveAxes}) {
     Tally tally;
     for (std::size_t i = 0; i < arms; ++i) run(random_arm(family, random), poses, random, tally);

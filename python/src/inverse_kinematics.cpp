@@ -115,7 +115,8 @@ constexpr const char* kInverseKinematicsDoc =
     R"(The configurations with which a robot's chain reaches a pose, as `kaboum-ik`.
 
 All of them, in closed form, for arms with a spherical wrist, with three parallel axes, or with five
-axes; else those that a numeric search finds.
+axes; some, where further joints come before six such axes (a rail); else those that a numeric
+search finds.
 
 Parameters
 ----------

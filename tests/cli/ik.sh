@@ -85,6 +85,26 @@ cmp -s out.txt one.json || fail "twice the same, another answer"
 expect 7 'no proof' "$I" offset.urdf --pose 5,0,0,0,0,0,1 --starts 3
 expect 0 '' "$I" arm.urdf --numeric --pose-of 0.1,0.4,0.7,0.3,0.9,-0.2
 
+# On a rail: some of infinitely many, none only where that is proved.
+{
+  echo '<robot name="railed"><link name="floor"/><joint name="rail" type="prismatic"><parent link="floor"/><child link="base"/>'
+  echo '<axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5" effort="1" velocity="1"/></joint>'
+  sed 's/<robot name="arm">//' arm.urdf
+} >rail.urdf
+expect 0 'joints before the last six are redundant' "$I" rail.urdf --pose-of 0.7,0.1,0.4,0.7,0.3,0.9,-0.2
+grep -q 'closed form' err.txt || fail "not in closed form: $(cat err.txt)"
+grep -q '# free: rail' out.txt || fail "the rail is not said to be free: $(cat out.txt)"
+expect 0 '' "$I" rail.urdf --pose-of 0.7,0.1,0.4,0.7,0.3,0.9,-0.2 --reference 0.7,0,0,0,0,0,0
+python3 near.py out.txt 0.7,0.1,0.4,0.7,0.3,0.9,-0.2 || fail "not where the rail is: $(cat out.txt)"
+expect 0 '' "$I" rail.urdf --pose 0.5,1.9,0.5,0,0,0,1 --json
+grep -q '"complete": false' out.txt || fail "said to be complete"
+expect 1 'the pose is out of reach' "$I" rail.urdf --pose 0.5,4,0.5,0,0,0,1
+expect 7 'no proof' "$I" rail.urdf --pose 0.5,4,0.5,0,0,0,1 --numeric --starts 3
+expect 0 '' "$I" rail.urdf --pose 0.5,4,0.5,0,0,0,1 --ignore-limits
+sed 's/lower="-3"/lower="2.99"/' rail.urdf >stiff.urdf
+expect 7 'no proof that there is none: joints before the last six' "$I" stiff.urdf --pose 0.5,0,0.5,0,0,0,1
+expect 2 'for the 7 joints' "$I" rail.urdf --pose 0.5,0,0.5,0,0,0,1 --reference 0,0
+
 # Where a joint is free, its family is given: the joint, its range, configurations within the limits.
 {
   echo '<robot name="parallel"><link name="base"/>'

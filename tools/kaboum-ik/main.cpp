@@ -148,8 +148,8 @@ int run(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Prints the configurations with which a robot's chain reaches a pose: all of them, in closed "
-      "form, for arms with a spherical wrist, with three parallel axes, or with five axes; else "
-      "those found numerically.",
+      "form, for arms with a spherical wrist, with three parallel axes, or with five axes; some, "
+      "where further joints come before six such axes (a rail); else those found numerically.",
       "kaboum-ik");
   Options options;
   tools::describe(app, options);

@@ -102,6 +102,40 @@ TEST(Goals, RoundingDoesNotTakeAConfigurationPastItsLimit) {
   EXPECT_TRUE(seen);
 }
 
+TEST(Goals, AnArmOnARailMovesAlongIt) {
+  const test::TwoArms arms;
+  const world::RobotModel robot = test::on_rail(arms.world.robots[0], -1.5, 1.5);
+  const std::uint32_t hand = arms.hand + 1;
+  const auto at = [&](const std::vector<double>& q) {
+    return judge::places(robot.kinematics, robot.base, q)[hand];
+  };
+  std::vector<double> q = robot.home;
+  q.back() = 1.4;  // what the arm reaches from one end of the rail is out of its reach at the other
+  const world::Transform target = at(q);
+  std::vector<double> from = robot.home;
+  from.back() = -1.5;
+  Goals goals;
+  add_goals(goals, robot, hand, target, from, {1, 0});
+  EXPECT_FALSE(goals.all);
+  EXPECT_TRUE(goals.alone);
+  ASSERT_FALSE(goals.configurations.empty());
+  std::set<int> places;
+  for (const std::vector<double>& goal : goals.configurations) {
+    EXPECT_FALSE(robot::find_out_of_limits(robot.kinematics, goal));
+    EXPECT_LT((at(goal).translation - target.translation).norm(), 1e-7);
+    EXPECT_LT((at(goal).linear - target.linear).norm(), 1e-7);
+    places.insert(static_cast<int>(std::floor(goal.back() / 0.05)));
+  }
+  EXPECT_GE(places.size(), 8U);
+  // Out of reach along the rail, and that is proved.
+  world::Transform far = target;
+  far.translation += robot.base.linear * world::Vec3(0, 4, 0);
+  Goals none;
+  add_goals(none, robot, hand, far, from, {1, 0});
+  EXPECT_TRUE(none.configurations.empty());
+  EXPECT_TRUE(none.all);
+}
+
 TEST(Goals, OtherJointsMayMakeRoom) {
   const test::TwoArms arms;
   world::RobotModel robot = arms.world.robots[0];

@@ -42,5 +42,24 @@ TEST(FollowLine, LeadsTheLinkAlongAStraightLine) {
   EXPECT_FALSE(follow_line(robot, arms.hand, robot.home, far, 0.01));
 }
 
+TEST(FollowLine, KeepsTheRailWhereItCanAndMovesAlongItElsewhere) {
+  const test::TwoArms arms;
+  const world::RobotModel robot = test::on_rail(arms.world.robots[0], -1.5, 1.5);
+  const std::uint32_t hand = arms.hand + 1;
+  const auto at = [&](const std::vector<double>& q) {
+    return judge::places(robot.kinematics, robot.base, q)[hand];
+  };
+  const geom::Transform start = at(robot.home);
+  for (const double length : {0.1, 1.5}) {
+    geom::Transform end = start;
+    end.translation += robot.base.linear * geom::Vec3(0, length, 0);
+    const auto path = follow_line(robot, hand, robot.home, end, 0.02);
+    ASSERT_TRUE(path) << length;
+    EXPECT_LT((at(path->back()).translation - end.translation).norm(), 1e-8);
+    EXPECT_LT((at(path->back()).linear - start.linear).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_EQ(path->back().back() == robot.home.back(), length < 1) << length;
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::manipulation

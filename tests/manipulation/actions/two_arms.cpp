@@ -58,6 +58,22 @@ Transform turned(const Vec3& axis, double angle, const Vec3& at) {
 
 }  // namespace
 
+world::RobotModel on_rail(world::RobotModel robot, double lower, double upper) {
+  robot::Robot& chain = robot.kinematics;
+  for (robot::Joint& joint : chain.joints) ++joint.parent;
+  robot::Joint rail;
+  rail.name = "rail";
+  rail.type = robot::JointType::Prismatic;
+  rail.axis = Vec3::UnitY();
+  rail.variable = static_cast<std::uint32_t>(chain.variables.size());
+  chain.joints.insert(chain.joints.begin(), rail);
+  chain.links.insert(chain.links.begin(), robot::Link());
+  chain.links.front().name = "floor";
+  chain.variables.push_back({"rail", lower, upper});
+  robot.home.push_back(0);
+  return robot;
+}
+
 geom::Mesh box_at(const Vec3& size, const Vec3& center) {
   std::vector<Vec3> points;
   for (const double x : {-0.5, 0.5})

@@ -35,6 +35,10 @@ struct TwoArms {
   [[nodiscard]] judge::Hold hold_of(const world::Attachment& held) const;
 };
 
+/// The same robot on a rail along its base's y: links count one more, and the rail's variable is
+/// the last. [m]
+world::RobotModel on_rail(world::RobotModel robot, double lower, double upper);
+
 geom::Mesh box_at(const geom::Vec3& size, const geom::Vec3& center);
 
 /// A state of the planner that says what it is told to, and notes what is read.
