@@ -72,6 +72,12 @@ std::vector<Carried> carried_arms() {
   out.push_back(carried(
       "rail and torso",
       {joint(false, y, none, -1, 2), joint(true, z, {-0.3, 0, 0}, -kInfinite, kInfinite)}, ur5()));
+  // A trolley on a turning beam, and a torso behind another one.
+  out.push_back(carried(
+      "crane", {joint(true, z, {-2, 0, 0}, -2, 2), joint(false, x, {0, 0, 0.1}, 0, 1.5)}, ur5()));
+  out.push_back(carried("two torsos",
+                        {joint(true, z, {-1, 0, 0}, -1, 2), joint(true, y, {0, 0.2, 0}, -0.5, 0.4)},
+                        rv_6sl(true)));
   out.push_back(carried("platform",
                         {joint(false, x, none, -1, 1), joint(false, y, none, -1, 1),
                          joint(true, z, none, -kHalfCircle, kHalfCircle)},
@@ -202,6 +208,27 @@ TEST(Redundant, TheReferenceIsKeptWhereItReaches) {
   }
 }
 
+TEST(Redundant, AllOfTheRailThatReachesIsTried) {
+  // A slow rail along y: from both sides of the target, as far as the arm reaches.
+  Carried c = carried("slow rail", {joint(false, Vec3::UnitY(), Vec3::Zero(), -6, 6, 0.5)}, ur5());
+  for (std::size_t i = 1; i < c.arm.axes.size(); ++i) {
+    c.arm.axes[i].lower = -kHalfCircle;
+    c.arm.axes[i].upper = kHalfCircle;
+  }
+  const auto redundant = recognise_redundant(c.arm);
+  RedundantOptions options;
+  options.values = 500;
+  const Transform target{robot::rotation_from_rpy(kHalfCircle, 0, 0), {0.3, 0.2, 0.2}};
+  const RedundantSolutions all = solve_redundant(*redundant, target, options);
+  double least = 100, most = -100;
+  for (const RedundantSolution& s : all.found) {
+    least = std::min(least, 0.5 * s.q[0] - 0.2);
+    most = std::max(most, 0.5 * s.q[0] - 0.2);
+  }
+  EXPECT_GT(most, 0.6);
+  EXPECT_NEAR(least, -most, 0.05);
+}
+
 TEST(Redundant, LimitsOfOneSideAndOfNone) {
   std::mt19937_64 random(4);
   Carried c = carried_arms().front();
@@ -228,6 +255,26 @@ TEST(Redundant, LimitsOfOneSideAndOfNone) {
   const auto redundant = recognise_redundant(c.arm);
   EXPECT_FALSE(solve_redundant(*redundant, {Mat3::Identity(), {0.5, 1e4, 0.5}}).out_of_reach);
   EXPECT_TRUE(solve_redundant(*redundant, {Mat3::Identity(), {5, 0, 0.5}}).out_of_reach);
+}
+
+TEST(Redundant, OutsideTheLimitsWhereTheseDoNotCount) {
+  Carried c = carried_arms().front();
+  const std::vector<double> q{1.2, 0.1, 0.4, 0.7, 0.3, 0.9, -0.2};
+  const Transform target = pose_of(c, q);
+  for (Axis& axis : c.arm.axes) axis.lower = axis.upper - 1e-3;
+  const auto redundant = recognise_redundant(c.arm);
+  RedundantOptions options;
+  options.reference = q;
+  options.limits = false;
+  const RedundantSolutions any = solve_redundant(*redundant, target, options);
+  ASSERT_FALSE(any.found.empty());
+  EXPECT_EQ(any.found.front().q[0], q[0]);
+  EXPECT_TRUE(std::ranges::any_of(
+      any.found, [&](const RedundantSolution& s) { return turn_distance(s.q.data(), q) < 1e-6; }));
+  options.limits = true;
+  const RedundantSolutions within = solve_redundant(*redundant, target, options);
+  EXPECT_TRUE(within.found.empty());
+  EXPECT_FALSE(within.out_of_reach);
 }
 
 TEST(Redundant, ManyTurnsOfATorsoAreAllLookedAt) {
