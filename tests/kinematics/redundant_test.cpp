@@ -257,6 +257,31 @@ TEST(Redundant, LimitsOfOneSideAndOfNone) {
   EXPECT_TRUE(solve_redundant(*redundant, {Mat3::Identity(), {5, 0, 0.5}}).out_of_reach);
 }
 
+TEST(Redundant, EndlessJointsTakeOthersFar) {
+  std::mt19937_64 random(8);
+  const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
+  // A beam without end that turns: what turns it moves the arm far.
+  const Carried beam = carried(
+      "beam",
+      {joint(true, z, {-2, 0, 0}, -2, 2), joint(false, x, Vec3::Zero(), -kInfinite, kInfinite)},
+      ur5());
+  // Two rails that are nearly parallel reach far aside, by going much farther along.
+  const Carried rails =
+      carried("rails",
+              {joint(false, x, Vec3::Zero(), -kInfinite, kInfinite),
+               joint(false, Vec3(1, 0.01, 0).normalized(), Vec3::Zero(), -kInfinite, kInfinite)},
+              ur5());
+  const auto turning = recognise_redundant(beam.arm), sliding = recognise_redundant(rails.arm);
+  for (int trial = 0; trial < 30; ++trial) {
+    std::vector<double> q = random_configuration(beam.arm, random);
+    q[1] *= 10;
+    EXPECT_FALSE(solve_redundant(*turning, pose_of(beam, q)).out_of_reach);
+    q[0] = -300 - q[1];
+    q[1] = 300;
+    EXPECT_FALSE(solve_redundant(*sliding, pose_of(rails, q)).out_of_reach);
+  }
+}
+
 TEST(Redundant, OutsideTheLimitsWhereTheseDoNotCount) {
   Carried c = carried_arms().front();
   const std::vector<double> q{1.2, 0.1, 0.4, 0.7, 0.3, 0.9, -0.2};
