@@ -19,6 +19,8 @@ namespace {
 
 /// Configurations of a family that are taken at first.
 constexpr std::size_t kOfFamily = 24;
+/// Values of redundant joints with configurations, up to eight each, that are taken at first.
+constexpr std::size_t kOfRedundant = 6;
 /// Between the values that words keep. [rad, or length]
 constexpr double kWordStep = 1e-9;
 
@@ -86,7 +88,7 @@ void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
   if (const auto redundant = ik::recognise_redundant(arm)) {
     ik::RedundantOptions options;
     options.reference = reference;
-    options.values = kOfFamily * (search.attempt + 1);
+    options.values = kOfRedundant * (search.attempt + 1);
     const ik::RedundantSolutions solutions = ik::solve_redundant(*redundant, in_base, options);
     goals.all = goals.all && solutions.out_of_reach;
     for (const ik::RedundantSolution& solution : solutions.found) add(solution.q);
