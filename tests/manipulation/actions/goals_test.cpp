@@ -126,7 +126,10 @@ TEST(Goals, AnArmOnARailMovesAlongIt) {
     EXPECT_LT((at(goal).linear - target.linear).norm(), 1e-7);
     places.insert(static_cast<int>(std::floor(goal.back() / 0.05)));
   }
-  EXPECT_GE(places.size(), 8U);
+  EXPECT_GE(places.size(), 5U);
+  Goals more;
+  add_goals(more, robot, hand, target, from, {1, 3});
+  EXPECT_GT(more.configurations.size(), 3 * goals.configurations.size());
   // Out of reach along the rail, and that is proved.
   world::Transform far = target;
   far.translation += robot.base.linear * world::Vec3(0, 4, 0);
