@@ -2,11 +2,9 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
-#include <kaboum/geom/closest_point.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/scene/derived_features.h>
-#include <kaboum/world/checker.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
@@ -15,200 +13,30 @@
 #include <optional>
 #include <set>
 
+#include "faces.h"
+#include "grasp_families.h"
+#include "hand.h"
+#include "round_sides.h"
 #include "set_maker.h"
 
 namespace kaboum::scene {
 namespace {
 
 using geom::Transform;
-using geom::Vec3;
-using Vec2 = Eigen::Vector2d;
-
-/// Between normals of faces that count as parallel, and from level. [rad]
-constexpr double kParallel = 1e-3;
-/// Between normals of triangles of one face. [rad]
-constexpr double kSameFace = 1e-6;
-/// Share of a size that counts as nothing.
-constexpr double kNothing = 1e-9;
 /// Shares of the way from the middle of two faces to their edge at which a tool is put.
 constexpr std::array kShares{0.0, 0.25, 0.5, 0.75, 0.95};
-
-/// A flat face of a convex body.
-struct Face {
-  std::size_t body = 0;
-  Vec3 normal;
-  double offset = 0;          ///< normal · x of its points
-  std::vector<Vec3> corners;  ///< of its triangles; some are there twice
-};
-
-/// A set's flat faces: the facets of its bodies' cores, moved out by their radii. What is round has
-/// none.
-class Faces {
- public:
-  explicit Faces(const collide::BoundingSet& set)
-      : set_(set), size_(set.box().diagonal()), first_of_(set.size() + 1, 0) {
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      first_of_[i] = all_.size();
-      add(set.body(i), i);
-    }
-    first_of_[set.size()] = all_.size();
-  }
-
-  [[nodiscard]] const std::vector<Face>& all() const { return all_; }
-  [[nodiscard]] double size() const { return size_; }
-
-  /// True if the point just outside of a face is in another body.
-  [[nodiscard]] bool is_covered(const Face& face, const Vec3& point) const {
-    const Vec3 outside = point + 1e-6 * size_ * face.normal;
-    for (std::size_t body = 0; body < set_.size(); ++body)
-      if (body != face.body && holds(body, outside)) return true;
-    return false;
-  }
-
- private:
-  [[nodiscard]] bool holds(std::size_t body, const Vec3& point) const {
-    const geom::Mesh& core = set_.body(body).core;
-    const double radius = set_.body(body).radius;
-    const auto begin = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body]);
-    const auto end = all_.begin() + static_cast<std::ptrdiff_t>(first_of_[body + 1]);
-    const auto is_below = [&](double by) {
-      return std::all_of(begin, end,
-                         [&](const Face& f) { return f.normal.dot(point) < f.offset - by; });
-    };
-    if (radius == 0) return is_below(0);
-    const auto is_near = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-      return (geom::closest_point(point, a, b, c) - point).norm() < radius;
-    };
-    if (core.triangles.empty())  // a point or a segment
-      return is_near(core.vertices.front(), core.vertices.back(), core.vertices.back());
-    return is_below(radius) || std::ranges::any_of(core.triangles, [&](const geom::Triangle& t) {
-             return is_near(core.vertices[t[0]], core.vertices[t[1]], core.vertices[t[2]]);
-           });
-  }
-
-  void add(const geom::ConvexBody& of, std::size_t body) {
-    const geom::Mesh& mesh = of.core;
-    const std::size_t first = all_.size();
-    for (const geom::Triangle& t : mesh.triangles) {
-      const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-      const Vec3 across = (b - a).cross(c - a);
-      if (!(across.norm() > kNothing * kNothing * size_ * size_)) continue;
-      const Vec3 normal = across.normalized();
-      const auto same = std::find_if(
-          all_.begin() + static_cast<std::ptrdiff_t>(first), all_.end(), [&](const Face& f) {
-            return f.normal.cross(normal).norm() < kSameFace && f.normal.dot(normal) > 0;
-          });
-      Face& face = same == all_.end() ? all_.emplace_back() : *same;
-      if (face.corners.empty()) face = {body, normal, normal.dot(a) + of.radius, {}};
-      const Vec3 out = of.radius * face.normal;
-      face.corners.insert(face.corners.end(), {a + out, b + out, c + out});
-    }
-  }
-
-  const collide::BoundingSet& set_;
-  double size_;
-  std::vector<Face> all_;
-  std::vector<std::size_t> first_of_;
-};
-
-/// A plane's coordinates.
-struct Axes {
-  explicit Axes(const Vec3& normal) : u(normal.unitOrthogonal()), v(normal.cross(u)) {}
-  Vec3 u, v;
-  [[nodiscard]] Vec2 operator()(const Vec3& p) const { return {u.dot(p), v.dot(p)}; }
-};
-
-using Polygon = std::vector<Vec2>;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// The convex hull of points of a plane, counterclockwise (monotone chain).
-Polygon hull_of(Polygon points) {
-  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  Polygon hull;
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t first = hull.size();
-    for (const Vec2& p : points) {
-      while (hull.size() >= first + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    if (!hull.empty()) hull.pop_back();
-    std::ranges::reverse(points);
-  }
-  return hull;
-}
-
-/// A face in a plane's coordinates.
-Polygon flattened(const Face& face, const Axes& axes) {
-  Polygon points;
-  for (const Vec3& corner : face.corners) points.push_back(axes(corner));
-  return hull_of(std::move(points));
-}
-
-/// The common part of two convex polygons, counterclockwise (Sutherland and Hodgman 1974).
-Polygon common_part(Polygon a, const Polygon& b) {
-  for (std::size_t i = 0; i < b.size() && !a.empty(); ++i) {
-    const Vec2& from = b[i];
-    const Vec2 along = b[(i + 1) % b.size()] - b[i];
-    Polygon kept;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const Vec2 &p = a[k], &q = a[(k + 1) % a.size()];
-      const double at_p = cross(along, p - from), at_q = cross(along, q - from);
-      if (at_p >= 0) kept.push_back(p);
-      if ((at_p >= 0) != (at_q >= 0)) kept.emplace_back(p + at_p / (at_p - at_q) * (q - p));
-    }
-    a = std::move(kept);
-  }
-  return a;
-}
-
-struct Middle {
-  Vec2 place = Vec2::Zero();
-  double area = 0;
-};
-
-Middle middle_of(const Polygon& polygon) {
-  Middle out;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const double area = 0.5 * cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    out.place += area / 3 * (polygon[0] + polygon[i] + polygon[i + 1]);
-    out.area += area;
-  }
-  if (out.area > 0) out.place /= out.area;
-  return out;
-}
-
-/// How far a ray from a point within a convex polygon reaches.
-double reach_within(const Polygon& polygon, const Vec2& from, const Vec2& along) {
-  double out = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-    const double falls = cross(edge, along);
-    if (falls < 0) out = std::min(out, cross(edge, from - polygon[i]) / -falls);
-  }
-  return std::isfinite(out) ? std::max(out, 0.0) : 0;
-}
-
-/// Along the longest edge.
-Vec2 longest_edge(const Polygon& polygon) {
-  Vec2 out = Vec2::UnitX();
-  double longest = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-    if (edge.norm() > longest * (1 + kNothing)) {
-      longest = edge.norm();
-      out = edge / longest;
-    }
-  }
-  return out;
-}
+/// Degrees by which a tool that holds a round side comes from above; those of kTilted come last.
+constexpr double kTilted = 45;
+constexpr std::array kElevations{0.0, 90.0, -90.0, kTilted, -kTilted};
+/// Cosine of the angle between an axis and the normals of faces that are parts of its round side.
+constexpr double kAlmostAcross = 0.02;
+/// Holds of less than that share of the largest one's area are tried later.
+constexpr double kSmallShare = 0.25;
 
 /// Where a tool may hold an object: part of a face, or of two that face each other.
 struct Hold {
+  const Face* first;
+  const Face* second;  ///< null: of one face
   Vec3 middle;
   Vec3 normal;    ///< of the first face
   Polygon where;  ///< along `axes`
@@ -228,10 +56,8 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
       const Middle middle = middle_of(where);
       if (!(middle.area > kNothing * faces.size() * faces.size())) return;
       const Vec3 place = middle.place.x() * axes.u + middle.place.y() * axes.v;
-      if (faces.is_covered(first, place + first.offset * first.normal)) return;
-      if (second != nullptr && faces.is_covered(*second, place - second->offset * first.normal))
-        return;
-      out.push_back({place + level * first.normal, first.normal, where, axes, middle.area});
+      out.push_back(
+          {&first, second, place + level * first.normal, first.normal, where, axes, middle.area});
     };
     if (request.hold == GraspRequest::Hold::Face) {
       add(own, first.offset, nullptr);
@@ -252,100 +78,13 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
   return out;
 }
 
-/// What moves with a link: the links fixed to it, and all that they carry.
-/// @param only_fixed  without what joints move
-std::vector<bool> moving_with(const robot::Robot& robot, std::uint32_t link, bool only_fixed) {
-  const auto is_fixed = [&](std::size_t joint) {
-    return robot.joints[joint].type == robot::JointType::Fixed;
-  };
-  while (link > 0 && is_fixed(link - 1)) link = robot.joints[link - 1].parent;
-  std::vector<bool> out(robot.links.size(), false);
-  out[link] = true;
-  for (std::size_t i = link; i < robot.joints.size(); ++i)
-    out[i + 1] = out[i + 1] || (out[robot.joints[i].parent] && (!only_fixed || is_fixed(i)));
-  return out;
+/// True if another body covers the middle of a face that is held.
+bool is_covered(const Faces& faces, const Hold& hold) {
+  const Vec3 place = hold.middle - hold.normal.dot(hold.middle) * hold.normal;
+  return faces.is_covered(*hold.first, place + hold.first->offset * hold.normal) ||
+         (hold.second != nullptr &&
+          faces.is_covered(*hold.second, place - hold.second->offset * hold.normal));
 }
-
-/// The largest ε of what is fixed to a link.
-double epsilon_at(const world::RobotModel& robot, std::uint32_t link) {
-  const std::vector<bool> fixed = moving_with(robot.kinematics, link, true);
-  double out = 0;
-  for (const world::LinkShape& shape : robot.shapes)
-    if (fixed[shape.link]) out = std::max(out, shape.outer.epsilon());
-  return out;
-}
-
-/// Tries grasps of an object in the hand, away from all else.
-class Hand {
- public:
-  Hand(const world::World& world, std::size_t object, std::size_t robot,
-       const world::ToolFrame& tool)
-      : world_(world),
-        object_(object),
-        robot_(robot),
-        checker_(world),
-        state_(initial_state(world)),
-        hand_(moving_with(world.robots[robot].kinematics, tool.link, false)) {
-    state_.absent.assign(world.objects.size(), true);
-    state_.absent[object] = false;
-    state_.absent_robots.assign(world.robots.size(), true);
-    state_.absent_robots[robot] = false;
-    for (auto& attachment : state_.attachments) attachment.reset();
-    const world::RobotModel& model = world.robots[robot];
-    tool_ = model.base * robot::forward(model.kinematics, model.home)[tool.link] * tool.pose;
-  }
-
-  /// A link of the hand that the object is in contact with; nullopt: none.
-  std::optional<std::string> contact_at(const Transform& grasp) {
-    state_.poses[object_] = tool_ * grasp;
-    for (const world::Contact& contact :
-         checker_.find_contacts(state_, scratch_, world::Checker::Options{})) {
-      for (const auto& [a, b] : {std::pair(contact.items[0], contact.items[1]),
-                                 std::pair(contact.items[1], contact.items[0])}) {
-        if (a != world::Item{world::Item::kObject, object_} || b.robot != robot_) continue;
-        if (hand_[world_.robots[robot_].shapes[b.index].link]) return world_.name_of(b);
-      }
-    }
-    return std::nullopt;
-  }
-
-  /// The part of the hand whose contact with the object is not looked at.
-  struct Unchecked {
-    std::vector<std::string> links;  ///< without a set, or with an allowed contact
-    bool all = true;
-  };
-  [[nodiscard]] Unchecked unchecked() const {
-    Unchecked out;
-    const world::RobotModel& model = world_.robots[robot_];
-    const world::Item object{world::Item::kObject, object_};
-    for (std::uint32_t link = 0; link < hand_.size(); ++link) {
-      if (!hand_[link]) continue;
-      bool looked_at = false, has_set = false;
-      for (std::size_t s = 0; s < model.shapes.size(); ++s) {
-        if (model.shapes[s].link != link) continue;
-        has_set = true;
-        const world::Item shape{robot_, s};
-        looked_at = looked_at || std::ranges::none_of(world_.allowed, [&](const auto& pair) {
-                      return pair == std::array{object, shape} || pair == std::array{shape, object};
-                    });
-      }
-      if (looked_at)
-        out.all = false;
-      else if (has_set || !model.kinematics.links[link].collision.empty())
-        out.links.push_back(model.name + "/" + model.kinematics.links[link].name);
-    }
-    return out;
-  }
-
- private:
-  const world::World& world_;
-  std::size_t object_, robot_;
-  world::Checker checker_;
-  world::Scratch scratch_;
-  world::WorldState state_;
-  std::vector<bool> hand_;
-  Transform tool_;
-};
 
 /// The angles of n directions evenly round a circle, such that the first ones are far apart. [rad]
 std::vector<double> angles_round(std::size_t n) {
@@ -361,44 +100,6 @@ std::vector<double> angles_round(std::size_t n) {
     }
   }
   return out;
-}
-
-/// As people read it: what is only rounding is 0.
-double plain(double x, double size) { return std::abs(x) < 1e-15 * size ? 0 : x; }
-
-Vec3 plain(const Vec3& v, double size) {
-  return {plain(v.x(), size), plain(v.y(), size), plain(v.z(), size)};
-}
-
-Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// A pose by the numbers that a scene states.
-struct StatedPose {
-  Vec3 position;
-  Eigen::Quaterniond turn;
-
-  /// As scenes are read.
-  [[nodiscard]] Transform pose() const {
-    Transform out;
-    out.translation = position;
-    if (!turn.vec().isZero(0)) out.linear = turn.normalized().toRotationMatrix();
-    return out;
-  }
-};
-
-/// The pose of the object in the tool's frame, where the tool's axes and origin are given in the
-/// object's. @param size  of the object
-StatedPose grasp_of(const Vec3& approach, const Vec3& closing, GraspRequest::Axis axis,
-                    const Vec3& origin, double size) {
-  Eigen::Matrix3d tool;
-  const Vec3 other =
-      axis == GraspRequest::Axis::X ? Vec3(approach.cross(closing)) : Vec3(closing.cross(approach));
-  tool.col(axis == GraspRequest::Axis::X ? 0 : 1) = closing;
-  tool.col(axis == GraspRequest::Axis::X ? 1 : 0) = other;
-  tool.col(2) = approach;
-  const Eigen::Quaterniond q(Eigen::Matrix3d(tool.transpose()));
-  return {plain(-(tool.transpose() * origin), size),
-          {plain(q.w(), 1), plain(q.x(), 1), plain(q.y(), 1), plain(q.z(), 1)}};
 }
 
 std::vector<std::size_t> objects_named(const world::World& world,
@@ -560,13 +261,17 @@ bool is_round(const collide::BoundingSet& set) {
 std::string why_none(const DerivedGrasps& found, const GraspRequest& request,
                      const collide::BoundingSet& set) {
   const bool sides = request.hold == GraspRequest::Hold::Sides;
-  if (is_round(set)) return "it is round: it has no flat face";
+  const bool families = request.form != GraspRequest::Form::Poses;
+  if (is_round(set) && !(sides && families)) return "it is round: it has no flat face";
+  if (found.faces == 0 && sides)
+    return "no two parallel faces face each other" +
+           std::string(families ? ", and no side is round," : "") +
+           (std::isfinite(request.opening) ? " within the opening" : "") +
+           (request.tip > 0 ? " with room for the tips" : "");
   if (found.faces == 0)
-    return sides ? "no two parallel faces face each other" +
-                       std::string(std::isfinite(request.opening) ? " within the opening" : "")
-                 : "no face is uncovered";
+    return families && request.tip > 0 ? "no face has room for the cup" : "no face is uncovered";
   return "the hand is in contact at each of the " + std::to_string(found.in_contact) +
-         " that were tried: " + found.contact +
+         " that were tried" + (found.contact.empty() ? "" : ": " + found.contact) +
          (sides ? "; fingers that may touch it need an allowed contact" : "");
 }
 
@@ -576,24 +281,22 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-/// Grasps by the numbers that a scene states: these are the poses that are decided.
-std::vector<StatedPose> poses_of_grasps(const world::World& world, std::size_t object,
-                                        const GraspRequest& request, DerivedGrasps& out) {
-  if (request.directions == 0)
-    throw Error(ErrorCode::InvalidArgument, "«directions» must be at least 1");
-  const std::size_t r = robot_named(world, request.robot);
-  const world::ToolFrame& tool = tool_named(world.robots[r], request.tool);
-  const collide::BoundingSet& set = world.objects.at(object).outer;
-  const double size = set.box().diagonal();
-  const std::vector<Hold> holds = holds_of(Faces(set), request);
-  const bool sides = request.hold == GraspRequest::Hold::Sides;
-  const double gap = request.gap + set.epsilon() + epsilon_at(world.robots[r], tool.link);
-  Hand hand(world, object, r, tool);
-  const Hand::Unchecked unchecked = hand.unchecked();
-  out.unchecked = unchecked.links;
-  out.hand_unchecked = unchecked.all;
+/// What grasps of an object are derived of.
+struct Task {
+  const GraspRequest& request;
+  const Faces& faces;
+  Hand& hand;
+  double gap;  ///< from the tool to a face that it holds by suction
+  [[nodiscard]] bool is_sides() const { return request.hold == GraspRequest::Hold::Sides; }
+};
+
+/// Single poses, in several directions.
+std::vector<StatedGrasp> single_poses(const Task& task, DerivedGrasps& out) {
+  const GraspRequest& request = task.request;
+  std::vector<Hold> holds = holds_of(task.faces, request);
+  std::erase_if(holds, [&](const Hold& hold) { return is_covered(task.faces, hold); });
   out.faces = holds.size();
-  std::vector<StatedPose> poses;
+  std::vector<StatedGrasp> poses;
   // The first direction of each hold, then the second …: the first grasps differ most.
   for (const double angle : angles_round(request.directions)) {
     for (const Hold& hold : holds) {
@@ -604,20 +307,18 @@ std::vector<StatedPose> poses_of_grasps(const world::World& world, std::size_t o
       const Vec2 turned = std::cos(angle) * across + std::sin(angle) * edge;
       const Vec3 direction = turned.x() * hold.axes.u + turned.y() * hold.axes.v;
       std::optional<std::string> contact;
-      const auto is_free = [&](const StatedPose& grasp) {
-        contact = hand.contact_at(grasp.pose());
+      const auto is_free = [&](const ToolPlace& tool) {
+        const StatedGrasp grasp = grasp_of(tool, request.closing, task.faces.size());
+        contact = task.hand.contact_at(grasp.read().pose);
         if (!contact) poses.push_back(grasp);
         return !contact;
       };
-      if (sides) {
+      if (task.is_sides()) {
         const double room = reach_within(hold.where, hold.axes(hold.middle), -turned);
         for (const double share : kShares)
-          if (is_free(grasp_of(direction, hold.normal, request.closing,
-                               hold.middle - share * room * direction, size)))
-            break;
+          if (is_free({direction, hold.normal, hold.middle - share * room * direction})) break;
       } else {
-        is_free(grasp_of(-hold.normal, direction, request.closing, hold.middle + gap * hold.normal,
-                         size));
+        is_free({-hold.normal, direction, hold.middle + task.gap * hold.normal});
       }
       if (!contact) continue;
       ++out.in_contact;
@@ -625,6 +326,206 @@ std::vector<StatedPose> poses_of_grasps(const world::World& world, std::size_t o
     }
   }
   return poses;
+}
+
+/// Where a tool has something to hold on faces: in a convex polygon, and not where other bodies
+/// are.
+class Ground {
+ public:
+  /// @param tip  how far round the tool's origin it needs something to hold
+  Ground(const Faces& faces, const Hold& hold, double tip) : tip_(tip), axes_(hold.axes) {
+    const Middle middle = middle_of(hold.where);
+    if (tip > 0) {
+      where_ = eroded(hold.where, tip);
+    } else {
+      for (const Vec2& corner : hold.where)
+        where_.emplace_back(middle.place + kShares.back() * (corner - middle.place));
+    }
+    middle_ = middle.place;
+    covers_ = faces.covers(*hold.first, axes_);
+    if (hold.second != nullptr)
+      for (Polygon& cover : faces.covers(*hold.second, axes_)) covers_.push_back(std::move(cover));
+    along_ = longest_edge(hold.where);
+    across_ = Vec2(-along_.y(), along_.x());
+  }
+
+  [[nodiscard]] Vec3 along() const { return along_.x() * axes_.u + along_.y() * axes_.v; }
+  [[nodiscard]] Vec3 across() const { return across_.x() * axes_.u + across_.y() * axes_.v; }
+
+  /// How far the polygon reaches from the hold's middle, along and across its longest edge; empty
+  /// where the tips do not fit.
+  [[nodiscard]] MemberBox reach() const {
+    MemberBox out;
+    if (!(middle_of(where_).area > 0)) return out;
+    for (const Vec2& direction : {along_, across_}) {
+      constexpr double kFar = std::numeric_limits<double>::infinity();
+      Range range{kFar, -kFar};
+      for (const Vec2& corner : where_) {
+        range.from = std::min(range.from, direction.dot(corner - middle_));
+        range.to = std::max(range.to, direction.dot(corner - middle_));
+      }
+      out.push_back(range);
+    }
+    return out;
+  }
+
+  /// True if there is something to hold wherever a tool is in a rectangle.
+  [[nodiscard]] bool holds(const MemberBox& box, double size) const {
+    const double least = kNothing * size;
+    for (std::size_t i = 0; i < where_.size(); ++i) {
+      const Vec2 edge = where_[(i + 1) % where_.size()] - where_[i];
+      if (!(edge.norm() > 0)) continue;
+      for (const Vec2& corner : corners(box, 0))
+        if (cross(edge.normalized(), corner - where_[i]) < -least) return false;
+    }
+    const Polygon ground = corners(box, tip_ + least);
+    return std::ranges::none_of(
+        covers_, [&](const Polygon& cover) { return !common_part(ground, cover).empty(); });
+  }
+
+ private:
+  [[nodiscard]] Polygon corners(const MemberBox& box, double more) const {
+    const Range &a = box[0], &b = box[1];
+    Polygon out;
+    for (const auto& [x, y] :
+         {std::pair(a.from - more, b.from - more), std::pair(a.to + more, b.from - more),
+          std::pair(a.to + more, b.to + more), std::pair(a.from - more, b.to + more)})
+      out.emplace_back(middle_ + x * along_ + y * across_);
+    return out;
+  }
+
+  double tip_;
+  Axes axes_;
+  Polygon where_;
+  Vec2 middle_, along_, across_;
+  std::vector<Polygon> covers_;
+};
+
+/// Anywhere on faces, turned about their normal; nullopt where the tips do not fit.
+std::optional<FreeHold> hold_of(const Task& task, const Hold& hold) {
+  const double size = task.faces.size();
+  const Ground ground(task.faces, hold, 0.5 * task.request.tip);
+  const MemberBox reach = ground.reach();
+  if (reach.empty()) return std::nullopt;
+  FreeHold out;
+  if (task.is_sides())
+    out.tool = {ground.across(), hold.normal, hold.middle};
+  else
+    out.tool = {-hold.normal, ground.across(), hold.middle + task.gap * hold.normal};
+  const std::array directions{ground.along(), ground.across()};
+  for (std::size_t i = 0; i < 2; ++i)
+    out.slides.push_back({directions[i], reach[i].from, reach[i].to});
+  out.turn = world::FreeTurn{out.tool.origin, hold.normal};
+  out.fits = [ground, size](const MemberBox& box) { return ground.holds(box, size); };
+  out.area = hold.area;
+  return out;
+}
+
+/// Round an axis, between two heights, in one direction of approach after the other.
+std::vector<FreeHold> holds_of(const Task& task, const RoundSide& side) {
+  std::vector<FreeHold> out;
+  const double shorter = task.request.tip > 0 ? 0.5 * task.request.tip
+                                              : 0.5 * (1 - kShares.back()) * (side.high - side.low);
+  const double half = 0.5 * (side.high - side.low) - shorter;
+  if (half < 0) return out;
+  const Vec3 outwards = Axes(side.axis).u;
+  const Vec3 middle = side.point + 0.5 * (side.low + side.high) * side.axis;
+  for (const double degrees : kElevations) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3 from = std::cos(angle) * outwards + std::sin(angle) * side.axis;
+    FreeHold& hold = out.emplace_back();
+    hold.tool = {-from, side.axis.cross(outwards), middle};
+    hold.slides.push_back({side.axis, -half, half});
+    hold.turn = world::FreeTurn{middle, side.axis};
+    hold.fits = [](const MemberBox&) { return true; };
+    hold.area = 2 * side.radius * (side.high - side.low);
+    if (std::abs(degrees) == kTilted) hold.rank = 1;
+  }
+  return out;
+}
+
+/// True if two faces are opposite parts of a round side.
+bool is_part(const Hold& hold, const RoundSide& side) {
+  const double thickness = hold.first->offset + hold.second->offset;
+  return std::abs(hold.normal.dot(side.axis)) <= kAlmostAcross &&
+         std::abs(0.5 * thickness - side.radius) <= side.tolerance &&
+         std::abs(hold.normal.dot(hold.middle - side.point)) <= side.tolerance;
+}
+
+/// Families: of round sides, and of faces that are no parts of them.
+std::vector<StatedGrasp> families(const Task& task, DerivedGrasps& out) {
+  const GraspRequest& request = task.request;
+  const double size = task.faces.size();
+  std::vector<std::vector<StatedGrasp>> found;
+  std::size_t tried = 0;
+  double largest = 0;
+  const auto add = [&](FreeHold hold) {
+    ++tried;
+    largest = std::max(largest, hold.area);
+    if (hold.area < kSmallShare * largest) hold.rank = 1;
+    std::vector<StatedGrasp> of_hold = families_of(hold, task.hand, request.closing, size);
+    if (of_hold.empty()) {
+      ++out.in_contact;
+      if (out.contact.empty())
+        out.contact = task.hand.contact_at(grasp_of(hold.tool, request.closing, size).read().pose)
+                          .value_or("");
+      return false;
+    }
+    found.push_back(std::move(of_hold));
+    return true;
+  };
+  std::vector<RoundSide> held;
+  if (task.is_sides())
+    for (const RoundSide& side : round_sides_of(task.faces, request.opening)) {
+      bool any = false;
+      for (const FreeHold& hold : holds_of(task, side)) any = add(hold) || any;
+      if (any) held.push_back(side);
+    }
+  for (const Hold& hold : holds_of(task.faces, request)) {
+    if (found.size() >= request.most) break;
+    if (std::ranges::any_of(held, [&](const RoundSide& side) { return is_part(hold, side); }))
+      continue;
+    if (const std::optional<FreeHold> free = hold_of(task, hold)) add(*free);
+  }
+  out.faces = std::max(out.faces, tried);
+  // The first family of each hold, then the second …: the first grasps differ most.
+  std::vector<StatedGrasp> in_order;
+  for (std::size_t k = 0, any = 1; any > 0; ++k) {
+    any = 0;
+    for (const std::vector<StatedGrasp>& of_hold : found) {
+      if (k >= of_hold.size()) continue;
+      ++any;
+      if (in_order.size() < request.most) in_order.push_back(of_hold[k]);
+    }
+  }
+  return in_order;
+}
+
+/// Grasps by the numbers that a scene states: these are what is decided.
+std::vector<StatedGrasp> stated_grasps(const world::World& world, std::size_t object,
+                                       const GraspRequest& request, DerivedGrasps& out) {
+  if (request.directions == 0)
+    throw Error(ErrorCode::InvalidArgument, "«directions» must be at least 1");
+  const std::size_t r = robot_named(world, request.robot);
+  const world::ToolFrame& tool = tool_named(world.robots[r], request.tool);
+  const collide::BoundingSet& set = world.objects.at(object).outer;
+  const Faces faces(set);
+  Hand hand(world, object, r, tool);
+  const Hand::Unchecked unchecked = hand.unchecked();
+  out.unchecked = unchecked.links;
+  out.hand_unchecked = unchecked.all;
+  const Task task{request, faces, hand,
+                  request.gap + set.epsilon() + epsilon_at(world.robots[r], tool.link)};
+  std::vector<StatedGrasp> grasps;
+  if (request.form != GraspRequest::Form::Families) grasps = single_poses(task, out);
+  if (request.form == GraspRequest::Form::Poses) return grasps;
+  // Single poses, of which planners can tell that none is in reach, are tried first.
+  const unsigned later = grasps.empty() ? 0 : 1;
+  for (StatedGrasp& family : families(task, out)) {
+    family.rank += later;
+    grasps.push_back(std::move(family));
+  }
+  return grasps;
 }
 
 std::string prefix_of(const std::string& tool, GraspRequest::Hold hold) {
@@ -655,11 +556,11 @@ Transform pose_at_first(const world::World& world, std::size_t object) {
 DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
                             const GraspRequest& request) {
   DerivedGrasps out;
-  const std::vector<StatedPose> poses = poses_of_grasps(world, object, request, out);
+  const std::vector<StatedGrasp> grasps = stated_grasps(world, object, request, out);
   const std::string prefix = prefix_of(
       tool_named(world.robots[robot_named(world, request.robot)], request.tool).name, request.hold);
-  for (const StatedPose& pose : poses)
-    out.grasps.push_back({prefix + std::to_string(out.grasps.size() + 1), pose.pose()});
+  for (const StatedGrasp& grasp : grasps)
+    out.grasps.push_back(grasp.read(prefix + std::to_string(out.grasps.size() + 1)));
   return out;
 }
 
@@ -721,12 +622,9 @@ AddedFeatures add_grasps(const std::filesystem::path& scene,
       objects, "grasps", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
         DerivedGrasps found;
         Json derived = Json::array();
-        for (const StatedPose& pose : poses_of_grasps(world, object, request, found)) {
+        for (const StatedGrasp& grasp : stated_grasps(world, object, request, found)) {
           added.names.push_back(prefix + std::to_string(derived.size() + 1));
-          derived.push_back(
-              {{"name", added.names.back()},
-               {"position", numbers(pose.position)},
-               {"quaternion", {pose.turn.x(), pose.turn.y(), pose.turn.z(), pose.turn.w()}}});
+          derived.push_back(grasp.json(added.names.back()));
         }
         const auto is_derived = [&](const Json& one) {
           const auto name = one.at("name").get<std::string>();
@@ -820,6 +718,8 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
   using R = GraspRequest;
   static const std::vector<std::pair<const char*, R::Hold>> holds{{"sides", R::Hold::Sides},
                                                                   {"face", R::Hold::Face}};
+  static const std::vector<std::pair<const char*, R::Form>> forms{
+      {"both", R::Form::Both}, {"families", R::Form::Families}, {"poses", R::Form::Poses}};
   static const std::vector<std::pair<const char*, R::Axis>> axes{{"x", R::Axis::X},
                                                                  {"y", R::Axis::Y}};
   static const std::vector<Option<R>> options{
@@ -838,6 +738,12 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
            .text = "Hold two parallel faces with fingers (sides), or one by suction (face)"},
           [](auto& r) -> auto& { return r.hold; }, holds),
       choice<R>(
+          {.name = "form",
+           .text = "Single poses in several directions (poses), families, or both: families then "
+                   "have a "
+                   "higher rank, and are tried later"},
+          [](auto& r) -> auto& { return r.form; }, forms),
+      choice<R>(
           {.name = "closing", .text = "Axis of the tool along which its fingers close"},
           [](auto& r) -> auto& { return r.closing; }, axes),
       option<R>(
@@ -850,14 +756,25 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
            .otherwise = "any"},
           [](auto& r) -> auto& { return r.opening; }),
       option<R>(
+          {.name = "tip",
+           .text = "Of families: width of the fingers' tips, or diameter of the suction cup; it "
+                   "stays within the faces, wherever it is turned",
+           .low = 0,
+           .high = 1e9,
+           .absolute = true},
+          [](auto& r) -> auto& { return r.tip; }),
+      option<R>(
           {.name = "directions",
-           .text = "Directions of approach, evenly round the axis of closing; of suction, "
-                   "turns about the approach",
+           .text = "Of single poses: directions of approach, evenly round the axis of closing; of "
+                   "suction, turns about the approach",
            .low = 1,
            .high = 360},
           [](auto& r) -> auto& { return r.directions; }),
       option<R>(
-          {.name = "most", .text = "Most grasps of an object", .low = 1, .high = 1000},
+          {.name = "most",
+           .text = "Most single grasps of an object, and most families",
+           .low = 1,
+           .high = 1000},
           [](auto& r) -> auto& { return r.most; }),
       option<R>(
           {.name = "gap",

@@ -323,8 +323,8 @@ py::dict add_places(const py::object& path, const py::object& objects, const py:
 }
 
 constexpr const char* kGraspsDoc =
-    R"(Derives grasps of objects from the faces of their sets, free of contact with the hand, and writes
-them into the scene: `kaboum-scene grasps`.
+    R"(Derives grasps of objects from the faces and round sides of their sets, free of contact with the
+hand, and writes them into the scene, single poses and families: `kaboum-scene grasps`.
 
 Grasps of the tool that were derived so before are replaced where some are found. Whether an arm
 gets there, and whether fingers or a cup reach the faces, is not looked at.

@@ -79,7 +79,16 @@ for o in json.load(open("p.json"))["objects"]:
     assert o["names"] == points[o["object"]] == ["bottom", "top"] and not o["kept"] and not o["shortfall"], o
 for o in json.load(open("kept.json"))["objects"]:
     assert o["kept"] == ["bottom", "top"] and not o["names"] and not o["shortfall"], o
-assert 0 < len(grasps["b3"]) <= 24 and grasps["table"] == []
+assert grasps["table"] == []
+# Single poses first, then families, which are tried later; round b3 is held round its axis.
+for o in scene["objects"]:
+    found = o.get("grasps", [])
+    single = [g for g in found if "turn" not in g]
+    assert found[:len(single)] == single and len(single) <= 24, found
+    assert all("rank" not in g for g in single) and all(g["rank"] >= 1 for g in found[len(single):]), found
+    if o["name"] == "b3":
+        families = found[len(single):]
+        assert len(families) == 5 and all(g["turn"]["about"]["direction"] == [0, 0, 1] and len(g["turn"]) == 1 for g in families), families
 END
 
 cat >stow.kpl <<'END'
@@ -99,7 +108,7 @@ END
 expect 0 'solved: 3 nodes' "$BIN/kaboum-plan" solve stow.kpl --scene cell.json -o plan.json
 shows 0 'valid' "$BIN/kaboum-plan" check stow.kpl --scene cell.json --plan plan.json
 shows 0 '^good' "$BIN/kaboum-plan" run stow.kpl --scene cell.json --plan plan.json
-expect 0 'b1: 2' "$S" grasps cell.json --object b1 --hold face --directions 1
+expect 0 'b1: 2' "$S" grasps cell.json --object b1 --hold face --form poses --directions 1
 python3 -c '
 import json
 of = [g["name"] for o in json.load(open("cell.json"))["objects"] if o["name"] == "b1" for g in o["grasps"]]
@@ -187,7 +196,7 @@ edit "
 arm['tools'].append({'name': 'low', 'link': 'forearm', 'position': [0, 0, 0.4]})
 d['allowed_contacts'] = [['b1', 'arm/hand']]"
 expect 0 'b1: whether arm/hand touches it was not looked at' \
-  "$S" grasps edited.json --object b1 --tool low --closing x --opening 0.03 --most 1 --quiet --report g.json
+  "$S" grasps edited.json --object b1 --tool low --closing x --opening 0.03 --form poses --most 1 --quiet --report g.json
 python3 -c '
 import json
 o = json.load(open("g.json"))["objects"][0]
@@ -202,6 +211,97 @@ expect 0 'b: 2' "$S" places nor.json
 grep -q '"robots"' nor.json && fail "a scene got robots"
 expect 2 'nor.json: .*no robot' "$S" grasps nor.json
 edit "d['objects'].append({'name': 'ball', 'shape': {'sphere': {'radius': 0.015}}})"
-expect 1 'ball: none; it is round' "$S" grasps edited.json --object ball --closing x --opening 0.04
+expect 1 'ball: none; it is round' "$S" grasps edited.json --object ball --closing x --opening 0.04 --form poses
+expect 1 'ball: none; no two parallel faces face each other, and no side is round, within the opening' \
+  "$S" grasps edited.json --object ball --closing x --opening 0.029
+expect 0 'ball: 15' "$S" grasps edited.json --object ball --closing x --opening 0.04
 expect 1 'ball: none; it is round' "$S" grasps edited.json --object ball --hold face
+
+# A can among walls: from the side, where its single poses are, no hand gets in. From above one does.
+expect 0 '' "$S" make can.json --robot arm=arm.urdf --effort fast --epsilon 0.002 \
+  --primitive table=box:0.4,0.3,0.04 --at table=0.52,-0.3,-0.02 --primitive shelf=box:0.2,0.15,0.02 --at shelf=0.45,0.3,0.05 \
+  --primitive can=cylinder:0.011,0.06 --at can=0.5,-0.3,0.0305 \
+  --primitive w1=box:0.004,0.08,0.05 --at w1=0.462,-0.3,0.0255 --primitive w2=box:0.004,0.08,0.05 --at w2=0.538,-0.3,0.0255 \
+  --primitive w3=box:0.08,0.004,0.05 --at w3=0.5,-0.338,0.0255 --primitive w4=box:0.08,0.004,0.05 --at w4=0.5,-0.262,0.0255
+python3 - <<'END'
+import json
+d = json.load(open("can.json"))
+arm = d["robots"][0]
+arm["tools"] = [{"name": "hand", "link": "hand", "position": [0, 0, 0.135]}]
+arm["home"] = {"j2": -0.5, "j3": 1.7, "j5": 1.9415926535897932}
+json.dump(d, open("can.json", "w"), indent=1)
+END
+cat >can.kpl <<'END'
+domain can
+types: object, block, robot, conf handle, pose handle
+constants: robot arm; object table, shelf; block can; conf home; pose start
+predicates: stowed(block)
+functions: conf(robot) : conf; pose(block) : pose
+externals: transfer(robot, block, object, conf) : pose
+action stow(?o : block)
+  preconds: K(!stowed(?o)) & let ?p = extern(transfer(arm, ?o, shelf, home))
+  effects: add(Kf, stowed(?o)), add(Kf, pose(?o) = ?p)
+init: K(conf(arm) = home), K(pose(can) = start), K(!stowed(can))
+goal: K(stowed(can))
+END
+expect 0 '' "$S" places can.json --object can --object shelf
+cp can.json poses.json
+expect 0 'can: 24' "$S" grasps poses.json --object can --closing x --opening 0.03 --form poses
+expect 7 '' "$BIN/kaboum-plan" solve can.kpl --scene poses.json -o none.json
+expect 0 'can: 29' "$S" grasps can.json --object can --closing x --opening 0.03 --preview can.html
+expect 0 'solved: 1 nodes' "$BIN/kaboum-plan" solve can.kpl --scene can.json -o plan.json
+shows 0 'valid' "$BIN/kaboum-plan" check can.kpl --scene can.json --plan plan.json
+shows 0 '^good' "$BIN/kaboum-plan" run can.kpl --scene can.json --plan plan.json
+# The page has a layer for the can and for each of its grasps, with the hand and pointers of each.
+python3 - <<'END' || fail "the page of grasps has not what it should show"
+import json, re
+data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', open("can.html").read(), re.S).group(1))
+names = [layer["name"] for layer in data["layers"]]
+assert names == ["can"] + [f"can: hand/side-{i + 1}" for i in range(29)], names
+shapes = [len(layer["shapes"]) for layer in data["layers"]]
+assert shapes == [1] + 24 * [1 + 3] + 5 * [60 + 4 * 3], shapes
+assert [layer["view"] for layer in data["layers"]] == ["shown", "shown"] + 28 * ["hidden"]
+facts = dict(data["facts"])
+assert facts["can: hand/side-25"].startswith("turns all round, slides by 0.05") and facts["can: hand/side-1"] == "one pose", facts
+END
+expect 2 'html' "$S" grasps can.json --object can --preview can.png
+expect 2 'form' "$S" grasps can.json --object can --form all
+expect 2 'tip' "$S" grasps can.json --object can --tip -1
+# Tips that are higher than the can.
+expect 1 'can: [0-9]* kept .*with room for the tips; those derived before are kept' \
+  "$S" grasps can.json --object can --closing x --opening 0.03 --form families --tip 0.1
+# A turned part, in convex bodies of a mesh: no two of its faces are parallel, and it is held at its neck.
+python3 - <<'END'
+import math
+profile, n = [(0.02, 0), (0.02, 0.04), (0.011, 0.055), (0.011, 0.09)], 23
+points = [(0, 0, 0), (0, 0, 0.09)] + [(r * math.cos(2 * math.pi * k / n), r * math.sin(2 * math.pi * k / n), z) for r, z in profile for k in range(n)]
+at = lambda i, k: 2 + i * n + k % n
+faces = [(0, at(0, k + 1), at(0, k)) for k in range(n)] + [(1, at(3, k), at(3, k + 1)) for k in range(n)]
+for i in range(3):
+    for k in range(n):
+        faces += [(at(i, k), at(i, k + 1), at(i + 1, k + 1)), (at(i, k), at(i + 1, k + 1), at(i + 1, k))]
+with open("bottle.off", "w") as f:
+    print("OFF\n", len(points), len(faces), 0, file=f)
+    for row in points:
+        print(*row, file=f)
+    for row in faces:
+        print(3, *row, file=f)
+END
+expect 0 '' "$S" make bottle.json --robot arm=arm.urdf --effort fast --epsilon 0.001 --object bottle=bottle.off
+python3 - <<'END'
+import json
+d = json.load(open("bottle.json"))
+d["robots"][0]["tools"] = [{"name": "hand", "link": "hand", "position": [0, 0, 0.135]}]
+json.dump(d, open("bottle.json", "w"), indent=1)
+END
+expect 1 'bottle: none; no two parallel faces' "$S" grasps bottle.json --closing x --opening 0.03 --form poses
+expect 0 'bottle: [345]' "$S" grasps bottle.json --closing x --opening 0.03
+python3 - <<'END' || fail "a bottle is not held at its neck"
+import json
+for g in json.load(open("bottle.json"))["objects"][0]["grasps"]:
+    about, slide = g["turn"]["about"], g["slides"][0]
+    assert max(abs(about["point"][0]), abs(about["point"][1])) < 2e-4 and slide["along"]["direction"] == [0, 0, 1], g
+    low, high = about["point"][2] + slide["from"], about["point"][2] + slide["to"]
+    assert 0.053 <= low <= high <= 0.0915, g
+END
 finish

@@ -2,11 +2,14 @@
 // derives grasps and places.
 
 #include <kaboum/base/error.h>
+#include <kaboum/io/mesh_io.h>
 #include <kaboum/scene/derived_features.h>
 #include <kaboum/scene/scene_update.h>
+#include <kaboum/world/scene.h>
 
 #include <CLI/CLI.hpp>
 
+#include "grasp_page.h"
 #include "names.h"
 #include "options.h"
 #include "pairs.h"
@@ -135,8 +138,15 @@ int say_added(const tools::SceneOptions& o, const scene::AddedFeatures& added,
 
 int add_grasps(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::require_apart({{"--report", o.common.report}}, scene::files_of(o.scene));
-  return say_added(o, scene::add_grasps(o.scene, o.objects, o.derived_grasps), "grasps");
+  tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}},
+                       scene::files_of(o.scene));
+  const scene::AddedFeatures added = scene::add_grasps(o.scene, o.objects, o.derived_grasps);
+  if (!o.preview.empty()) {
+    const std::string page =
+        tools::page_of_grasps(o.scene, world::read_scene(o.scene).world, added, o.derived_grasps);
+    io::write_file(o.preview, {page.data(), page.size()});
+  }
+  return say_added(o, added, "grasps");
 }
 
 int add_places(const tools::SceneOptions& o) {

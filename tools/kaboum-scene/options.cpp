@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/arguments.h"
 #include "common/request_options.h"
 
 namespace kaboum::tools {
@@ -90,12 +91,17 @@ CLI::App* describe_pairs(CLI::App& app, SceneOptions& o) {
 }
 
 CLI::App* describe_grasps(CLI::App& app, SceneOptions& o) {
-  CLI::App* grasps =
-      describe_derived(app, o, "grasps",
-                       "Derive grasps of objects from the faces of their sets, free of contact "
-                       "with the hand, and write them into the scene",
-                       "An object that gets grasps; may be repeated [all]");
+  CLI::App* grasps = describe_derived(
+      app, o, "grasps",
+      "Derive grasps of objects from the faces and round sides of their sets, free of "
+      "contact with the hand, and write them into the scene",
+      "An object that gets grasps; may be repeated [all]");
   add_request_options(*grasps, scene::grasp_options(), o.derived_grasps, o.stated);
+  grasps
+      ->add_option("--preview", o.preview,
+                   "Write a page (.html) that shows the grasps round their objects")
+      ->type_name("FILE")
+      ->check(page_name());
   add_common_options(*grasps, o.common);
   return grasps;
 }

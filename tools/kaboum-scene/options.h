@@ -18,7 +18,7 @@ class App;
 namespace kaboum::tools {
 
 struct SceneOptions {
-  std::string scene, robot, srdf, cache;
+  std::string scene, robot, srdf, cache, preview;
   std::vector<std::string> robots, objects, primitives, regions, places, scales;
   scene::SceneMaker make;  ///< but for what these name; of update, its packages
   bool no_cache = false;

@@ -21,40 +21,62 @@ struct GraspRequest {
     Sides,  ///< two parallel faces, by two fingers
     Face,   ///< one face, by suction
   };
+  enum class Form {
+    Both,      ///< families have a higher rank then
+    Families,  ///< what is free about a hold is left free
+    Poses,     ///< single ones, in several directions
+  };
   enum class Axis { X, Y };
 
   std::string robot = {};  ///< empty: the only one
   std::string tool = {};   ///< empty: the only one of the robot
   Hold hold = Hold::Sides;
+  Form form = Form::Both;
   Axis closing = Axis::Y;  ///< of the tool: the fingers close along it
   /// Largest distance between two faces: how far the fingers open. [length]
   double opening = std::numeric_limits<double>::infinity();
-  std::size_t directions = 8;  ///< of approach, evenly round the axis of closing or of suction
-  std::size_t most = 24;       ///< grasps
-  double gap = 0.001;  ///< from the tool to a face, beyond the ε of object and hand [length]
+  /// Of families: width of the fingers' tips, or diameter of the suction cup. All of it stays
+  /// within the faces; 0: it stays off the outer twentieth of the way to their edges. [length]
+  double tip = 0;
+  /// Of single poses: of approach, evenly round the axis of closing or of suction.
+  std::size_t directions = 8;
+  std::size_t most = 24;  ///< grasps
+  double gap = 0.001;     ///< from the tool to a face, beyond the ε of object and hand [length]
 };
 
 /// Grasps that were derived, and those that were left out.
 struct DerivedGrasps {
   std::vector<world::Grasp> grasps;  ///< the largest faces first; called "TOOL/side-1", …
-  std::size_t faces = 0;             ///< pairs of faces, or faces, that fit
-  std::size_t in_contact = 0;        ///< grasps in contact with the hand, wherever the tool was put
-  std::string contact;               ///< one of those contacts: "arm/palm"; empty: there was none
+  /// Pairs of faces, or faces, that fit; of families, round sides in one direction of approach
+  /// too. With both forms the larger number.
+  std::size_t faces = 0;
+  std::size_t in_contact = 0;  ///< grasps in contact with the hand, wherever the tool was put
+  std::string contact;         ///< one of those contacts: "arm/palm"; empty: there was none
   /// Links of the hand whose contact with the object was not looked at: they have shapes but no
   /// set, or the contact is allowed.
   std::vector<std::string> unchecked;
   bool hand_unchecked = false;  ///< no link of the hand was looked at
 };
 
-/// Grasps of an object: at faces of its outer set whose middle no other body covers. Of two
-/// fingers, the tool is in the middle of where the faces face each other or, where the hand would
-/// be in contact, nearer to where it comes from. Each grasp is free of contact between the object
-/// and the hand (what moves with the tool), with the robot's joints at home, by bounded predicates;
-/// it is the pose by the numbers that a scene states. Whether an arm gets there, and whether
-/// fingers or a cup reach the faces, is not decided. Round bodies have no faces.
+/// Grasps of an object by its outer set: families, or single poses.
+///
+/// Families are anywhere on faces that no other body covers, turned about their normal, and round
+/// the axes of sides that are round, within boxes of values. All members are free of contact
+/// between the object and the hand (what moves with the tool), with the robot's joints at home, for
+/// certain: docs/scene.md, "Grasps and places".
+///
+/// Single poses are at faces whose middle no other body covers. Of two fingers, the tool is in the
+/// middle of where the faces face each other or, where the hand would be in contact, nearer to
+/// where it comes from. Each is free likewise. Round bodies have no faces.
+///
+/// What is decided is the grasp by the numbers that a scene states. Whether an arm gets there, and
+/// whether fingers or a cup reach what they hold, is not decided.
 /// @throws Error{InvalidArgument} for names that the world does not have, and no directions
 DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
                             const GraspRequest& request);
+
+/// The links of a robot's hand: those that move with its tool, by link.
+std::vector<bool> links_of_hand(const world::RobotModel& robot, const world::ToolFrame& tool);
 
 /// Request for places where objects stand.
 struct PlaceRequest {
