@@ -256,10 +256,68 @@ TEST(GraspFamilies, MissNothingThinBetweenWhatIsLookedAt) {
   }
 }
 
+TEST(GraspFamilies, HoldArcsNotOnlyTheirEnds) {
+  // A plate turns below a wall of the hand, which its corners meet in the middle of a cell only.
+  const double half = 0.1, wall = half * std::sqrt(2.0) - 2.5e-4;
+  ASSERT_GT(wall, half * std::sqrt(2.0) * std::cos(kPi / 36));
+  const world::World world = world_of({{{wall, -0.2, -0.02}, {wall + 0.01, 0.2, 0.02}}},
+                                      {{{-half, -half, 0}, {half, half, 0.01}}});
+  int up = 0;
+  for (const world::Grasp& grasp :
+       derive_families(world, {.hold = GraspRequest::Hold::Face, .tip = 2 * half - 1e-5}).grasps) {
+    if (std::abs(grasp.turn->axis.z()) < 0.9) continue;
+    ++up;
+    const Transform stated = tool_in_object(grasp);
+    for (double angle = grasp.turn->from; angle <= grasp.turn->to; angle += 1e-3) {
+      const Eigen::Matrix3d turn(Eigen::AngleAxisd(angle, grasp.turn->axis));
+      const Vec3 towards = turn * stated.linear.col(0);
+      EXPECT_LT(half * (std::abs(towards.x()) + std::abs(towards.y())), wall);
+    }
+  }
+  EXPECT_GE(up, 4);
+}
+
+TEST(GraspFamilies, KeepRoundedBodiesAndMarginsFree) {
+  // A capsule along the tool's z axis, beside a ball or a rod, before the hand's own ball.
+  geom::ConvexBody capsule{"capsule", {}, 0.02}, ball{"ball", {}, 0.01};
+  capsule.core.vertices = {Vec3(0, 0, -0.1), Vec3(0, 0, 0.1)};
+  const auto reach = [&](const world::World& world) {
+    // How far from above the tool goes along the capsule, to the hand's ball behind it.
+    double lowest = 1;
+    for (const world::Grasp& grasp : derive_families(world, {.opening = 0.05}).grasps) {
+      const Transform tool = tool_in_object(grasp);
+      if (tool.linear(2, 2) > -0.99) continue;
+      lowest = std::min(lowest, tool.translation.z() + grasp.slides[0].from);
+    }
+    return lowest;
+  };
+  world::World world = world_of_bodies({capsule});
+  ball.core.vertices = {Vec3(0, 0, -0.1)};
+  world.robots[0].tools[0].pose.translation = Vec3::Zero();
+  world.robots[0].shapes[1].outer = {{ball}, collide::Direction::Outer, 0};
+  // The ball's middle stays 0.03 above the end of the core.
+  EXPECT_GE(reach(world), 0.1 + 0.03 - 0.1);
+  EXPECT_LE(reach(world), 0.1 + 0.03 - 0.1 + 2e-3);
+  world.margins.all = 0.02;
+  EXPECT_GE(reach(world), 0.1 + 0.05 - 0.1);
+  EXPECT_LE(reach(world), 0.1 + 0.05 - 0.1 + 2e-3);
+  world.margins.all = 0;
+  world.allowed = {{world::Item{world::Item::kObject, 0}, world::Item{0, 1}}};
+  EXPECT_LE(reach(world), -0.09);
+  // Looked at from the side, the capsule's thickness counts as well.
+  world.allowed.clear();
+  ball.core.vertices = {Vec3(0.025, 0, 0)};
+  world.robots[0].shapes[1].outer = {{ball}, collide::Direction::Outer, 0};
+  EXPECT_TRUE(derive_families(world, {.opening = 0.05}).grasps.empty());
+  ball.core.vertices = {Vec3(0.0302, 0, 0)};
+  world.robots[0].shapes[1].outer = {{ball}, collide::Direction::Outer, 0};
+  EXPECT_FALSE(derive_families(world, {.opening = 0.05}).grasps.empty());
+}
+
 TEST(GraspFamilies, AreNotWhereOtherBodiesCoverFaces) {
   // A step on the middle of a plate: tips go beside it only.
   const std::vector<Block> object{{{-0.1, -0.1, -0.01}, {0.1, 0.1, 0.01}},
-                                  {{-0.03, -0.1, 0.01}, {0.03, 0.1, 0.03}}};
+                                  {{-0.032, -0.1, 0.01}, {0.032, 0.1, 0.03}}};
   const world::World world = world_of({{{-0.3, -0.3, -2}, {0.3, 0.3, -1}}}, object);
   std::mt19937_64 random(14);
   constexpr double kTip = 0.02;
@@ -274,7 +332,7 @@ TEST(GraspFamilies, AreNotWhereOtherBodiesCoverFaces) {
       ++on_plate;
       for (int n = 0; n < 200; ++n) {
         const Vec3 at = tool_of_member(grasp, values_within(grasp, random)).translation;
-        EXPECT_GE(std::abs(at.x()), 0.03 + 0.5 * kTip - 1e-9);
+        EXPECT_GE(std::abs(at.x()), 0.032 + 0.5 * kTip - 1e-9);
         EXPECT_LE(std::abs(at.x()), 0.1 - 0.5 * kTip + 1e-9);
         EXPECT_LE(std::abs(at.y()), 0.1 - 0.5 * kTip + 1e-9);
       }
