@@ -77,6 +77,7 @@ void Simulation::carry_out(const plan::RunStep& step) {
   judge::CellState state = before->state;
   mounted_ = before->mounted;
   carried_.clear();
+  pushed_.clear();
   if (report_.steps == 1) {
     if (const auto meeting = cell_.find_meeting(state)) {
       ++report_.collisions;
@@ -106,6 +107,7 @@ void Simulation::hold(const MotionPart& part, judge::CellState& state) {
     if (held && (wanted == part.holds.end() || wanted->second != place.hold->link)) {
       place.pose = cell_.pose_of(state, o);
       place.hold.reset();
+      pushed_.erase(o);
       if (const auto meeting = cell_.find_meeting_of(state, o)) {
         ++report_.collisions;
         say(meeting->names[0] + " and " + meeting->names[1] + " meet when one is let go");
@@ -122,11 +124,52 @@ void Simulation::hold(const MotionPart& part, judge::CellState& state) {
     const bool carried = below && part.holds.contains(*below);
     if (place.away ||
         (!carried && !is_at_grasp(world_, part.robot, wanted->second, link, o, pose))) {
-      ++report_.jumps;
-      say(world_.objects[o].name + " is held without a grasp");
+      const auto way =
+          pushed_way(world_, part.robot, wanted->second, link, o, pose, push_gap(part, o));
+      if (way && !place.away) {
+        pushed_[o] = {pose, *way, drop_of(o)};
+      } else {
+        ++report_.jumps;
+        say(world_.objects[o].name + " is held without a grasp");
+      }
     }
     place.hold = {part.robot, wanted->second, inverse(link) * pose,
                   touching(world_.robots[part.robot], wanted->second)};
+  }
+}
+
+/// How far an object is above what it rests on, at most.
+double Simulation::drop_of(std::size_t object) const {
+  double epsilon = 0;
+  for (const world::Object& o : world_.objects) epsilon = std::max(epsilon, o.outer.epsilon());
+  return kMostGap + epsilon + world_.objects[object].outer.epsilon();
+}
+
+/// Between a tool and what it pushes, at most.
+double Simulation::push_gap(const MotionPart& part, std::size_t object) const {
+  double epsilon = 0;
+  for (const world::LinkShape& shape : world_.robots[part.robot].shapes)
+    if (shape.link == part.holds.at(object)) epsilon = std::max(epsilon, shape.outer.epsilon());
+  return kMostGap + epsilon + world_.objects[object].outer.epsilon();
+}
+
+/// Whether all that is pushed stays on its line, and rests on something: a little lower it would
+/// meet it.
+void Simulation::look_at_pushed(const judge::CellState& state) {
+  for (auto& [object, push] : pushed_) {
+    const geom::Transform pose = cell_.pose_of(state, object);
+    judge::CellState lower = state;
+    lower.objects[object].hold.reset();
+    lower.objects[object].pose = pose;
+    lower.objects[object].pose.translation.z() -= push.drop;
+    const bool straight = is_on_line(push.from, push.way, pose);
+    if (straight && cell_.find_meeting_of(lower, object)) continue;
+    if (push.wrong) continue;
+    push.wrong = true;
+    ++report_.jumps;
+    say(world_.objects[object].name + (straight
+                                           ? " is pushed where it rests on nothing"
+                                           : " is pushed and does not stay on a straight line"));
   }
 }
 
@@ -162,6 +205,7 @@ void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,
         say(meeting->names[0] + " and " + meeting->names[1] + " meet at " +
             std::to_string(static_cast<double>(k) / trajectory.rate()) + " s");
     }
+    if (!pushed_.empty()) look_at_pushed(state);
     before = std::move(now);
     now = std::move(after);
   }

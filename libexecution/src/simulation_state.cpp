@@ -18,6 +18,8 @@ namespace {
 
 /// Ten times what words of poses are rounded to. [length, 1]
 constexpr double kSame = 1e-6;
+/// How far what is pushed may be off its line [length], and leaning or turned [rad].
+constexpr double kOffLine = 1e-3, kOffTurn = 5e-3;
 
 /// The value of FUNCTION(NAME); `otherwise` where the domain does not have the term.
 std::optional<std::string> word(const plan::Model& model, const plan::KnownState& known,
@@ -191,6 +193,36 @@ bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t lin
         if (same(judge::product(at, member), object_pose)) return true;
       }
   return false;
+}
+
+std::optional<geom::Vec3> pushed_way(const world::World& world, std::size_t robot,
+                                     std::uint32_t link, const geom::Transform& link_pose,
+                                     std::size_t object, const geom::Transform& object_pose,
+                                     double gap) {
+  const auto is_push = [](const world::Feature& f) {
+    return f.kind == world::Feature::Kind::Plane && f.name.starts_with("push");
+  };
+  for (const world::LinkFeature& front : world.robots[robot].features) {
+    if (front.link != link || !is_push(front.feature)) continue;
+    for (const world::Feature& side : world.objects[object].features) {
+      if (!is_push(side)) continue;
+      const geom::Vec3 way = link_pose.linear * front.feature.direction,
+                       apart = object_pose * side.point - link_pose * front.feature.point;
+      const double ahead = apart.dot(way);
+      if ((way + object_pose.linear * side.direction).norm() <= kSame &&
+          std::abs(way.z()) <= kSame && ahead >= 0 && ahead <= gap &&
+          (apart - ahead * way).norm() <= kSame)
+        return way;
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_on_line(const geom::Transform& from, const geom::Vec3& way, const geom::Transform& now) {
+  const geom::Vec3 gone = now.translation - from.translation;
+  const double along = gone.dot(way);
+  return along >= -kOffLine && (gone - along * way).norm() <= kOffLine &&
+         (now.linear - from.linear).cwiseAbs().maxCoeff() <= kOffTurn;
 }
 
 bool is_on_seat(const world::World& world, std::size_t object, const geom::Transform& object_pose,

@@ -34,6 +34,18 @@ bool is_at_grasp(const world::World& world, std::size_t robot, std::uint32_t lin
                  const geom::Transform& link_pose, std::size_t object,
                  const geom::Transform& object_pose);
 
+/// Which way a robot's link pushes an object, level and of unit length: a plane `push…` of the link
+/// faces a plane `push…` of the object, no farther away than `gap`, their points opposite each
+/// other. nullopt: it pushes nothing.
+std::optional<geom::Vec3> pushed_way(const world::World& world, std::size_t robot,
+                                     std::uint32_t link, const geom::Transform& link_pose,
+                                     std::size_t object, const geom::Transform& object_pose,
+                                     double gap);
+
+/// Whether an object that was pushed that way from a pose may be at another one: on a straight
+/// line, neither leaning nor turned.
+bool is_on_line(const geom::Transform& from, const geom::Vec3& way, const geom::Transform& now);
+
 /// Whether an object and another one are where all constraints of one of some sets of the scene,
 /// which are between these two, are met. By formulas of its own.
 bool is_mated(const world::World& world, const std::set<std::string>& sets, std::size_t object,

@@ -282,6 +282,17 @@ Answer join(Geometry& geometry, const Question& question) {
                  [&](const Sequence& s) { return s.word_of_mounted(o); });
 }
 
+Answer push(Geometry& geometry, const Question& question) {
+  const std::size_t r = robot_named(geometry, question.arguments[0]);
+  const std::size_t o = object_named(geometry, question.arguments[1]);
+  const std::size_t support = object_named(geometry, question.arguments[2]);
+  const std::vector<double> end = configuration_of(question.arguments[3], geometry.world.robots[r]);
+  return perform(
+      geometry, question, {"push", {r}, {o, support}},
+      [&](Sequence& s) { return s.push(r, o, support) && s.go(r, end); },
+      [&](const Sequence& s) { return s.word_of_object(o); });
+}
+
 Answer hand_over(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);

@@ -15,6 +15,7 @@ plan::Answer put(Geometry& geometry, const plan::Question& question);
 plan::Answer put_upright(Geometry& geometry, const plan::Question& question);
 plan::Answer lift(Geometry& geometry, const plan::Question& question);
 plan::Answer join(Geometry& geometry, const plan::Question& question);
+plan::Answer push(Geometry& geometry, const plan::Question& question);
 plan::Answer hand_over(Geometry& geometry, const plan::Question& question);
 plan::Answer wander(Geometry& geometry, const plan::Question& question);
 plan::Answer release(Geometry& geometry, const plan::Question& question);

@@ -28,6 +28,7 @@ plan::ExternalBindings bind_externals(world::World world, const ExternalOptions&
                                 {"putUpright", 4, put_upright},
                                 {"lift", 2, lift},
                                 {"join", 4, join},
+                                {"push", 4, push},
                                 {"handOver", 3, hand_over},
                                 {"wander", 1, wander},
                                 {"release", 3, release},

@@ -4,6 +4,7 @@
 
 #include "lines.h"
 #include "motion_sequence.h"
+#include "push_contact.h"
 
 namespace kaboum::manipulation {
 
@@ -38,6 +39,8 @@ class Sequence : public MotionSequence {
   bool lift(std::size_t robot, std::size_t object, double height);
   /// Both robots to where one can grasp what the other one holds; then it holds it.
   bool hand_over(std::size_t from, std::size_t object, std::size_t to);
+  /// Pushes an object along a straight line on what it stands on, and backs off.
+  bool push(std::size_t robot, std::size_t object, std::size_t support);
   /// To some configuration, at random.
   bool wander(std::size_t robot);
   /// To where constraints of the scene are met, between features that move with the robot or what
@@ -111,6 +114,13 @@ class Sequence : public MotionSequence {
   bool meet(std::size_t from, std::size_t object, std::size_t to, const std::vector<double>& q,
             Grasps grasps);
   bool meet_somewhere(std::size_t from, std::size_t object, std::size_t to, Grasps grasps);
+
+  struct PushSide;
+  /// Sides that the object can be pushed from; none: the reason is kept.
+  std::vector<PushSide> push_sides(std::size_t robot, std::size_t object,
+                                   const PushedObject& pushed);
+  bool push_along(std::size_t robot, std::size_t object, const PushedObject& pushed,
+                  const PushContact& contact, const std::vector<double>& q, double length);
 
   std::optional<Target> target_;
 };

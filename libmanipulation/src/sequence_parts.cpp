@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "sequence.h"
+#include "standing.h"
 
 namespace kaboum::manipulation {
 namespace {
@@ -22,77 +22,12 @@ using world::Transform;
 
 /// Between two waypoints of a line on which something slides, and of one on which it is lifted. [m]
 constexpr double kStep = 0.01, kLiftStep = 0.02;
-/// How far from one plane points of an upper face may be, with the sets' ε. [m]
-constexpr double kFlat = 1e-4;
-/// A base is at least so many epsilons of its support wide: slots up to 2 wide may be closed in
-/// sets.
-constexpr double kBridges = 4;
 /// How far above or below a face a point may be that is meant to be on it. [m]
 constexpr double kOfFace = 0.01;
-/// How far from level a support may lie. [1 - cosine]
-constexpr double kLevel = 1e-9;
 /// Places on a face that are drawn, in each attempt more.
 constexpr std::size_t kPlaces = 64;
 /// Choices of a place beside the points 'top…', each with draws of its own.
 constexpr std::size_t kChosenPlaces = 8;
-
-/// What of a convex body is at its top, seen from above: in the object's frame.
-class UpperFace {
- public:
-  /// @param inside  the outline is taken so much smaller all round
-  UpperFace(const geom::ConvexBody& body, double inside) : inside_(inside) {
-    for (const geom::Vec3& v : body.core.vertices) height_ = std::max(height_, v.z());
-    for (const geom::Vec3& v : body.core.vertices)
-      if (v.z() >= height_ - kFlat) corners_.push_back(v);
-    height_ += body.radius;
-    for (const geom::Vec3& v : corners_) {
-      low_ = low_.cwiseMin(v);
-      high_ = high_.cwiseMax(v);
-    }
-    enclose();
-  }
-
-  [[nodiscard]] double height() const { return height_; }
-  /// Whether a point is above it, seen from above.
-  [[nodiscard]] bool holds(const geom::Vec3& p) const {
-    if (outline_.size() < 3) return false;
-    for (std::size_t i = 0; i < outline_.size(); ++i) {
-      const geom::Vec3 &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
-      if (turn(a, b, p) < inside_ * (b - a).head<2>().norm()) return false;
-    }
-    return true;
-  }
-  /// A point of the box round it, by shares of its sides.
-  [[nodiscard]] geom::Vec3 at(double x, double y) const {
-    return {low_.x() + x * (high_.x() - low_.x()), low_.y() + y * (high_.y() - low_.y()), height_};
-  }
-
- private:
-  static double turn(const geom::Vec3& a, const geom::Vec3& b, const geom::Vec3& p) {
-    return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
-  }
-  /// The corners' outline, counterclockwise: Andrew's chains.
-  void enclose() {
-    std::ranges::sort(corners_, [](const geom::Vec3& a, const geom::Vec3& b) {
-      return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-    });
-    const auto chain = [&](const geom::Vec3& p, std::size_t from) {
-      while (outline_.size() >= from + 2 &&
-             turn(outline_[outline_.size() - 2], outline_.back(), p) <= 0)
-        outline_.pop_back();
-      outline_.push_back(p);
-    };
-    for (const geom::Vec3& p : corners_) chain(p, 0);
-    const std::size_t lower = outline_.empty() ? 0 : outline_.size() - 1;
-    for (auto p = corners_.rbegin(); p != corners_.rend(); ++p) chain(*p, lower);
-    if (!outline_.empty()) outline_.pop_back();
-  }
-
-  double inside_ = 0;
-  double height_ = -std::numeric_limits<double>::infinity();
-  geom::Vec3 low_ = geom::Vec3::Constant(std::numeric_limits<double>::infinity()), high_ = -low_;
-  std::vector<geom::Vec3> corners_, outline_;
-};
 
 /// Points of an object on which things are put.
 std::vector<geom::Vec3> tops_of(const world::Object& below) {
@@ -110,16 +45,6 @@ std::string for_part(const world::Object& below, const std::string& name,
   for (const world::Feature& feature : below.features)
     if (feature.name == special) return special;
   return name;
-}
-
-const world::Feature& feature_named(const world::Object& object, const std::string& name,
-                                    world::Feature::Kind kind, const char* needs) {
-  for (const world::Feature& feature : object.features)
-    if (feature.name == name && feature.kind == kind) return feature;
-  throw Error(ErrorCode::InvalidInput,
-              "object '" + object.name + "' of the scene has no " +
-                  (kind == world::Feature::Kind::Point ? "point" : "plane") + " '" + name +
-                  "' among its features, which " + needs + " needs");
 }
 
 Transform turned(const geom::Vec3& axis, double angle) {
@@ -221,27 +146,14 @@ std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_
   const std::size_t draws = kPlaces * (question_.attempt + (question_.choice < points ? 0U : 1U));
   if (draws == 0) return out;
   const Eigen::Matrix3d lies = pose_of_object(support).linear;
-  if (lies(2, 2) < 1 - kLevel) return out;
+  if (!is_level(lies)) return out;
   const geom::Vec3 bottom =
       feature_named(thing, "bottom", world::Feature::Kind::Point, "putting it down").point;
   const std::vector<geom::Vec3> tops = tops_of(below);
   const double close = thing.outer.epsilon() + below.outer.epsilon() + kFlat;
   // Its base as it stands, about the point 'bottom'.
-  std::vector<geom::Vec3> base;
-  for (std::size_t i = 0; i < thing.outer.size(); ++i)
-    for (const geom::Vec3& v : thing.outer.body(i).core.vertices) {
-      const geom::Vec3 at = thing.pose.linear * (v - bottom);
-      if (at.z() <= close + thing.outer.body(i).radius) base.push_back(at);
-    }
-  if (base.empty()) return out;
-  // Bodies reach beyond the support by epsilon, and close slots twice as wide: a base has to bridge
-  // these, and to stand clear of the edges.
-  geom::Vec3 low = base.front(), high = base.front();
-  for (const geom::Vec3& v : base) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  if (!((high - low).head<2>().minCoeff() > kBridges * below.outer.epsilon())) return out;
+  const std::vector<geom::Vec3> base = base_of(thing, thing.pose.linear, bottom, close);
+  if (!bridges_slots(base, below)) return out;
   for (std::size_t i = 0; i < below.outer.size(); ++i) {
     const UpperFace face(below.outer.body(i), below.outer.epsilon());
     const bool meant = std::ranges::any_of(tops, [&](const geom::Vec3& point) {

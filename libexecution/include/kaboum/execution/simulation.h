@@ -69,6 +69,9 @@ class Simulation {
   void count_limits(std::size_t robot, const std::vector<double>& before,
                     const std::vector<double>& now, const std::vector<double>* after);
   void compare(const judge::CellState& state, const judge::CellState& expected);
+  void look_at_pushed(const judge::CellState& state);
+  [[nodiscard]] double drop_of(std::size_t object) const;
+  [[nodiscard]] double push_gap(const MotionPart& part, std::size_t object) const;
   void say(const std::string& problem);
 
   const world::World& world_;
@@ -83,6 +86,14 @@ class Simulation {
   /// Sets of constraints that the plan's mates name, by the objects that are mated.
   std::map<std::string, std::set<std::string>> mates_;
   std::set<std::size_t> carried_;  ///< objects that a motion of the node has carried
+  /// An object that is pushed: the pose that it was first at, and the way that it goes.
+  struct Pushed {
+    geom::Transform from;
+    geom::Vec3 way;
+    double drop = 0;  ///< how far it is above what it rests on, at most [length]
+    bool wrong = false;
+  };
+  std::map<std::size_t, Pushed> pushed_;  ///< in a node
   SimulationReport report_;
 };
 

@@ -60,6 +60,9 @@ struct ExternalOptions {
 ///     join(robot, object, onto, conf) : pose
 ///                                           mounts a held object on another one, lets go,
 ///                                           withdraws and goes to a configuration
+///     push(robot, object, support, conf) : pose
+///                                           pushes an object along a straight line on what it
+///                                           stands on, backs off and goes to a configuration
 ///     handOver(robot, object, robot) : pose in the hand of the second robot; both are home then
 ///     wander(robot) : conf                  to some configuration
 ///     release(robot, object, conf) : pose   of the object that is let go there

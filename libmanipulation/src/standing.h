@@ -1,0 +1,66 @@
+#pragma once
+
+#include <kaboum/world/world.h>
+
+#include <string>
+#include <vector>
+
+namespace kaboum::manipulation {
+
+/// How far from one plane points of a face may be, with the sets' ε. [m]
+inline constexpr double kFlat = 1e-4;
+
+/// The convex outline of points, seen from above.
+class Outline {
+ public:
+  explicit Outline(std::vector<geom::Vec3> points);
+
+  /// Whether a point is inside, and at least so far from every side. Points of which that holds
+  /// make a convex set. [length]
+  [[nodiscard]] bool holds(const geom::Vec3& p, double inside) const;
+  /// What of it lies inside the other one as well; empty: nothing that has an area.
+  [[nodiscard]] Outline common_with(const Outline& other) const;
+  /// Counterclockwise; fewer than three: no area.
+  [[nodiscard]] const std::vector<geom::Vec3>& corners() const { return corners_; }
+
+ private:
+  std::vector<geom::Vec3> corners_;
+};
+
+/// What of a convex body is at its top, seen from above: in the object's frame.
+class UpperFace {
+ public:
+  /// @param inside  the outline is taken so much smaller all round
+  UpperFace(const geom::ConvexBody& body, double inside);
+
+  [[nodiscard]] double height() const { return height_; }
+  /// Whether a point is above it, seen from above.
+  [[nodiscard]] bool holds(const geom::Vec3& p) const { return outline_.holds(p, inside_); }
+  /// A point of the box round it, by shares of its sides.
+  [[nodiscard]] geom::Vec3 at(double x, double y) const;
+  /// The diagonal of that box. [length]
+  [[nodiscard]] double extent() const { return (high_ - low_).head<2>().norm(); }
+
+ private:
+  double inside_ = 0;
+  double height_ = 0;
+  geom::Vec3 low_, high_;
+  Outline outline_;
+};
+
+/// True of an object whose z axis is the world's.
+bool is_level(const Eigen::Matrix3d& turned);
+
+/// Vertices of an object's outer set that are no higher than a point of it, but for `close`: about
+/// that point, turned as the object stands.
+std::vector<geom::Vec3> base_of(const world::Object& object, const Eigen::Matrix3d& stands,
+                                const geom::Vec3& point, double close);
+/// True of a base wide enough to stand on an outer set, which may close slots of the solid.
+bool bridges_slots(const std::vector<geom::Vec3>& base, const world::Object& support);
+
+/// @param needs  what needs it: "putting it down"
+/// @throws Error{InvalidInput} when the object has no such feature.
+const world::Feature& feature_named(const world::Object& object, const std::string& name,
+                                    world::Feature::Kind kind, const char* needs);
+
+}  // namespace kaboum::manipulation
