@@ -25,6 +25,9 @@ constexpr double kHalfContact = 3e-3;
 constexpr double kAbove = 1e-3;
 /// How far from upright a plane may be that is pushed. [1]
 constexpr double kUpright = 1e-6;
+/// So much nearer than allowed, that the rounding of words leaves what was pushed where it may be
+/// pushed again. [m]
+constexpr double kRounded = 1e-5;
 /// Halvings of a length.
 constexpr int kHalvings = 40;
 
@@ -156,7 +159,7 @@ double PushedObject::farthest(const Vec3& direction) const {
       const double middle = 0.5 * (low + high);
       (stands(face, middle * direction) ? low : high) = middle;
     }
-    out = std::max(out, low);
+    out = std::max(out, low - kRounded);
   }
   return out;
 }
