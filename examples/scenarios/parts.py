@@ -4,6 +4,7 @@ import math
 
 SEGMENTS = 32  # of a solid of revolution
 detail = 1     # as many times as many segments, and rings of round ends
+gaps = False   # links of arms end before the next one begins; else they overlap at joints, as those of real arms do
 
 
 class Mesh:
@@ -133,22 +134,36 @@ def gripper(kind):
     if kind == "outer":  # two long fingers round a part 50 mm wide
         return ([((0.09, 0.03, 0.02), (0, 0, 0.07))] +
                 [((0.008, 0.02, 0.09), (s * 0.033, 0, 0.125)) for s in (-1, 1)]), 0.165
+    if kind == "flat":  # two fingers round a plate 30 mm thick; the sides of the fingers push
+        return ([((0.07, 0.03, 0.02), (0, 0, 0.07))] +
+                [((0.008, 0.02, 0.09), (s * 0.024, 0, 0.125)) for s in (-1, 1)]), 0.165
     if kind == "inner":  # a pin that spreads inside of a ring
         return [((0.05, 0.05, 0.02), (0, 0, 0.07)), ((0.011, 0.011, 0.05), (0, 0, 0.105))], 0.125
     raise ValueError(kind)
 
 
+def pushing_sides():
+    """Planes of the flat gripper's link `hand` that push: the outer sides of its fingers, near their tips."""
+    return [{"name": f"push{k}", "link": "hand", "plane": {"point": [s * 0.028, 0, 0.157], "normal": [s, 0, 0]}} for k, s in enumerate((1, -1))]
+
+
+def bars(ends):
+    """Links of an arm as bars along z: (low, high, radius[, radius at the top]), and how far each reaches beyond both of these where
+    links have no gaps between them."""
+    return {name: rounded(*bar) if gaps else rounded(bar[0] - below, bar[1] + above, *bar[2:]) for name, (bar, below, above) in ends.items()}
+
+
 def arm6(prefix, hand, reach=1.0):
     """Six axes, spherical wrist. @return URDF, meshes by file, the tool's place along z of the link `hand`."""
     r = reach
-    meshes = {
-        "base": rounded(0, 0.2, 0.08),
-        "shoulder": rounded(-0.14, -0.02, 0.06),
-        "upper_arm": rounded(0, 0.5 * r, 0.045, 0.035),
-        "elbow": rounded(0, 0.2 * r, 0.035, 0.03),
-        "forearm": rounded(0.02, 0.22 * r, 0.03, 0.025),
-        "wrist": rounded(0.0, 0.05, 0.022),
-    }
+    meshes = bars({
+        "base": ((0, 0.2, 0.08), 0, 0.02),
+        "shoulder": ((-0.14, -0.02, 0.06), 0, 0.06),
+        "upper_arm": ((0, 0.5 * r, 0.045, 0.035), 0.03, 0.03),
+        "elbow": ((0, 0.2 * r, 0.035, 0.03), 0.03, 0.02),
+        "forearm": ((0.02, 0.22 * r, 0.03, 0.025), 0.03, 0.03 * r + 0.02),
+        "wrist": ((0.0, 0.05, 0.022), 0.02, 0.02),
+    })
     boxes, tool = gripper(hand)
     links = {name: mesh_urdf(f"{prefix}-{name}.off") for name in meshes}
     links["hand"] = boxes_urdf(boxes)
@@ -160,13 +175,13 @@ def arm6(prefix, hand, reach=1.0):
 
 def arm5(prefix, hand):
     """Five axes on a mobile base that is parked: turning, three parallel ones, and the hand's."""
-    meshes = {
-        "base": rounded(0, 0.22, 0.16),
-        "shoulder": rounded(-0.09, -0.01, 0.06),
-        "upper_arm": rounded(0, 0.4, 0.04, 0.035),
-        "forearm": rounded(0.01, 0.35, 0.032, 0.028),
-        "wrist": rounded(0.0, 0.05, 0.022),
-    }
+    meshes = bars({
+        "base": ((0, 0.22, 0.16), 0, 0.03),
+        "shoulder": ((-0.09, -0.01, 0.06), 0, 0.05),
+        "upper_arm": ((0, 0.4, 0.04, 0.035), 0.03, 0.03),
+        "forearm": ((0.01, 0.35, 0.032, 0.028), 0.04, 0.03),
+        "wrist": ((0.0, 0.05, 0.022), 0.02, 0.02),
+    })
     boxes, tool = gripper(hand)
     links = {name: mesh_urdf(f"{prefix}-{name}.off") for name in meshes}
     links["hand"] = boxes_urdf(boxes)

@@ -35,12 +35,12 @@ class Cell:
         self.epsilon = epsilon
         self.allowed, self.regions, self.constraints = [], [], []
 
-    def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand"):
+    def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand", features=()):
         urdf, meshes, along = made
         self.meshes.update({file: mesh.off() for file, mesh in meshes.items()})
         self.meshes[f"{name}.urdf"] = urdf
         self.robots[name] = {"base": {"position": list(base), "rpy": [0, 0, yaw]}, "home": home,
-                             "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}]}
+                             "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}], "features": list(features)}
 
     def real_robot(self, name, file, tool, home, base=(0, 0, 0), yaw=0.0):
         """Of a URDF elsewhere; `tool`: as in a scene."""
@@ -124,9 +124,10 @@ def options(name, n, least, most, more=lambda parser: None):
     parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
     parser.add_argument("--detail", type=int, default=1, choices=range(1, 9), metavar="K", help="K² times as many triangles, 1 to 8 [1]")
+    parser.add_argument("--gaps", action="store_true", help="arms whose links end before the next one begins, and never touch it")
     more(parser)
     o = parser.parse_args()
-    parts.detail = o.detail
+    parts.detail, parts.gaps = o.detail, o.gaps
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
     return o

@@ -119,6 +119,71 @@ stowed 'K(isStowed(o1))' parcel side 7 'put(robot2, o1, flat, home): not found.*
 stowed 'K(isOn(o2, flat))' logistics cell 0 solved
 stowed 'K(isOn(o2, flat)) \& K(isStowed(o2))' logistics cell 7 'inside(o2, in-flat): impossible'
 rm none.json
+# Plates are pushed over the edge of a bench, since none of their grasps is free before.
+scenario pushing 2 6 1
+D=$S/pushing/domain.kpl
+python3 -c 'import json; print([n["action"] for n in json.load(open("pushing/plan.json"))["nodes"]].count("push"))' | grep -qx 2 || fail "not both plates are pushed"
+sed '/^action push/,/^  effects:/d' "$D" >unpushed.kpl
+expect 7 'fetch(robot1, o1, home): none of the 8 grasps listed for o1 is free of contact: robot1/.* and bench' "$P" solve unpushed.kpl \
+  pushing/problem.kpl --scene pushing/cell.json -o none.json --explain --timeout 20 --no-cache
+# pushed WHAT SAID: a plan, or a scene, in which a push is another one is seen by the judge.
+pushed() {
+  python3 - "$1" <<'END_OF_PUSH' || fail "a plan with another push"
+import json, sys
+plan, cell = json.load(open("pushing/plan.json")), json.load(open("pushing/cell.json"))
+call = next(n for n in plan["nodes"] if n["action"] == "push")["calls"][0]
+motions = json.loads(call["payload"])
+line = next(m for m in motions if "holds" in m)
+if sys.argv[1] == "bent":
+    line["path"][len(line["path"]) // 2][1] -= 0.02
+elif sys.argv[1] == "bench":
+    next(o for o in cell["objects"] if o["name"] == "bench")["pose"]["position"][2] -= 0.03
+elif sys.argv[1] == "planes":
+    cell["robots"][0]["features"] = []
+call["payload"] = json.dumps(motions, separators=(",", ":"))
+json.dump(plan, open("other.json", "w"))
+json.dump(cell, open("pushing/other.json", "w"))
+END_OF_PUSH
+  expect 1 "$2" "$P" run "$D" pushing/problem.kpl --scene pushing/other.json --plan other.json --outcomes all
+}
+pushed bench 'o[12] is pushed where it rests on nothing'
+pushed planes 'o[12] is held without a grasp'
+pushed bent 'o[12] is pushed and does not stay on a straight line'
+shows 1 "'push' returns another payload" "$P" check "$D" pushing/problem.kpl --scene pushing/cell.json --plan other.json
+# Boxes are pushed by one arm and taken by the other one.
+scenario pushing 2 6 1 --robots 2
+python3 -c 'import json
+acts = {(n["action"], n["arguments"][0]) for n in json.load(open("pushing/plan.json"))["nodes"]}
+assert acts == {("push", "robot1"), ("pickUp", "robot2"), ("putDown", "robot2")}, acts' || fail "who pushes, who takes"
+expect 7 'fetch(robot[12], o[12], home): o[12] is out of reach' "$P" solve unpushed.kpl pushing/problem.kpl --scene pushing/cell.json \
+  -o none.json --explain --timeout 20 --no-cache
+# Links of the arms overlap at joints, which are all on the axis z when all joints are 0; with --gaps the first ones are apart.
+overlaps() {
+  python3 - "$1" <<'END_OF_ARM'
+import sys, xml.etree.ElementTree as tree
+folder = sys.argv[1]
+robot, least = tree.parse(f"{folder}/robot1.urdf").getroot(), 1.0
+spans = {}
+for link in robot.findall("link"):
+    heights = []
+    for mesh in link.iter("mesh"):  # OFF: a word, numbers of vertices and triangles, then these
+        lines = open(f"{folder}/{mesh.get('filename')}").readlines()
+        heights += [float(line.split()[2]) for line in lines[2:2 + int(lines[1].split()[0])]]
+    for shape in link.findall("collision"):
+        for size in shape.iter("box"):
+            z, high = float(shape.find("origin").get("xyz").split()[2]), float(size.get("size").split()[2])
+            heights += [z - high / 2, z + high / 2]
+    spans[link.get("name")] = (min(heights), max(heights))
+for joint in robot.findall("joint"):
+    z = float(joint.find("origin").get("xyz").split()[2])
+    below, above = spans[joint.find("parent").get("link")], spans[joint.find("child").get("link")]
+    least = min(least, below[1] - z - above[0], above[1] + z - below[0])
+print("overlap" if least > 0.005 else "apart")
+END_OF_ARM
+}
+[ "$(overlaps pushing)" = overlap ] || fail "links of an arm do not overlap"
+"$S/pushing/run" 1 --scene-only --gaps --out gaps || fail "an arm with gaps"
+[ "$(overlaps gaps)" = apart ] || fail "links of an arm with gaps overlap"
 D=$S/bimanual-assembly/domain.kpl
 # Handing over is in the plan, and there is none without it.
 scenario bimanual-assembly 4 7 1 --hand-over
