@@ -1,5 +1,6 @@
 // Pushing an object that stands on another one along a straight line
 // (docs/planning/geometry.md, "Pushing"). Source: [gaschler2016] §5.2, Fig. 5.3.
+#include <kaboum/base/error.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 
@@ -31,6 +32,17 @@ double share_of(std::size_t index) {
   for (; index > 0; index /= 2, digit *= 0.5)
     if (index % 2 == 1) out += digit;
   return out;
+}
+
+/// @throws Error{InvalidInput} when no joint moves the link.
+void require_moving(const world::RobotModel& robot, const world::LinkFeature& front) {
+  const std::vector<robot::Joint>& joints = robot.kinematics.joints;
+  for (std::uint32_t link = front.link; link != 0; link = joints[link - 1].parent)
+    if (joints[link - 1].type != robot::JointType::Fixed) return;
+  throw Error(ErrorCode::InvalidInput,
+              "robot '" + robot.name + "' of the scene: no joint moves the link '" +
+                  robot.kinematics.links[front.link].name + "' of the plane '" +
+                  front.feature.name + "', which pushing needs");
 }
 
 }  // namespace
@@ -66,6 +78,7 @@ std::vector<Sequence::PushSide> Sequence::push_sides(std::size_t robot, std::siz
     possible = true;
     for (const world::LinkFeature& front : model.features) {
       if (!is_for_pushing(front.feature)) continue;
+      require_moving(model, front);
       for (const double angle : angles) {
         const auto contact = push_contact(model, front, thing, at, side, *direction,
                                           pushed.center(), angle, geometry_.options.clearance);

@@ -2,6 +2,7 @@
 // kinematics and looked at by formulas of this file, which share nothing with the library's.
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/base/random.h>
 #include <kaboum/judge/placement.h>
 #include <kaboum/manipulation/words.h>
@@ -333,6 +334,18 @@ TEST_F(Push, AnArmWithoutAPlaneThatPushesPushesNothing) {
   EXPECT_EQ(answer.kind, Answer::Kind::Impossible) << answer.reason;
   EXPECT_NE(answer.reason.find("lists no planes 'push…' of left"), std::string::npos);
   EXPECT_TRUE(answer.listed);
+}
+
+TEST_F(Push, ALinkThatNothingMovesPushesNothing) {
+  arms_.world.robots[0].features[0].link = 0;
+  try {
+    push();
+    FAIL() << "the base pushes";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+    EXPECT_NE(std::string(error.what()).find("no joint moves the link 'base'"), std::string::npos)
+        << error.what();
+  }
 }
 
 /// The area of a convex polygon.
