@@ -482,6 +482,18 @@ struct Cell {
   int cuts;
 };
 
+/// A ball that holds all that a ball has in common with a ball about b of radius h: about
+/// m = λ c + (1 − λ) b, of radius ρ with ρ² = λ r² + (1 − λ) h² − λ (1 − λ) |b − c|².
+Ball common_ball(const Ball& ball, const Vec3& b, double h, double lambda) {
+  const Vec3 to = ball.center - b;
+  const double gains = lambda * ball.radius * ball.radius + (1 - lambda) * h * h,
+               loses = lambda * (1 - lambda) * to.squaredNorm();
+  // A dozen roundings of what is added up, and of m.
+  const double square = std::max(0.0, gains - loses) + 16 * kUnit * (gains + loses);
+  return {b + lambda * to,
+          std::sqrt(square) * kUp + slack_of(largest_of(b) + largest_of(ball.center) + h)};
+}
+
 /// Bounds of the distance from a point to the solid's surface, negative inside, in the unit of the
 /// mesh.
 class SignedDistance {
@@ -742,6 +754,10 @@ DistanceClaim verify_ball_excess(const geom::ConvexSet& set, const geom::Mesh& o
       ++out.pieces;
       const auto [lower, upper] = distance(cell.center);
       if (upper + cell.reach * kUp + slack(cell) <= epsilon) continue;
+      if (!first && upper > 0 && upper < away) {
+        const Ball common = common_ball(ball, cell.center, cell.reach * kUp, upper / away);
+        if (distance(common.center).second + common.radius <= epsilon) continue;
+      }
       Vec3 p = cell.center;
       if (away > ball.radius)
         p = ball.center + ball.radius / away * (1 - 1e-12) * (p - ball.center);

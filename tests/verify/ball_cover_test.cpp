@@ -280,6 +280,69 @@ TEST(BallCover, ExcessIsThatOfTheFarthestPoint) {
   EXPECT_LE(less.largest, 1);
 }
 
+// Balls that touch what is just within ε along circles, in solids with walls inside.
+TEST(BallCover, ExcessIsDecidedWhereWallsAreInside) {
+  Mesh beam = box_of({0, 0, 0}, {2, 1, 1});
+  add(beam, box_of({1, 0, 0}, {3, 1, 1}), false);
+  ConvexSet set;
+  add_ball(set, {1.5, 0.5, 0.5}, 0.6);
+  add_ball(set, {0.9, 0.5, 0.5}, 0.6);  // its nearest triangle is a wall inside
+  const auto answer = [&](const Mesh& solid, double epsilon) {
+    return verify_ball_excess(set, solid, epsilon).answer;
+  };
+  EXPECT_EQ(answer(beam, 0.1 * (1 + 1e-5)), Answer::Verified);
+  EXPECT_NE(answer(beam, 0.1 * (1 - 1e-9)), Answer::Verified);
+  EXPECT_EQ(answer(beam, 0.099), Answer::Refuted);
+  // A prism of sixteen sides, which balls touch at sixteen edges.
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 16; ++i)
+    for (const double z : {-2.0, 0.5, -0.5, 2.0})
+      corners.emplace_back(std::cos(i * M_PI / 8), std::sin(i * M_PI / 8), z);
+  Mesh rod = *geom::convex_hull(corners);
+  add(rod, box_of({-0.2, -0.2, -0.1}, {0.2, 0.2, 0.1}), false);  // winds twice
+  set.bodies.clear();
+  add_ball(set, {0, 0, 0}, 1.25);
+  const double known = 1.25 - std::cos(M_PI / 16);
+  EXPECT_EQ(answer(rod, known * (1 + 1e-5)), Answer::Verified);
+  EXPECT_NE(answer(rod, known * (1 - 1e-9)), Answer::Verified);
+}
+
+// Random balls at random solids: never verified where a point is known to be farther, always where
+// ε is a little more than any that was found.
+TEST(BallCover, ExcessAgreesWithPoints) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int turn = 0; turn < 20; ++turn) {
+    std::vector<std::pair<Vec3, Vec3>> boxes;
+    Mesh solid;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 at(number(random), number(random), number(random));
+      const Vec3 size(0.8 + 0.5 * number(random), 0.8 + 0.5 * number(random), 0.5);
+      boxes.emplace_back(at - size, at + size);
+      add(solid, box_of(at - size, at + size), false);
+    }
+    const auto distance = [&](const Vec3& p) {  // from the union of boxes
+      double out = HUGE_VAL;
+      for (const auto& [low, high] : boxes)
+        out = std::min(out, (low - p).cwiseMax(p - high).cwiseMax(0.0).norm());
+      return out;
+    };
+    ConvexSet set;
+    const Vec3 c = 0.7 * Vec3(number(random), number(random), number(random));
+    const double radius = 1 + 0.5 * number(random);
+    add_ball(set, c, radius);
+    double most = 0;
+    for (int k = 0; k < 40000; ++k) {
+      const Vec3 d(number(random), number(random), number(random));
+      if (d.norm() > 0.1)
+        most = std::max(most, distance(c + radius * (1 - 1e-12) * d.normalized()));
+    }
+    if (most < 0.05) continue;
+    EXPECT_NE(verify_ball_excess(set, solid, most * (1 - 1e-9)).answer, Answer::Verified) << turn;
+    EXPECT_EQ(verify_ball_excess(set, solid, most * 1.02 + 0.002).answer, Answer::Verified) << turn;
+  }
+}
+
 // Hundreds of balls: the judge of whole robots.
 TEST(BallCover, ManyBalls) {
   const Mesh original = cube(1);
