@@ -1,18 +1,20 @@
-// Covers by balls: centres on the medial axis, radii by the signed distance, few of them by a local
-// search. docs/algorithms/sphere-covers.md.
+// Covers by balls: the largest balls near the solid, few of them by a local search, fewer by moving
+// them. docs/algorithms/sphere-covers.md.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
 #include <kaboum/base/random.h>
 #include <kaboum/bcd/balls.h>
-#include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <utility>
 
+#include "ball_relaxation.h"
+#include "parallel_body.h"
 #include "set_cover.h"
 
 namespace kaboum::bcd {
@@ -24,45 +26,38 @@ using geom::Vec3;
 /// Radii are smaller by this share than ε allows, and hold what they are to by it, so that exact
 /// decisions find slack.
 constexpr double kBallSlack = 1e-5;
-/// Chosen points are held with this share of the radius to spare, so that what is between them is
-/// held as well.
+/// Points are held with this share of the radius to spare, so that what is between them is held.
 constexpr double kPointSlack = 2e-3;
-constexpr int kBallRounds = 8;    ///< of choices made anew with points added where no ball is
-constexpr int kPatchRounds = 40;  ///< of balls added there
+/// Sizes of caps, as shares of ε: for searches, and for radii that are written.
+constexpr double kCoarseCaps = 0.15, kFineCaps = 0.04;
+/// Share of the work for fewer balls before all triangles are held, and again after it.
+constexpr double kReducing = 0.3;
+constexpr int kPatchRounds = 60;  ///< of points added where no ball is
 constexpr std::size_t kAddedAtOnce = 150;
 constexpr int kPieceCuts = 24;  ///< of a triangle
-constexpr std::size_t kMostSamples = 12'000;
-constexpr std::size_t kMostPoints = 20'000;  ///< after which the best found is enough
+constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
+/// Points of the inside that are looked at, of which every so manieth is to be held at first.
+constexpr std::size_t kInnerPoints = 20'000, kInnerShown = 29;
+constexpr std::size_t kMostVertices = 3'000;  ///< of the mesh, that are points to be held
 
 /// Amounts of work of a search.
 struct SearchEffort {
-  std::size_t samples, steps;
-  int refinements;
+  std::size_t points, candidates, steps;
+  int sweeps, attempts;
+  double work;  ///< of moving balls [s]
 };
 
 SearchEffort effort_of(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {800, 500, 1};
+      return {1200, 400, 300, 20, 1, 12};
     case Effort::Normal:
       break;
     case Effort::Best:
-      return {3000, 20000, 6};
+      return {4000, 2000, 5000, 300, 4, 400};
   }
-  return {1500, 1500, 2};
+  return {2000, 700, 1000, 60, 2, 50};
 }
-
-/// A centre and the signed distance to the surface there, from above.
-struct Center {
-  Vec3 at;
-  double distance;
-};
-
-/// A ball of a choice.
-struct Chosen {
-  Vec3 center;
-  double radius;
-};
 
 class BallSearch {
  public:
@@ -72,18 +67,22 @@ class BallSearch {
         effort_(effort_of(options.effort)),
         query_(mesh),
         winding_(mesh),
-        box_(geom::bounding_box(mesh)) {
-    sample(options.epsilon.value_or(0));
-    for (const Vec3& p : options.held) points_.push_back(p);
+        box_(geom::bounding_box(mesh)),
+        relaxation_([this](const Vec3& c) { return body_->radius_about(geom::to_float32(c)); },
+                    points_, kPointSlack, 1) {
+    sample();
+    points_.insert(points_.end(), options.held.begin(), options.held.end());
+    inner_.insert(inner_.end(), options.held.begin(), options.held.end());
   }
 
   CoverCandidate run() {
     CoverCandidate out;
-    std::vector<Chosen> balls;
+    std::vector<Ball> balls;
     if (options_.max_bodies) {
       balls = within_count(*options_.max_bodies);
       // With epsilon, too: fewer where it allows that.
-      if (options_.epsilon && epsilon_ <= *options_.epsilon) balls = cover(*options_.epsilon);
+      if (options_.epsilon && body_->distance() <= *options_.epsilon)
+        balls = cover(*options_.epsilon);
     } else {
       balls = cover(*options_.epsilon);
     }
@@ -107,41 +106,14 @@ class BallSearch {
     if (options_.progress) options_.progress({stage, share});
   }
 
-  // --- candidates ---
+  // --- points and candidates ---
 
-  /// From above.
-  [[nodiscard]] double signed_distance(const Vec3& p) const {
-    const geom::TriangleSearch::Nearest near = query_.nearest(p);
-    const std::optional<int> winding = winding_(p);
-    return winding && *winding >= 1 ? -near.lower * (1 - 1e-12) : near.upper * (1 + 1e-12);
-  }
+  struct SurfacePoint {
+    Vec3 at, inwards;
+  };
 
-  void add_center(const Vec3& p) {
-    const Vec3 at = geom::to_float32(p);
-    centers_.push_back({at, signed_distance(at)});
-  }
-
-  /// The centre of the largest ball in the solid that touches a point of the surface, by shrinking
-  /// one about the normal's line. [ma2012]
-  [[nodiscard]] Vec3 medial_center(const Vec3& p, const Vec3& outwards) const {
-    double radius = 0.5 * box_.diagonal();
-    for (int turn = 0; turn < 30; ++turn) {
-      const Vec3 c = p - radius * outwards;
-      const std::uint32_t t = query_.nearest(c).triangle;
-      const auto& [a, b, d] = query_.corners(t);
-      const Vec3 q = geom::closest_point(c, a, b, d);
-      const Vec3 to = p - q;
-      const double along = to.dot(outwards);
-      if ((q - c).norm() >= radius * (1 - 1e-6) || !(along > 0)) break;
-      const double less = to.squaredNorm() / (2 * along);
-      if (!(less < radius)) break;
-      radius = less;
-    }
-    return p - radius * outwards;
-  }
-
-  /// Points of the surface, evenly by area, of the inside, and medial centres for all of them.
-  void sample(double epsilon) {
+  /// Points of the surface, evenly by area; vertices; points of the inside, of a grid.
+  void sample() {
     std::vector<double> sums;
     double area = 0;
     for (const auto& [i, j, k] : mesh_.triangles) {
@@ -150,12 +122,11 @@ class BallSearch {
                         .norm();
       sums.push_back(area);
     }
-    std::size_t count = effort_.samples;
-    if (epsilon > 0)
-      count = std::clamp(static_cast<std::size_t>(std::min(area / (epsilon * epsilon), 1e9)), count,
-                         kMostSamples);
-    std::vector<Vec3> normals;
-    std::vector<Vec3> at;
+    std::size_t count = effort_.points;
+    if (options_.epsilon) {
+      const double squares = area / (*options_.epsilon * *options_.epsilon);
+      count = std::clamp(static_cast<std::size_t>(std::min(4 * squares, 1e9)), count, kMostPoints);
+    }
     const double step = area / static_cast<double>(count);
     double next = 0.5 * step;
     for (std::size_t t = 0; t < sums.size(); ++t) {
@@ -168,94 +139,166 @@ class BallSearch {
           u = 1 - u;
           v = 1 - v;
         }
-        at.emplace_back(a + u * (b - a) + v * (c - a));
-        normals.push_back(normal.normalized());
+        surface_.push_back({a + u * (b - a) + v * (c - a), -normal.normalized()});
       }
     }
-    std::vector<Center> found(2 * at.size());
-    kaboum::parallel_for(std::size_t{0}, at.size(), [&](std::size_t i) {
-      const Vec3 medial = geom::to_float32(medial_center(at[i], normals[i]));
-      found[2 * i] = {medial, signed_distance(medial)};
-      const Vec3 here = geom::to_float32(at[i]);
-      found[2 * i + 1] = {here, signed_distance(here)};
+    for (const SurfacePoint& p : surface_) points_.push_back(p.at);
+    const std::size_t stride = mesh_.vertices.size() / kMostVertices + 1;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); v += stride)
+      points_.push_back(mesh_.vertices[v]);
+    sample_inside();
+  }
+
+  void sample_inside() {
+    const Vec3 size = box_.max - box_.min;
+    const double volume = size.prod();
+    if (!(volume > 0)) return;
+    const double step = std::cbrt(volume / static_cast<double>(kInnerPoints));
+    for (double x = box_.min.x() + 0.5 * step; x < box_.max.x(); x += step)
+      for (double y = box_.min.y() + 0.5 * step; y < box_.max.y(); y += step)
+        for (double z = box_.min.z() + 0.5 * step; z < box_.max.z(); z += step)
+          inner_.emplace_back(x, y, z);
+    std::vector<char> is_inside(inner_.size());
+    kaboum::parallel_for(std::size_t{0}, inner_.size(), [&](std::size_t i) {
+      const std::optional<int> winding = winding_(inner_[i]);
+      is_inside[i] = winding && *winding >= 1;
     });
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      points_.push_back(at[i]);
-      if (found[2 * i].distance < 0) centers_.push_back(found[2 * i]);
-      // Centres on the surface: the only ones where the solid is thin.
-      if (i % 8 == 0) centers_.push_back(found[2 * i + 1]);
-      // A part of the medial centres stand for the inside.
-      if (i % 8 == 0 && found[2 * i].distance < 0) points_.push_back(found[2 * i].at);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < inner_.size(); ++i)
+      if (is_inside[i] != 0) inner_[count++] = inner_[i];
+    inner_.resize(count);
+    for (std::size_t i = 0; i < inner_.size(); i += kInnerShown) points_.push_back(inner_[i]);
+  }
+
+  /// Of the balls that hold a point of the surface and have their centres inwards of it, the one
+  /// whose centre is farthest from it, and the largest one.
+  [[nodiscard]] std::pair<Ball, Ball> balls_at(const SurfacePoint& p) const {
+    constexpr double kHeld = 0.98;
+    constexpr int kHalvings = 9, kPlaces = 6;
+    const auto ball = [&](double depth) {
+      const Vec3 at = geom::to_float32(p.at + depth * p.inwards);
+      return Ball{at, body_->radius_about(at)};
+    };
+    // The radius grows by no more than the way, so those that hold the point come first.
+    double low = 0, high = 0.5 * box_.diagonal() + 2 * body_->distance();
+    for (int turn = 0; turn < kHalvings; ++turn) {
+      const double middle = 0.5 * (low + high);
+      (kHeld * ball(middle).radius >= middle ? low : high) = middle;
     }
+    const Ball farthest = ball(low);
+    Ball largest = farthest;
+    for (int k = 0; k < kPlaces; ++k)
+      if (const Ball one = ball(low * k / kPlaces); one.radius > largest.radius) largest = one;
+    return {farthest, largest};
+  }
+
+  void add_candidates(const std::vector<SurfacePoint>& at) {
+    std::vector<std::pair<Ball, Ball>> found(at.size());
+    kaboum::parallel_for(std::size_t{0}, at.size(),
+                         [&](std::size_t i) { found[i] = balls_at(at[i]); });
+    for (const auto& [farthest, largest] : found) {
+      if (farthest.radius > 0) candidates_.push_back(farthest);
+      if (largest.radius > 0) candidates_.push_back(largest);
+    }
+  }
+
+  void set_distance(double epsilon) {
+    body_ =
+        std::make_unique<ParallelBody>(query_, winding_, epsilon * (1 - kBallSlack), kCoarseCaps);
+    written_.clear();
+  }
+
+  void allow_work(double work) {
+    end_of_work_ = relaxation_.work() + work;
+    relaxation_.limit_work(end_of_work_);
+  }
+
+  /// All candidates for ε.
+  void begin(double epsilon) {
+    set_distance(epsilon);
+    candidates_.clear();
+    // Some for each piece of the surface that a ball can hold.
+    std::size_t count = effort_.candidates;
+    if (options_.epsilon) count = std::max(count, surface_.size() / 4);
+    count = std::min(count, kMostCandidates);
+    std::vector<SurfacePoint> some;
+    const std::size_t stride = std::max<std::size_t>(1, surface_.size() / count);
+    for (std::size_t i = 0; i < surface_.size(); i += stride) some.push_back(surface_[i]);
+    add_candidates(some);
+    const Vec3 middle = geom::to_float32(box_.center());
+    if (const double radius = body_->radius_about(middle); radius > 0)
+      candidates_.push_back({middle, radius});
   }
 
   // --- choices ---
 
-  [[nodiscard]] double radius_of(const Center& c, double epsilon) const {
-    return epsilon * (1 - kBallSlack) - c.distance;
-  }
-
-  /// Centres chosen for ε: indices.
-  [[nodiscard]] std::vector<std::uint32_t> choose(const std::vector<Vec3>& points, double epsilon,
-                                                  std::size_t steps, std::size_t enough) const {
-    std::vector<std::vector<std::uint32_t>> sets(centers_.size());
-    kaboum::parallel_for(std::size_t{0}, centers_.size(), [&](std::size_t c) {
-      const double radius = radius_of(centers_[c], epsilon) * (1 - kPointSlack);
-      if (!(radius > 0)) return;
+  /// Candidates that hold all points; empty where there are none.
+  [[nodiscard]] std::vector<Ball> choose(const std::vector<Vec3>& points, std::size_t steps) const {
+    std::vector<std::vector<std::uint32_t>> sets(candidates_.size());
+    kaboum::parallel_for(std::size_t{0}, candidates_.size(), [&](std::size_t c) {
+      const double radius = candidates_[c].radius * (1 - kPointSlack);
       const double square = radius * radius;
       for (std::uint32_t p = 0; p < points.size(); ++p)
-        if ((points[p] - centers_[c].at).squaredNorm() <= square) sets[c].push_back(p);
+        if ((points[p] - candidates_[c].center).squaredNorm() <= square) sets[c].push_back(p);
     });
-    return SetCover(points.size(), std::move(sets)).search(steps, enough);
-  }
-
-  [[nodiscard]] std::vector<Chosen> balls_of(const std::vector<std::uint32_t>& choice,
-                                             double epsilon) const {
-    std::vector<Chosen> out;
-    out.reserve(choice.size());
-    for (const std::uint32_t c : choice) {
-      double radius = geom::to_float32(radius_of(centers_[c], epsilon));
-      if (radius > radius_of(centers_[c], epsilon))
-        radius -= geom::float32_spacing(radius * (1 - 1e-7));
-      out.push_back({centers_[c].at, radius});
-    }
+    std::vector<Ball> out;
+    for (const std::uint32_t c : SetCover(points.size(), std::move(sets)).search(steps, 1))
+      out.push_back(candidates_[c]);
     return out;
   }
 
-  /// New centres about those chosen.
-  void scatter(const std::vector<std::uint32_t>& choice, double epsilon, double width) {
-    std::vector<Vec3> places;
-    for (const std::uint32_t c : choice) {
-      const double reach = width * radius_of(centers_[c], epsilon);
-      for (int k = 0; k < 24; ++k) {
-        const double x = random_.between(-1, 1), y = random_.between(-1, 1),
-                     z = random_.between(-1, 1);
-        places.emplace_back(geom::to_float32(centers_[c].at + reach * Vec3(x, y, z)));
+  /// Balls that hold all points known; candidates are added for those that none holds.
+  [[nodiscard]] std::vector<Ball> first_choice() {
+    for (const Vec3& p : points_)
+      if (std::ranges::none_of(candidates_, [&](const Ball& b) {
+            return (p - b.center).norm() <= b.radius * (1 - kPointSlack);
+          }))
+        add_ball_at(p);
+    return choose(points_, effort_.steps);
+  }
+
+  void add_ball_at(const Vec3& p) {
+    const Vec3 at = geom::to_float32(p);
+    if (const double radius = body_->radius_about(at); radius > 0)
+      candidates_.push_back({at, radius});
+  }
+
+  [[nodiscard]] bool may_move() const { return relaxation_.work() < end_of_work_; }
+
+  /// Fewer balls, while that succeeds.
+  void reduce(std::vector<Ball>& balls, std::size_t enough) {
+    enough = std::max<std::size_t>(enough, 1);
+    std::size_t fewer = std::max<std::size_t>(1, balls.size() / 12);
+    while (balls.size() > enough && may_move()) {
+      fewer = std::min(fewer, balls.size() - enough);
+      show("moving balls", 1 - (end_of_work_ - relaxation_.work()) / (kReducing * effort_.work));
+      if (relaxation_.hold_with_fewer(balls, fewer, effort_.sweeps)) continue;
+      if (fewer == 1) break;
+      fewer = (fewer + 1) / 2;
+    }
+  }
+
+  /// As they are written: float32 numbers, and the largest radii that are known.
+  [[nodiscard]] std::vector<Ball> written(const std::vector<Ball>& balls) {
+    std::vector<Ball> out(balls.size());
+    kaboum::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+      const Vec3 at = geom::to_float32(balls[i].center);
+      if (i < written_.size() && written_[i].center == at) {
+        out[i] = written_[i];
+        return;
       }
-    }
-    std::vector<Center> found(places.size());
-    kaboum::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-      found[i] = {places[i], signed_distance(places[i])};
+      const double most = body_->refined_radius_about(at, kFineCaps);
+      double radius = geom::to_float32(most);
+      if (radius > most) radius -= geom::float32_spacing(radius * (1 - 1e-7));
+      out[i] = {at, radius};
     });
-    for (const Center& c : found)
-      if (radius_of(c, epsilon) > 0) centers_.push_back(c);
+    written_ = out;
+    return out;
   }
 
-  /// Drops centres that were not chosen, but for the first ones.
-  void forget(std::vector<std::uint32_t>& choice, std::size_t kept) {
-    std::vector<Center> out(
-        centers_.begin(),
-        centers_.begin() + static_cast<std::ptrdiff_t>(std::min(kept, centers_.size())));
-    for (std::uint32_t& c : choice) {
-      if (c < kept) continue;
-      out.push_back(centers_[c]);
-      c = static_cast<std::uint32_t>(out.size() - 1);
-    }
-    centers_ = std::move(out);
-  }
-
-  /// Points of triangles in no ball, up to some; adds them. @return whether there are none
-  bool add_free_points(const std::vector<Chosen>& balls) {
+  /// Points of triangles, or of the inside, in no ball, some of them; adds them. @return whether
+  /// there are none
+  bool add_free_points(const std::vector<Ball>& balls) {
     std::vector<std::vector<Vec3>> found(mesh_.triangles.size());
     kaboum::parallel_for(std::size_t{0}, mesh_.triangles.size(), [&](std::size_t t) {
       const auto& [i, j, k] = mesh_.triangles[t];
@@ -263,9 +306,23 @@ class BallSearch {
     });
     std::vector<Vec3> all;
     for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
+    if (all.empty()) all = free_inner_points(balls);
     const std::size_t stride = all.size() / kAddedAtOnce + 1;
     for (std::size_t i = 0; i < all.size(); i += stride) points_.push_back(all[i]);
     return all.empty();
+  }
+
+  [[nodiscard]] std::vector<Vec3> free_inner_points(const std::vector<Ball>& balls) const {
+    std::vector<char> is_free(inner_.size());
+    kaboum::parallel_for(std::size_t{0}, inner_.size(), [&](std::size_t i) {
+      is_free[i] = std::ranges::none_of(balls, [&](const Ball& b) {
+        return (inner_[i] - b.center).norm() <= b.radius * (1 - kBallSlack);
+      });
+    });
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < inner_.size(); ++i)
+      if (is_free[i] != 0) out.push_back(inner_[i]);
+    return out;
   }
 
   struct Piece {
@@ -273,17 +330,17 @@ class BallSearch {
     int cuts;
   };
 
-  static void find_free(const std::array<Vec3, 3>& triangle, const std::vector<Chosen>& balls,
+  static void find_free(const std::array<Vec3, 3>& triangle, const std::vector<Ball>& balls,
                         std::vector<Vec3>& out) {
     constexpr std::size_t kMost = 8;
-    std::vector<Chosen> near;
+    std::vector<Ball> near;
     const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
     double reach = 0;
     for (const Vec3& p : triangle) reach = std::max(reach, (p - middle).norm());
-    for (const Chosen& b : balls)
+    for (const Ball& b : balls)
       if ((b.center - middle).norm() <= b.radius + reach)
         near.push_back({b.center, b.radius * (1 - kBallSlack)});
-    const auto holds = [](const Chosen& b, const Vec3& p) {
+    const auto holds = [](const Ball& b, const Vec3& p) {
       return (p - b.center).squaredNorm() <= b.radius * b.radius;
     };
     std::vector<Piece> open{{triangle, 0}};
@@ -292,7 +349,7 @@ class BallSearch {
       open.pop_back();
       bool held = false;
       std::array<bool, 3> some{};
-      for (const Chosen& b : near) {
+      for (const Ball& b : near) {
         bool all = true;
         for (std::size_t k = 0; k < 3; ++k) {
           const bool one = holds(b, piece.corner[k]);
@@ -330,130 +387,141 @@ class BallSearch {
     }
   }
 
-  /// A cover of all triangles within ε; empty where none was found with `limit` balls or fewer.
-  /// @param limit  of the number of balls; 0: none
-  std::vector<Chosen> cover(double epsilon, std::size_t limit = 0) {
-    constexpr int kBefore = 2;  // rounds that find points at first
-    epsilon_ = epsilon;
-    const std::size_t first = centers_.size();
-    std::vector<std::uint32_t> choice;
-    std::vector<Chosen> best;
-    for (int round = 0; round < kBallRounds; ++round) {
-      show(limit > 0 ? "trying a distance" : "choosing balls",
-           static_cast<double>(round) / kBallRounds);
-      const int refined = round - kBefore;
-      if (limit == 0 && refined >= 0 && refined < effort_.refinements) {
-        forget(choice, first);
-        scatter(choice, epsilon, 0.4 / (refined + 1));
-      }
-      const std::size_t steps = round < kBefore ? effort_.steps / 4 : effort_.steps;
-      choice = choose(points_, epsilon, steps, limit);
-      if (choice.empty()) {
-        // A point that no centre's ball holds: balls about the points themselves do.
-        for (const Vec3& p : std::vector<Vec3>(points_)) add_center(p);
-        choice = choose(points_, epsilon, steps, limit);
-        if (choice.empty())
-          throw Error(ErrorCode::LimitReached,
-                      "epsilon is too small for spheres here; allow a larger one");
-      }
-      if (limit > 0 && choice.size() > limit) return {};
-      std::vector<Chosen> balls = patched(choice, epsilon, limit);
-      const bool is_whole = balls.size() == choice.size();  // nothing was added
-      if (!balls.empty() && (best.empty() || balls.size() < best.size())) best = std::move(balls);
-      if (limit > 0 && !best.empty()) return best;
-      if (!best.empty() && points_.size() > kMostPoints) break;
-      if (is_whole && refined >= effort_.refinements) break;
-    }
-    if (best.empty() && limit == 0)
-      throw Error(
-          ErrorCode::LimitReached,
-          "no spheres were found that hold all triangles within epsilon; allow a larger one");
-    return best;
-  }
-
-  /// Adds balls until all triangles are held; empty where these would be too many.
-  std::vector<Chosen> patched(std::vector<std::uint32_t> choice, double epsilon,
-                              std::size_t limit) {
+  /// Balls, as they are written, that hold all triangles: where these do not they move, and where
+  /// that does not suffice there are more of them.
+  /// @return empty if there would have to be more than `most`
+  [[nodiscard]] std::vector<Ball> completed(std::vector<Ball> balls, std::size_t most) {
     for (int round = 0; round < kPatchRounds; ++round) {
-      if (limit > 0 && choice.size() > limit) return {};
-      std::vector<Chosen> balls = balls_of(choice, epsilon);
+      show("filling gaps", static_cast<double>(round) / kPatchRounds);
+      const std::vector<Ball> out = written(balls);
       const std::size_t known = points_.size();
-      if (add_free_points(balls)) return balls;
+      if (add_free_points(out)) return out;
+      if (may_move() && relaxation_.hold(balls, effort_.sweeps)) continue;
       const std::vector<Vec3> free(points_.begin() + static_cast<std::ptrdiff_t>(known),
                                    points_.end());
-      for (std::size_t i = 0; i < free.size(); i += 4) add_center(free[i]);
-      std::vector<std::uint32_t> more = choose(free, epsilon, 0, 0);
-      if (more.empty()) {
-        for (const Vec3& p : free) add_center(p);
-        more = choose(free, epsilon, 0, 0);
-      }
-      choice.insert(choice.end(), more.begin(), more.end());
+      for (const Vec3& p : free) add_ball_at(p);
+      std::vector<Ball> more = choose(free, 0);
+      // A part of them may do, once all have moved.
+      if (may_move()) more.resize((more.size() + 2) / 3);
+      balls.insert(balls.end(), more.begin(), more.end());
+      if (balls.size() > most) return {};
+      if (may_move()) relaxation_.hold(balls, effort_.sweeps);
     }
     return {};
   }
 
+  /// A cover of all triangles within ε; empty where none was found with `most` balls or fewer.
+  std::vector<Ball> cover(double epsilon, std::size_t most = kAny) {
+    const bool any = most == kAny, is_started = any && !options_.start.empty();
+    show(any ? "choosing balls" : "trying a distance", 0);
+    begin(epsilon);
+    std::vector<Ball> balls = is_started ? resized(options_.start) : first_choice();
+    if (balls.empty())
+      throw Error(ErrorCode::LimitReached,
+                  "epsilon is too small for spheres here; allow a larger one");
+    if (!is_started) {
+      allow_work(kReducing * effort_.work);
+      reduce(balls, any ? 1 : most);
+    }
+    allow_work(effort_.work);
+    if (balls.size() > most) return {};
+    std::vector<Ball> best = completed(std::move(balls), most);
+    if (best.empty() && any)
+      throw Error(
+          ErrorCode::LimitReached,
+          "no spheres were found that hold all triangles within epsilon; allow a larger one");
+    allow_work(kReducing * effort_.work);
+    if (any && !is_started) reduce_complete(best);
+    if (any && options_.nearest) bring_nearer(best);
+    return best;
+  }
+
+  /// A cover by as many balls within less than ε, where one is found.
+  void bring_nearer(std::vector<Ball>& best) {
+    constexpr int kTurns = 4;
+    double high = body_->distance() / (1 - kBallSlack), low = 0.4 * high;
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double tried = 0.5 * (low + high);
+      show("bringing balls nearer", static_cast<double>(turn) / kTurns);
+      set_distance(tried);
+      allow_work(kReducing * effort_.work);
+      std::vector<Ball> balls = resized(best);
+      if (!balls.empty() && relaxation_.hold(balls, effort_.sweeps))
+        balls = completed(std::move(balls), best.size());
+      else
+        balls.clear();
+      (balls.empty() ? low : high) = tried;
+      if (!balls.empty()) best = std::move(balls);
+    }
+    set_distance(high);
+  }
+
+  /// Balls with the radii that ε allows.
+  [[nodiscard]] std::vector<Ball> resized(const std::vector<Ball>& balls) const {
+    std::vector<Ball> out;
+    for (const Ball& b : balls)
+      if (const double radius = body_->radius_about(b.center); radius > 0)
+        out.push_back({b.center, radius});
+    return out;
+  }
+
+  /// Fewer balls that hold all triangles. Points where gaps were are known by now.
+  void reduce_complete(std::vector<Ball>& best) {
+    for (int failed = 0; failed < effort_.attempts && best.size() > 1 && may_move();) {
+      std::vector<Ball> fewer = best;
+      if (relaxation_.hold_with_fewer(fewer, 1, effort_.sweeps))
+        fewer = completed(std::move(fewer), best.size() - 1);
+      else
+        fewer.clear();
+      if (fewer.empty())
+        ++failed;
+      else
+        best = std::move(fewer);
+    }
+  }
+
   /// The least ε found with so many balls.
-  std::vector<Chosen> within_count(std::size_t count) {
-    double high = 0.5 * box_.diagonal(), low = 0;
-    std::vector<Chosen> best;
-    // A ball about the middle holds everything.
-    centers_.push_back(
-        {geom::to_float32(box_.center()), signed_distance(geom::to_float32(box_.center()))});
-    double tried = high;
-    for (int turn = 0; turn < 9; ++turn) {
-      std::vector<Chosen> balls = cover(tried, count);
+  std::vector<Ball> within_count(std::size_t count) {
+    constexpr double kNear = 1.02;
+    constexpr int kTurns = 14;
+    double high = 0.6 * box_.diagonal(), low = 0, tried = high;
+    std::vector<Ball> best;
+    for (int turn = 0; turn < kTurns; ++turn) {
+      std::vector<Ball> balls = cover(tried, count);
       if (!balls.empty()) {
         best = std::move(balls);
         high = tried;
       } else {
         low = tried;
       }
-      if (best.empty()) {
+      if (best.empty())
         tried *= 2;
-      } else {
-        tried = low > 0 ? std::sqrt(low * high) : 0.4 * high;
-      }
-      if (low > 0 && high < 1.02 * low) break;
+      else
+        tried = low > 0 ? std::sqrt(low * high) : 0.5 * high;
+      if (low > 0 && high < kNear * low) break;
     }
-    // New centres about those found, at a little less.
-    for (int turn = 0; turn < 3 * effort_.refinements; ++turn) {
-      const std::size_t first = centers_.size();
-      for (const Chosen& b : best)
-        for (int k = 0; k < 40; ++k) {
-          const double reach = 0.4 * b.radius / (1 + turn);
-          const double x = random_.between(-1, 1), y = random_.between(-1, 1),
-                       z = random_.between(-1, 1);
-          add_center(b.center + reach * Vec3(x, y, z));
-        }
-      const double step = turn < effort_.refinements ? 0.95 : 0.98;
-      std::vector<Chosen> balls = cover(step * high, count);
-      if (!balls.empty()) {
-        best = std::move(balls);
-        high *= step;
-      }
-      if (first > 30'000)
-        centers_.erase(centers_.begin(), centers_.begin() + static_cast<std::ptrdiff_t>(first / 2));
-    }
-    epsilon_ = high;
+    set_distance(high);
     return best;
   }
 
   /// Certified bracket of the farthest point of the balls from the solid.
-  void measure(const std::vector<Chosen>& balls, CoverCandidate& out) const {
-    for (const Chosen& b : balls) {
-      const double up = 1 + 1e-12;
-      out.excess_upper = std::max(out.excess_upper, (b.radius + signed_distance(b.center)) * up);
-      const auto& [a, c, d] = query_.corners(query_.nearest(b.center).triangle);
-      const Vec3 q = geom::closest_point(b.center, a, c, d);
-      const Vec3 along = (q - b.center).normalized();
-      if (!along.allFinite()) continue;
-      const Vec3 far = b.center + b.radius * (1 - 1e-12) * along;
-      const std::optional<int> winding = winding_(far);
-      if (winding && *winding <= 0)
-        out.excess_lower = std::max(out.excess_lower, query_.nearest(far).lower * (1 - 1e-9));
+  void measure(const std::vector<Ball>& balls, CoverCandidate& out) const {
+    for (const Ball& b : balls) {
+      const ParallelBody::SignedDistance s = body_->signed_distance(b.center);
+      out.excess_upper =
+          std::max(out.excess_upper,
+                   std::min(b.radius + s.upper, body_->distance()) * (1 + 0.5 * kBallSlack));
+      if (const std::optional<Vec3> at = body_->boundary_near(b.center)) {
+        const Vec3 along = (*at - b.center).normalized();
+        if (!along.allFinite()) continue;
+        const Vec3 far = b.center + b.radius * (1 - 1e-12) * along;
+        out.excess_lower = std::max(out.excess_lower, body_->signed_distance(far).lower);
+      }
     }
     out.excess_lower = std::min(out.excess_lower, out.excess_upper);
   }
+
+  static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
   const Mesh& mesh_;
   const BallOptions& options_;
@@ -462,9 +530,14 @@ class BallSearch {
   geom::WindingNumber winding_;
   geom::Box3 box_;
   Random random_{1};
-  std::vector<Center> centers_;
+  std::unique_ptr<ParallelBody> body_;  ///< what balls may not leave
+  std::vector<SurfacePoint> surface_;
   std::vector<Vec3> points_;  ///< to be held
-  double epsilon_ = 0;
+  std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
+  std::vector<Ball> candidates_;
+  std::vector<Ball> written_;  ///< the last ones
+  BallRelaxation relaxation_;
+  double end_of_work_ = 0;  ///< of the relaxation, for this distance [s]
 };
 
 }  // namespace
@@ -472,6 +545,8 @@ class BallSearch {
 CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& options) {
   if (!options.epsilon && !options.max_bodies)
     throw Error(ErrorCode::InvalidArgument, "balls: epsilon or a number of them is needed");
+  if (!options.start.empty() && (options.max_bodies || !options.epsilon))
+    throw Error(ErrorCode::InvalidArgument, "balls to begin with need epsilon, and no number");
   if (options.epsilon && !(*options.epsilon > 0))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
   if (options.max_bodies && *options.max_bodies == 0)

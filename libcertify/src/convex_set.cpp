@@ -76,6 +76,7 @@ bcd::BallOptions balls_of(const SetRequest& r, double diagonal, const Hooks& hoo
   static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
   out.max_bodies = r.max_bodies;
   out.effort = r.effort;
+  out.nearest = r.nearest && !r.max_bodies;
   return out;
 }
 
@@ -151,6 +152,11 @@ class Search {
   Candidate run() {
     if (balls_) {
       bcd::CoverCandidate found = bcd::find_balls(solid_, *balls_);
+      if (!balls_->max_bodies) {  // where another search is needed
+        balls_->start.clear();
+        for (const geom::ConvexBody& body : found.bodies)
+          balls_->start.push_back({body.core.vertices[0], body.radius});
+      }
       return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
               found.statistics};
     }

@@ -85,6 +85,28 @@ RobotHooks watched(const RobotHooks& hooks, bool& ended) {
   return out;
 }
 
+/// Spheres for a mesh that none were found for: within a few times epsilon.
+/// @return whether there are some; then `out` has them, and says so
+bool hold_by_larger_spheres(const RobotRequest& request, const SetCache* cache,
+                            const RobotHooks& hooks, const bool& ended, CertifiedLinkMesh& out) {
+  const std::optional<Length> wanted = out.epsilon ? out.epsilon : request.set.epsilon;
+  if (request.set.body_kind != SetRequest::BodyKind::Spheres || !wanted) return false;
+  for (const double times : {2.0, 4.0, 8.0}) {
+    Length larger = *wanted;
+    larger.value *= times;
+    try {
+      out.made = certify_link_mesh(out.mesh, larger, request, cache, hooks).made;
+    } catch (const Error& error) {
+      if (ended || !is_of_mesh(error)) throw;
+      continue;
+    }
+    out.held = true;
+    out.flaw += ". It has spheres within " + larger.text() + " instead";
+    return true;
+  }
+  return false;
+}
+
 /// As certify_link_mesh, but for what may be wrong with the mesh: RobotRequest::partial.
 CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
                                   const RobotRequest& request, const SetCache* cache,
@@ -100,6 +122,7 @@ CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::option
     if (!first) first = std::current_exception();
   }
   CertifiedLinkMesh out{mesh, epsilon, {}, flaw, false};
+  if (hold_by_larger_spheres(request, cache, hooks, ended, out)) return out;
   if (!request.set.wrap) return out;
   RobotRequest loose = request;
   loose.set = loosest(loose.set);

@@ -8,21 +8,32 @@
 
 namespace kaboum::bcd {
 
+/// A closed ball.
+struct Ball {
+  geom::Vec3 center;
+  double radius;
+};
+
 /// Request for find_balls.
 struct BallOptions : SearchRun {
   std::optional<std::size_t> max_bodies;
   Effort effort = Effort::Normal;
+  /// Within epsilon: once no fewer are found, the same number as near as it was found to allow.
+  bool nearest = false;
   std::vector<geom::Vec3> held;  ///< points of the solid that the balls are to hold as well
+  /// Balls of an earlier search with this epsilon: they are moved, and others added, until all is
+  /// held, `held` too. Not with max_bodies.
+  std::vector<Ball> start;
 };
 
 /// Searches for few balls whose union contains the input's solid and every triangle of it. Centres
 /// and radii are float32 numbers.
 ///
-/// A ball about c of radius ε − s(c) has no point farther than ε from the solid, s being the signed
-/// distance to its surface, negative inside: those about the medial axis are the largest ones.
-/// Among some thousand of them few are chosen that hold sampled points, by a local search with
-/// weights [gao2015]. Points of triangles that no ball holds are added until there are none. With
-/// `max_bodies` ε is the least for which so many are found. docs/algorithms/sphere-covers.md.
+/// A ball may be as large as the outer parallel body of the solid at the distance ε allows. Of some
+/// hundred large ones few are chosen that hold sampled points, by a local search with weights
+/// [gao2015]. Then balls move so that fewer hold them. Points of triangles that no ball holds are
+/// added until there are none. With `max_bodies` ε is the least for which so many are found.
+/// docs/algorithms/sphere-covers.md.
 ///
 /// No claim that they cover: certify::certify_set decides that. The distances are certified.
 ///

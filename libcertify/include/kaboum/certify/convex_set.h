@@ -23,6 +23,8 @@ struct SetRequest : bcd::CoverSettings {
   /// Polytopes; or spheres (closed balls), of outer sets, which take of the other settings of
   /// covers `max_bodies` and `effort`.
   enum class BodyKind { Polytopes, Spheres } body_kind = BodyKind::Polytopes;
+  /// Spheres within epsilon: the same number, as near as it was found to allow.
+  bool nearest = false;
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;

@@ -1,0 +1,199 @@
+// Balls that move until they hold given points: local search over their centres.
+#include "ball_relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Vec3;
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr int kSteps = 24;         ///< of a ball in a sweep
+constexpr int kPlaces = 30;        ///< tried for a ball that is put elsewhere
+constexpr int kSweepsInVain = 10;  ///< before one is
+/// Points this share of a ball's radius beyond it count as near.
+constexpr double kNear = 0.6;
+/// Steps, as shares of the radius: the first, the shortest, the longest at the start of a sweep.
+constexpr double kFirstStep = 0.1, kShortestStep = 1e-3, kAgain = 0.02;
+constexpr double kLonger = 1.5, kShorter = 0.8;
+/// Work of a radius, and of a point and a ball. [ns]
+constexpr double kRadiusWork = 15e3, kPairWork = 3;
+
+}  // namespace
+
+BallRelaxation::BallRelaxation(RadiusAbout radius_about, const std::vector<Vec3>& points,
+                               double spare, std::uint64_t seed)
+    : radius_about_(std::move(radius_about)), points_(points), spare_(spare), random_(seed) {}
+
+void BallRelaxation::begin(const std::vector<Ball>& balls) {
+  balls_ = balls;
+  weight_.assign(points_.size(), 1);
+  step_.clear();
+  for (const Ball& b : balls) step_.push_back(kFirstStep * b.radius);
+}
+
+/// Points within `reach` of a place that balls other than this one leave.
+void BallRelaxation::ask(std::size_t ball, const Vec3& about, double reach) {
+  asked_.clear();
+  near_.clear();
+  work_ += kPairWork * static_cast<double>(points_.size());
+  for (std::uint32_t b = 0; b < balls_.size(); ++b)
+    if (b != ball && (balls_[b].center - about).norm() < balls_[b].radius + 2 * reach)
+      near_.push_back(b);
+  const double square = reach * reach;
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    const Vec3& at = points_[p];
+    if ((at - about).squaredNorm() > square) continue;
+    double other = kFar;
+    work_ += kPairWork * static_cast<double>(near_.size());
+    for (const std::uint32_t b : near_) {
+      other = std::min(other, gap(balls_[b], at));
+      if (!(other > 0)) break;
+    }
+    if (other > 0) asked_.push_back({p, other});
+  }
+}
+
+double BallRelaxation::cost(const Ball& ball) {
+  double out = 0;
+  work_ += kRadiusWork + kPairWork * static_cast<double>(asked_.size());
+  for (const Asked& a : asked_) {
+    const double left = std::min(a.other, gap(ball, points_[a.point]));
+    if (left > 0) out += weight_[a.point] * left * left;
+  }
+  return out;
+}
+
+Vec3 BallRelaxation::direction() {
+  for (;;) {
+    const double x = random_.between(-1, 1), y = random_.between(-1, 1), z = random_.between(-1, 1);
+    const double square = x * x + y * y + z * z;
+    if (square > 0.01 && square <= 1) return Vec3(x, y, z) / std::sqrt(square);
+  }
+}
+
+void BallRelaxation::move(std::size_t ball) {
+  Ball& now = balls_[ball];
+  ask(ball, now.center, (1 + kNear) * now.radius);
+  double least = cost(now), step = std::max(step_[ball], kAgain * now.radius);
+  for (int turn = 0; turn < kSteps && least > 0; ++turn) {
+    const Vec3 along = step * direction();
+    bool is_better = false;
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 at = now.center + sign * along;
+      const Ball next{at, radius_about_(at)};
+      if (!(next.radius > 0)) continue;
+      const double then = cost(next);
+      if (!(then < least)) continue;
+      least = then;
+      now = next;
+      is_better = true;
+      break;
+    }
+    step =
+        std::clamp(step * (is_better ? kLonger : kShorter), kShortestStep * now.radius, now.radius);
+  }
+  step_[ball] = step;
+}
+
+std::size_t BallRelaxation::least_needed() {
+  std::size_t out = 0;
+  double least = kFar;
+  for (std::size_t b = 0; b < balls_.size(); ++b) {
+    ask(b, balls_[b].center, (1 + kNear) * balls_[b].radius);
+    double loss = 0;
+    for (const Asked& a : asked_) {
+      const double own = std::max(0.0, gap(balls_[b], points_[a.point]));
+      const double other = std::min(a.other, 2 * balls_[b].radius);
+      if (own < other) loss += weight_[a.point] * (other * other - own * own);
+    }
+    if (loss < least) {
+      least = loss;
+      out = b;
+    }
+  }
+  return out;
+}
+
+void BallRelaxation::find_free() {
+  free_.clear();
+  work_ += 0.5 * kPairWork * static_cast<double>(points_.size() * balls_.size());
+  for (std::uint32_t p = 0; p < points_.size(); ++p)
+    if (std::ranges::none_of(balls_, [&](const Ball& b) { return gap(b, points_[p]) <= 0; }))
+      free_.push_back(p);
+}
+
+/// Puts the ball that is needed least where a free point is.
+void BallRelaxation::relocate() {
+  double sum = 0;
+  for (const std::uint32_t p : free_) sum += weight_[p];
+  double rest = random_.between(0, sum);
+  std::uint32_t point = free_.back();
+  for (const std::uint32_t p : free_) {
+    rest -= weight_[p];
+    if (rest > 0) continue;
+    point = p;
+    break;
+  }
+  const std::size_t b = least_needed();
+  const double reach = balls_[b].radius;
+  const Vec3 at = points_[point];
+  ask(b, at, 2 * reach);
+  Ball best{at, radius_about_(at)};
+  double least = cost(best);
+  for (int k = 0; k < kPlaces; ++k) {
+    const Vec3 c = at + random_.between(0, reach) * direction();
+    const Ball next{c, radius_about_(c)};
+    if (!(next.radius > 0)) continue;
+    const double then = cost(next);
+    if (!(then < least)) continue;
+    least = then;
+    best = next;
+  }
+  balls_[b] = best;
+  step_[b] = kFirstStep * best.radius;
+}
+
+bool BallRelaxation::hold(std::vector<Ball>& balls, int sweeps) {
+  begin(balls);
+  std::size_t fewest = points_.size() + 1;
+  int in_vain = 0;
+  for (int sweep = 0; sweep <= sweeps; ++sweep) {
+    find_free();
+    if (free_.empty()) {
+      balls = balls_;
+      return true;
+    }
+    if (sweep == sweeps || work() >= limit_) break;
+    for (const std::uint32_t p : free_) weight_[p] += 1;
+    if (free_.size() < fewest) {
+      fewest = free_.size();
+      in_vain = 0;
+    } else if (++in_vain >= kSweepsInVain) {
+      relocate();
+      in_vain = 0;
+      fewest = points_.size() + 1;
+    }
+    for (std::size_t b = 0; b < balls_.size(); ++b) move(b);
+  }
+  return false;
+}
+
+bool BallRelaxation::hold_with_fewer(std::vector<Ball>& balls, std::size_t count, int sweeps) {
+  begin(balls);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto b = static_cast<std::ptrdiff_t>(least_needed());
+    balls_.erase(balls_.begin() + b);
+    step_.erase(step_.begin() + b);
+  }
+  std::vector<Ball> fewer = balls_;
+  if (!hold(fewer, sweeps)) return false;
+  balls = std::move(fewer);
+  return true;
+}
+
+}  // namespace kaboum::bcd

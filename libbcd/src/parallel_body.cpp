@@ -1,0 +1,243 @@
+// Outer parallel bodies of solids: what is not in them, by caps. docs/algorithms/sphere-covers.md.
+#include "parallel_body.h"
+
+#include <kaboum/base/parallel.h>
+#include <kaboum/geom/closest_point.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Vec3;
+
+/// More caps than about so many are not looked for: they are larger then.
+constexpr double kMostCaps = 100'000;
+constexpr int kMostCuts = 3000;  ///< of caps for one radius
+constexpr double kSqrt3Up = 1.7320508076;
+/// Lengths are bounded from above and below with this relative allowance for rounding.
+constexpr double kRounding = 1e-11;
+
+Vec3 octant(int k) {
+  return {(k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0, (k & 4) != 0 ? 1.0 : -1.0};
+}
+
+}  // namespace
+
+/// A cube of the octree.
+struct ParallelBody::Cell {
+  Vec3 center;
+  int side = 0;  ///< 1: outside the solid, -1: inside, 0: not known
+};
+
+/// What is known of a cube.
+struct ParallelBody::Look {
+  bool open = false;            ///< the boundary may be in it
+  int side = 0;                 ///< of the middle
+  double lower = 0, upper = 0;  ///< its distance from the surface
+  std::uint32_t triangle = 0;   ///< one that is no farther
+};
+
+ParallelBody::ParallelBody(const geom::DistanceQuery& surface, const geom::WindingNumber& winding,
+                           double distance, double share)
+    : surface_(surface), winding_(winding), distance_(distance), share_(share) {
+  find_caps();
+  geom::Mesh centers;
+  centers.vertices.reserve(caps_.size());
+  centers.triangles.reserve(caps_.size());
+  for (std::uint32_t i = 0; i < caps_.size(); ++i) {
+    centers.vertices.push_back(caps_[i].center);
+    centers.triangles.push_back({i, i, i});
+  }
+  if (!caps_.empty()) tree_ = geom::Bvh(centers);
+}
+
+ParallelBody::SignedDistance ParallelBody::signed_distance(const Vec3& p) const {
+  const geom::TriangleSearch::Nearest near = surface_.nearest(p);
+  const double lower = near.lower * (1 - kRounding), upper = near.upper * (1 + kRounding);
+  const std::optional<int> winding = winding_(p);
+  if (winding && *winding >= 1) return {-upper, -lower};
+  return {winding ? lower : -0.0, upper};
+}
+
+ParallelBody::Look ParallelBody::look_at(const Cell& cell, double h) const {
+  const geom::TriangleSearch::Nearest near = surface_.nearest(cell.center);
+  Look out;
+  out.lower = near.lower * (1 - kRounding);
+  out.upper = near.upper * (1 + kRounding);
+  out.triangle = near.triangle;
+  if (out.upper + h <= distance_ || out.lower - h > distance_) return out;
+  out.side = cell.side;
+  if (out.side == 0) {
+    const std::optional<int> winding = winding_(cell.center);
+    out.side = winding && *winding <= 0 ? 1 : -1;
+  }
+  out.open = out.side > 0 || h > distance_ + out.lower;
+  return out;
+}
+
+/// What of the ball round a cube may be outside the body.
+std::optional<ParallelBody::Cap> ParallelBody::cap_of(const Cell& cell, const Look& look,
+                                                      double h) const {
+  if (look.side < 0 || !(look.upper > 0)) return Cap{cell.center, Vec3::UnitX(), -h};
+  const auto& [p, q, r] = surface_.corners(look.triangle);
+  const Vec3 from = cell.center - geom::closest_point(cell.center, p, q, r);
+  const double height =
+      (distance_ * distance_ - look.upper * look.upper - h * h) / (2 * look.upper) -
+      kRounding * distance_;
+  if (!(height < h)) return std::nullopt;
+  return Cap{cell.center, from.normalized(), std::max(height, -h)};
+}
+
+void ParallelBody::find_caps() {
+  const geom::Box3& box = surface_.box();
+  const double size = (box.max - box.min).maxCoeff() + 2.2 * distance_;
+  double area = 0;
+  for (const auto& [a, b, c] : surface_.ordered()) area += 0.5 * (b - a).cross(c - a).norm();
+  // About two cubes for each square of their size.
+  const double least = std::max(share_ * distance_, kSqrt3Up * std::sqrt(0.5 * area / kMostCaps));
+  half_ = least / kSqrt3Up;
+  int cuts = 0;
+  for (; half_ < 0.5 * size; ++cuts) half_ *= 2;
+  std::vector<Cell> cells{{box.center(), 0}};
+  for (;; --cuts) {
+    h_ = kSqrt3Up * half_;
+    std::vector<Look> looks(cells.size());
+    kaboum::parallel_for(std::size_t{0}, cells.size(),
+                         [&](std::size_t i) { looks[i] = look_at(cells[i], h_); });
+    std::vector<Cell> next;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!looks[i].open) continue;
+      if (cuts == 0) {
+        if (const std::optional<Cap> cap = cap_of(cells[i], looks[i], h_)) caps_.push_back(*cap);
+        continue;
+      }
+      const int side = looks[i].lower > 0.5 * h_ ? looks[i].side : 0;
+      for (int k = 0; k < 8; ++k) next.push_back({cells[i].center + 0.5 * half_ * octant(k), side});
+    }
+    if (cuts == 0) return;
+    half_ *= 0.5;
+    cells = std::move(next);
+  }
+}
+
+namespace {
+
+/// Distance of c from the points x with |x − center| ≤ h and normal · (x − center) ≥ height, or
+/// less.
+double distance_from_cap(const Vec3& center, const Vec3& normal, double height, double h,
+                         const Vec3& c) {
+  const Vec3 to = c - center;
+  const double square = to.squaredNorm(), along = normal.dot(to);
+  const double up = std::max(0.0, height - along);
+  const double away = std::sqrt(std::max(0.0, square - along * along));
+  const double width = height > 0 ? std::sqrt(std::max(0.0, h * h - height * height)) : h;
+  const double aside = std::max(0.0, away - width);
+  return std::max(std::sqrt(up * up + aside * aside), std::sqrt(square) - h);
+}
+
+}  // namespace
+
+void ParallelBody::visit_near(const Vec3& c, double& limit,
+                              const std::function<void(const Cap&, double)>& visit) const {
+  if (caps_.empty()) return;
+  const auto nodes = tree_.nodes();
+  const auto to_box = [&](const geom::Box3& box) {
+    return (box.min - c).cwiseMax(c - box.max).cwiseMax(0.0).norm() - h_;
+  };
+  std::array<std::pair<double, std::uint32_t>, geom::Bvh::kMaxDepth> stack;
+  int size = 0;
+  stack[size++] = {to_box(nodes[0].box), 0};
+  while (size > 0) {
+    const auto [bound, index] = stack[--size];
+    if (bound >= limit) continue;
+    const geom::Bvh::Node& node = nodes[index];
+    if (node.leaf()) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const Cap& cap = caps_[tree_.order()[i]];
+        visit(cap, distance_from_cap(cap.center, cap.normal, cap.height, h_, c));
+      }
+      continue;
+    }
+    std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};
+    std::pair<double, std::uint32_t> far{to_box(nodes[node.first].box), node.first};
+    if (far.first < near.first) std::swap(near, far);
+    if (far.first < limit) stack[size++] = far;
+    if (near.first < limit) stack[size++] = near;
+  }
+}
+
+/// Whether no radius about c is larger than that of the ball in the solid and the distance, but for
+/// a share of it: there is a point beyond the nearest triangle that is not in the body.
+bool ParallelBody::is_nearest_deciding(const Vec3& c, double s, double share) const {
+  if (!(s < 0)) return false;
+  const auto& [p, q, r] = surface_.corners(surface_.nearest(c).triangle);
+  const Vec3 along = geom::closest_point(c, p, q, r) - c;
+  const double length = along.norm();
+  if (!(length > 0)) return false;
+  const double reach = distance_ * (1 + 0.5 * share * share) - s;
+  return signed_distance(c + reach / length * along).lower > distance_;
+}
+
+double ParallelBody::radius_about(const Vec3& c) const {
+  const double s = signed_distance(c).upper;
+  if (!(s < distance_)) return 0;
+  if (caps_.empty() || is_nearest_deciding(c, s, share_)) return distance_ - s;
+  double best = std::numeric_limits<double>::infinity();
+  visit_near(c, best, [&](const Cap&, double away) { best = std::min(best, away); });
+  return std::max(best * (1 - kRounding), distance_ - s);
+}
+
+std::optional<Vec3> ParallelBody::boundary_near(const Vec3& c) const {
+  double best = std::numeric_limits<double>::infinity();
+  std::optional<Vec3> out;
+  visit_near(c, best, [&](const Cap& cap, double away) {
+    if (!(away < best)) return;
+    best = away;
+    out = cap.center + cap.height * cap.normal;
+  });
+  return out;
+}
+
+double ParallelBody::refined_radius_about(const Vec3& c, double share) const {
+  const double known = radius_about(c);
+  if (!(known > 0) || caps_.empty()) return known;
+  if (const double s = signed_distance(c).upper; is_nearest_deciding(c, s, share))
+    return std::max(known, distance_ - s);
+  struct Open {
+    double away;
+    Cell cell;
+    double half;
+    bool operator<(const Open& other) const { return away > other.away; }  // the nearest on top
+  };
+  std::priority_queue<Open> open;
+  // Radii lose no more than this.
+  double limit = known + h_ * h_ / distance_ + kRounding * known;
+  const double most = limit;
+  visit_near(c, limit, [&](const Cap& cap, double away) {
+    if (away < most) open.push({away, {cap.center, 0}, half_});
+  });
+  for (int cuts = 0; !open.empty() && cuts < kMostCuts; ++cuts) {
+    const Open now = open.top();
+    if (kSqrt3Up * now.half <= share * distance_) break;
+    open.pop();
+    const double half = 0.5 * now.half, h = kSqrt3Up * half;
+    for (int k = 0; k < 8; ++k) {
+      const Cell cell{now.cell.center + half * octant(k), 0};
+      const Look look = look_at(cell, h);
+      if (!look.open) continue;
+      if (const std::optional<Cap> cap = cap_of(cell, look, h))
+        if (const double away = distance_from_cap(cap->center, cap->normal, cap->height, h, c);
+            away < most)
+          open.push({std::max(away, now.away), cell, half});
+    }
+  }
+  const double found = open.empty() ? most : open.top().away;
+  return std::max(known, found * (1 - kRounding));
+}
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/triangle_search.h>
+#include <kaboum/geom/winding.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace kaboum::bcd {
+
+/// The outer parallel body of a solid: all points within a distance of it. It says how large a ball
+/// about a point may be that is to lie in it.
+///
+/// What is near the boundary and outside is held by caps of small balls, which an octree finds. The
+/// nearest cap is as far away as the radius that it allows, but for a small share of the distance.
+/// docs/algorithms/sphere-covers.md, "How far".
+class ParallelBody {
+ public:
+  /// Surface and winding number are referred to.
+  /// @param winding  of the mesh that `surface` is of, a closed chain
+  /// @param share  size of the caps, as a share of the distance. Half its square is the share that
+  ///   radii lose where one point of the surface is nearest to what is beyond; elsewhere they may
+  ///   lose as much as the caps' size. The work grows with the inverse of its square.
+  /// @pre distance > 0; share > 0
+  ParallelBody(const geom::DistanceQuery& surface, const geom::WindingNumber& winding,
+               double distance, double share);
+
+  /// A radius such that the open ball of it about c lies in the body; 0 where c is not in the body
+  /// for certain. [length]
+  [[nodiscard]] double radius_about(const geom::Vec3& c) const;
+
+  /// A larger one, if there is one: caps are cut until they have another size, a smaller share of
+  /// the distance, or some thousand were.
+  [[nodiscard]] double refined_radius_about(const geom::Vec3& c, double share) const;
+
+  /// A point near the boundary that is about as far from c as the boundary is; nullopt: none is
+  /// known.
+  [[nodiscard]] std::optional<geom::Vec3> boundary_near(const geom::Vec3& c) const;
+
+  /// Bounds of the signed distance from the solid's surface, negative inside. [length]
+  struct SignedDistance {
+    double lower, upper;
+  };
+  [[nodiscard]] SignedDistance signed_distance(const geom::Vec3& p) const;
+
+  [[nodiscard]] double distance() const { return distance_; }
+
+ private:
+  /// Points x with |x − center| ≤ h and normal · (x − center) ≥ height, h being the same for all.
+  struct Cap {
+    geom::Vec3 center, normal;
+    double height;
+  };
+  struct Cell;
+  struct Look;
+
+  [[nodiscard]] Look look_at(const Cell& cell, double h) const;
+  [[nodiscard]] std::optional<Cap> cap_of(const Cell& cell, const Look& look, double h) const;
+  [[nodiscard]] bool is_nearest_deciding(const geom::Vec3& c, double s, double share) const;
+  void find_caps();
+  /// Calls visit(cap, distance) for caps that may be nearer than `limit`, which it may change.
+  void visit_near(const geom::Vec3& c, double& limit,
+                  const std::function<void(const Cap&, double)>& visit) const;
+
+  const geom::DistanceQuery& surface_;
+  const geom::WindingNumber& winding_;
+  double distance_, share_;
+  double half_ = 0, h_ = 0;  ///< half the edge of the last cells, and half their diagonal
+  std::vector<Cap> caps_;
+  geom::Bvh tree_;  ///< over their centers
+};
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,113 @@
+// Covers by balls: their number where it is known, and what they promise.
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/bcd/balls.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/verify/ball_cover.h>
+#include <tbb/global_control.h>
+
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Mesh;
+using geom::Vec3;
+using verify::Answer;
+
+CoverCandidate balls_of(const Mesh& mesh, const BallOptions& options) {
+  return find_balls(geom::prepare(mesh).solid, options);
+}
+
+BallOptions within(double epsilon) {
+  BallOptions out;
+  out.epsilon = epsilon;
+  out.effort = Effort::Fast;
+  return out;
+}
+
+void expect_held(const Mesh& mesh, const CoverCandidate& found) {
+  const geom::ConvexSet set{found.bodies, {}};
+  const verify::Inclusion held = verify::verify_ball_cover(mesh, set);
+  EXPECT_EQ(held.surface.answer, Answer::Verified) << held.surface.reason;
+  EXPECT_EQ(held.solid.answer, Answer::Verified) << held.solid.reason;
+  EXPECT_EQ(verify::verify_ball_excess(set, mesh, found.excess_upper * (1 + 1e-6)).answer,
+            Answer::Verified);
+  for (const geom::ConvexBody& body : found.bodies) {
+    EXPECT_TRUE(geom::is_float32(body.core.vertices[0]));
+    EXPECT_TRUE(geom::is_float32(body.radius));
+  }
+}
+
+// A cylinder of radius 1 within ε: balls of radius 1 + ε, on the axis √((1 + ε)² − 1) from what
+// they hold at its side.
+TEST(Balls, ACylinderTakesAsManyAsItsLengthSays) {
+  const Mesh rod = kaboum::test::cylinder(48, 12, 1, 1);
+  const CoverCandidate found = balls_of(rod, within(1));
+  expect_held(rod, found);
+  EXPECT_GE(found.bodies.size(), 4U);  // 12 / (2 √3) = 3.46
+  EXPECT_LE(found.bodies.size(), 5U);
+}
+
+// A wall inside does not make them more.
+TEST(Balls, WallsInsideCostNothing) {
+  const Mesh whole = kaboum::test::box({3, 1, 1}, 1);
+  const Mesh parts =
+      kaboum::test::merged({kaboum::test::box({2, 1, 1}, 1),
+                            kaboum::test::translated(kaboum::test::box({2, 1, 1}, 1), {1, 0, 0})});
+  const CoverCandidate one = balls_of(whole, within(0.35)), other = balls_of(parts, within(0.35));
+  expect_held(whole, one);
+  expect_held(parts, other);
+  EXPECT_LE(other.bodies.size(), one.bodies.size() + 1);
+}
+
+// The wall of a thick solid takes small balls; its inside has to be held as well.
+TEST(Balls, TheInsideIsHeldToo) {
+  const Mesh ball = kaboum::test::icosphere(3);
+  const CoverCandidate found = balls_of(ball, within(0.05));
+  expect_held(ball, found);
+}
+
+TEST(Balls, ANumberIsKept) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  for (const std::size_t count : {1U, 2U, 4U}) {
+    BallOptions options;
+    options.max_bodies = count;
+    options.effort = Effort::Fast;
+    const CoverCandidate found = balls_of(bar, options);
+    EXPECT_LE(found.bodies.size(), count);
+    expect_held(bar, found);
+    // n balls on the axis: each holds 4 / n of it.
+    const double half = 2.0 / static_cast<double>(count);
+    const double known = std::sqrt(half * half + 0.5) - 0.5;
+    EXPECT_LE(found.excess_upper, known * 1.05) << count;
+  }
+}
+
+TEST(Balls, BallsToBeginWithHoldWhatTheyDidNot) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  BallOptions options = within(0.3);
+  const CoverCandidate before = balls_of(bar, options);
+  for (std::size_t i = 1; i < before.bodies.size(); ++i)
+    options.start.push_back({before.bodies[i].core.vertices[0], before.bodies[i].radius});
+  options.held = {{2, 0.5, 0.5}};
+  expect_held(bar, balls_of(bar, options));
+  options.max_bodies = 3;
+  EXPECT_THROW(balls_of(bar, options), Error);
+}
+
+TEST(Balls, SameForAnyNumberOfThreads) {
+  const Mesh torus = kaboum::test::torus(1, 0.3, 24, 12);
+  const CoverCandidate all = balls_of(torus, within(0.1));
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  const CoverCandidate one = balls_of(torus, within(0.1));
+  ASSERT_EQ(all.bodies.size(), one.bodies.size());
+  for (std::size_t i = 0; i < all.bodies.size(); ++i) {
+    EXPECT_EQ(all.bodies[i].core.vertices[0], one.bodies[i].core.vertices[0]);
+    EXPECT_EQ(all.bodies[i].radius, one.bodies[i].radius);
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::bcd
