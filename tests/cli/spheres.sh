@@ -26,6 +26,11 @@ shows 0 '^verified' "$V" cover bar.off five.glb
 expect 2 'bodies' "$B" bar.off -o x.glb --bodies spheres --direction inner
 expect 2 'min-thickness' "$B" bar.off -o x.glb --bodies spheres --min-thickness 0.1
 
+# Before any search: a format that states no radii.
+expect 2 'only .glb states radii' "$B" bar.off -o x.obj --bodies spheres
+[ ! -e x.obj ] || fail "x.obj was written"
+"$B" bar.off -o bar.glb --bodies spheres --epsilon 0.4 --effort fast --no-cache 2>&1 | grep -q '[0-9] spheres; cover verified exactly' || fail "spheres are called bodies"
+
 # A robot: its spheres, written, judged, and judged less one digit.
 cat >arm.urdf <<'U'
 <robot name="arm">
@@ -38,6 +43,12 @@ expect 2 'yaml' "$B" arm.urdf -o out --bodies spheres --epsilon 0.4
 expect 0 '' "$B" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
 shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres arm.yaml --report judged.json
 json judged.json "r['verdict'] == 'verified' and r['share_outside']['upper'] == 0"
+# So many for all links: no link is farther than it has to be.
+expect 0 '' "$B" arm.urdf -o twelve.yaml --bodies spheres --robot-bodies 12 --effort fast --no-cache --report twelve.json
+json twelve.json "2 < r['spheres'] <= 12 and r['reach_upper'] < 0.4"
+shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres twelve.yaml
+expect 2 'budget is less' "$B" arm.urdf -o x.yaml --bodies spheres --robot-bodies 2 --effort fast --no-cache
+expect 2 'no vertices' "$B" arm.urdf -o x.yaml --bodies spheres --robot-vertices 20
 
 cat >one.yaml <<'Y'
 robot_cfg:

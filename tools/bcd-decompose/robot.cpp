@@ -196,15 +196,18 @@ int decompose_into_spheres(const DecomposeOptions& o) {
     throw Error(
         ErrorCode::InvalidArgument,
         "--srdf, --preview and --html-report mean nothing with --bodies spheres of a robot");
-  if (o.robot_bodies + o.robot_vertices > 0)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--robot-bodies and --robot-vertices share out polytopes; for --bodies spheres of a "
-        "robot state --epsilon, or --max-bodies of each mesh");
+  if (o.robot_vertices > 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "--robot-vertices: spheres have no vertices; state --robot-bodies");
   Run run{o, robot::read_robot(o.input)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
+  run.request.partial = true;
   const certify::SetCache kept(certify::SetCache::default_folder());
   const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
+  if (o.robot_bodies > 0) {
+    share_out(run, cache);
+    run.request.set.nearest = true;
+  }
   Progress progress(o.common.quiet);
   certify::RobotHooks hooks =
       certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
@@ -212,8 +215,12 @@ int decompose_into_spheres(const DecomposeOptions& o) {
   Json meshes = Json::array();
   hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
     progress.show("");
+    // A link without spheres is no obstacle for whoever reads them.
+    if (!mesh.held) throw Error(ErrorCode::LimitReached, mesh.flaw);
+    if (!mesh.flaw.empty()) run.notes.add(mesh.mesh.file.string(), mesh.flaw);
     const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
-    reached = reached && certificate.reached() && certificate.undecided.empty();
+    reached =
+        reached && mesh.flaw.empty() && certificate.reached() && certificate.undecided.empty();
     log(o.common.quiet, mesh.mesh.file.string() + ": " + page::summary_of(certificate) +
                             (mesh.made.found.cached ? " (from the cache)" : ""));
     meshes.push_back({{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});

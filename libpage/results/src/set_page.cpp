@@ -84,9 +84,12 @@ std::string shortfall_of(const certify::SetCertificate& c) {
 
 std::string summary_of(const certify::SetCertificate& c) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
-  return std::to_string(c.bodies) + (c.bodies == 1 ? " body, " : " bodies, ") +
-         std::to_string(c.vertices) +
-         (outer ? " vertices; cover verified exactly" : " vertices; inside verified exactly") +
+  const bool spheres = c.largest_body_vertices == 1;
+  return std::to_string(c.bodies) +
+         (spheres ? (c.bodies == 1 ? " sphere" : " spheres")
+                  : (c.bodies == 1 ? " body, " : " bodies, ") + std::to_string(c.vertices) +
+                        " vertices") +
+         (outer ? "; cover verified exactly" : "; inside verified exactly") +
          (outer && c.subject.dropped_sheets > 0 ? " without the sheets dropped" : "") +
          (outer ? "; no point farther from the solid than " : "; no point left out deeper than ") +
          percent(c.distance_upper, c.diagonal);
