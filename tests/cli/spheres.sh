@@ -86,3 +86,78 @@ sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"
 shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf
 expect 3 'are to be spheres' "$V" robot arm.urdf --spheres arm.urdf
 finish
+
+# XRDF: the geometry that is meant, its buffers; SRDF.
+xrdf() { # RADIUS BUFFER
+  cat <<X
+format: xrdf
+format_version: 1.0
+collision:
+  geometry: large
+  buffer_distance:
+    base: $2
+geometry:
+  small:
+    spheres:
+      base:
+        - center: [0, 0, 0]
+          radius: 0.01
+  large:
+    spheres:
+      base:
+        - center: [2, 0.5, 0.5]
+          radius: $1
+      hand:
+        - center: [0, 0, 0.4]
+          radius: 3
+X
+}
+xrdf 9 0 >robot.xrdf
+shows 0 '^verified: 2 spheres hold 2 of 2 links' "$V" robot arm.urdf --spheres robot.xrdf
+xrdf 0.1 8.9 >robot.yaml
+shows 0 '^verified' "$V" robot arm.urdf --spheres robot.yaml
+xrdf 0.1 0 >robot.xrdf
+shows 1 "link 'base': refuted" "$V" robot arm.urdf --spheres robot.xrdf
+xrdf 9 0 | sed 's/geometry: large/geometry: huge/' >bad.xrdf
+expect 3 "bad.xrdf:4: there is no geometry 'huge'" "$V" robot arm.urdf --spheres bad.xrdf
+xrdf 9 0 | sed 's/1\.0/7/' >bad.xrdf
+expect 3 'bad.xrdf:2: .*format_version' "$V" robot arm.urdf --spheres bad.xrdf
+xrdf 9 0 | sed '/^collision/,/base: 0/d' >bad.xrdf
+expect 3 'which geometry' "$V" robot arm.urdf --spheres bad.xrdf
+xrdf 9 0 | sed 's/^  large:/&\n    capsules: {}/' >bad.xrdf
+expect 3 "bad.xrdf:15: .*no 'capsules'" "$V" robot arm.urdf --spheres bad.xrdf
+xrdf -9 0 >bad.xrdf
+expect 3 'bad.xrdf:17: .*above 0' "$V" robot arm.urdf --spheres bad.xrdf
+printf 'format: xrdf\nformat_version: 1.0\n' >bad.xrdf
+expect 3 'as XRDF has them' "$V" robot arm.urdf --spheres bad.xrdf
+srdf() { # RADIUS
+  cat <<X
+<robot name="arm">
+  <group name="all"/>
+  <link_sphere_approximation link="base">
+    <sphere center="2 0.5 0.5" radius="$1"/>
+  </link_sphere_approximation>
+  <link_sphere_approximation link="hand">
+    <sphere center="0 0 0.4" radius="3"/>
+  </link_sphere_approximation>
+</robot>
+X
+}
+srdf 9 >robot.srdf
+shows 0 '^verified: 2 spheres hold 2 of 2 links' "$V" robot arm.urdf --spheres robot.srdf
+srdf 0 >robot.srdf
+shows 1 "link 'base': refuted: it has no spheres" "$V" robot arm.urdf --spheres robot.srdf
+srdf -1 >bad.srdf
+expect 3 'bad.srdf:4: .*negative' "$V" robot arm.urdf --spheres bad.srdf
+srdf nine >bad.srdf
+expect 3 'bad.srdf:4: ' "$V" robot arm.urdf --spheres bad.srdf
+srdf 9 | sed 's/link="hand"/link="base"/' >bad.srdf
+expect 3 "bad.srdf:6: .*has one already" "$V" robot arm.urdf --spheres bad.srdf
+srdf 9 | sed 's/link="hand"/link="hnad"/' >bad.srdf
+expect 3 "bad.srdf:6: .*no link 'hnad'" "$V" robot arm.urdf --spheres bad.srdf
+srdf 9 | sed 's/<sphere center="0 0 0.4"/<box size="1 1 1"/' >bad.srdf
+expect 3 'bad.srdf:7: .*<sphere> is expected' "$V" robot arm.urdf --spheres bad.srdf
+srdf 9 | head -5 >bad.srdf
+expect 3 'bad.srdf' "$V" robot arm.urdf --spheres bad.srdf
+echo '<robot name="arm"/>' >bad.srdf
+expect 3 'as SRDF has them' "$V" robot arm.urdf --spheres bad.srdf

@@ -162,7 +162,8 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
   c->add_option(
        "--spheres", o.robot.spheres,
        "Instead of RESULT, spheres of the links, in their frames: cuRobo's YAML "
-       "(collision_spheres) or a URDF with spheres as collision shapes. Decides of each "
+       "(collision_spheres), XRDF, an SRDF with link_sphere_approximation, or a URDF with "
+       "spheres as collision shapes. Decides of each "
        "link whether its own spheres hold its triangles, as the files have them, and the "
        "solid that they bound; else says how much of its surface is outside, and how "
        "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links "

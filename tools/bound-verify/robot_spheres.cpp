@@ -119,7 +119,8 @@ std::string sentence_of(const LinkJudged& link) {
   if (link.answer == Answer::Undecided && !link.open.empty()) return link.open;
   if (in.surface.answer == Answer::Undecided || in.solid.answer == Answer::Undecided)
     if (in.surface.answer != Answer::Refuted)
-      return in.surface.answer == Answer::Undecided ? in.surface.reason : in.solid.reason;
+      return (in.surface.answer == Answer::Undecided ? in.surface.reason : in.solid.reason) +
+             "; radii that are larger by a millionth would most likely decide it";
   if (link.spheres == 0) return "it has no spheres";
   const verify::OutsideBalls& o = link.outside;
   std::ostringstream out;

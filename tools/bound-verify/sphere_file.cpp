@@ -1,13 +1,15 @@
-// Spheres of robots as others write them: cuRobo's YAML and URDF.
+// Spheres of robots as others write them: cuRobo's YAML, XRDF, SRDF and URDF.
 #include "sphere_file.h"
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/robot/robot_file.h>
+#include <kaboum/robot/sphere_approximation.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -59,6 +61,24 @@ SphereFile read_urdf(const std::string& file) {
   return out;
 }
 
+SphereFile read_srdf(const std::string& file, const std::string& text) {
+  SphereFile out{{}, "spheres of an SRDF", {}};
+  for (const robot::SphereApproximation& link : robot::parse_sphere_approximations(text, file)) {
+    LinkSpheres one{link.link, link.line, {}};
+    for (const robot::LinkSphere& sphere : link.spheres) {
+      // As MoveIt reads it: the link has no shape.
+      if (sphere.radius == 0 && link.spheres.size() == 1) continue;
+      add_ball(one, sphere.center, sphere.radius, file, sphere.line);
+    }
+    out.links.push_back(std::move(one));
+  }
+  if (out.links.empty())
+    fail(file, 0,
+         "no spheres; as SRDF has them:\n  <link_sphere_approximation link=\"arm\">\n    <sphere "
+         "center=\"0 0 0.1\" radius=\"0.05\"/>\n  </link_sphere_approximation>");
+  return out;
+}
+
 #ifdef KABOUM_HAS_YAML
 
 int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
@@ -71,9 +91,10 @@ double number_of(const YAML::Node& node, const std::string& file, const std::str
   fail(file, line_of(node), what + " must be a number");
 }
 
-class CuroboFile {
+/// Spheres in YAML: cuRobo's, or XRDF.
+class YamlFile {
  public:
-  explicit CuroboFile(const std::string& file) : file_(file) {}
+  explicit YamlFile(const std::string& file) : file_(file) {}
 
   SphereFile read(const std::string& text) {
     std::vector<YAML::Node> documents;
@@ -84,6 +105,9 @@ class CuroboFile {
     }
     const YAML::Node root = documents[0];
     if (!root.IsMap()) fail(file_, 0, kForm);
+    if (const YAML::Node format = root["format"];
+        format && format.IsScalar() && format.Scalar() == "xrdf")
+      return read_xrdf(root);
     YAML::Node kinematics = root;
     if (const YAML::Node config = root["robot_cfg"]; config && config.IsMap())
       if (const YAML::Node inner = config["kinematics"]; inner && inner.IsMap())
@@ -94,8 +118,25 @@ class CuroboFile {
       fail(file_, line_of(spheres),
            "the spheres are in another file, '" + spheres.Scalar() + "': name that one");
     if (!spheres.IsMap()) fail(file_, line_of(spheres), kForm);
-    read_buffer(kinematics["collision_sphere_buffer"]);
+    read_buffer(kinematics["collision_sphere_buffer"], "collision_sphere_buffer");
     SphereFile out{{}, "cuRobo YAML", {}};
+    read_links(spheres, out);
+    if (out.links.empty()) fail(file_, line_of(spheres), kForm);
+    if (buffered_) out.notes.emplace_back("collision_sphere_buffer is added to the radii");
+    return out;
+  }
+
+ private:
+  static constexpr const char* kXrdfForm =
+      "no spheres; as XRDF has them:\n  geometry:\n    name:\n      spheres:\n        link_name:\n "
+      "  "
+      "       - center: [0, 0, 0.1]\n            radius: 0.05\n  collision:\n    geometry: name";
+  static constexpr const char* kForm =
+      "no spheres; as cuRobo has them:\n  collision_spheres:\n    link_name:\n      - center: [0, "
+      "0, 0.1]\n        radius: 0.05";
+
+  /// The spheres of a link by its name.
+  void read_links(const YAML::Node& spheres, SphereFile& out) const {
     std::set<std::string> names;
     for (const auto& entry : spheres) {
       LinkSpheres link{entry.first.Scalar(), line_of(entry.first), {}};
@@ -104,25 +145,58 @@ class CuroboFile {
       read_link(entry.second, link);
       out.links.push_back(std::move(link));
     }
-    if (out.links.empty()) fail(file_, line_of(spheres), kForm);
-    if (buffered_) out.notes.emplace_back("collision_sphere_buffer is added to the radii");
+  }
+
+  /// The group of spheres that `collision` names, with its buffer_distance; without `collision`
+  /// the only group that there is.
+  SphereFile read_xrdf(const YAML::Node& root) {
+    const YAML::Node version = root["format_version"];
+    const double stated = version ? number_of(version, file_, "format_version")
+                                  : std::numeric_limits<double>::quiet_NaN();
+    if (!(stated >= 1 && stated < 3))
+      fail(file_, version ? line_of(version) : 0, "XRDF of format_version 1.0 or 2.0 is read");
+    const YAML::Node groups = root["geometry"];
+    if (!groups || !groups.IsMap() || groups.size() == 0)
+      fail(file_, groups ? line_of(groups) : 0, kXrdfForm);
+    YAML::Node group = groups.begin()->second;
+    const YAML::Node collision = root["collision"];
+    if (collision) {
+      const YAML::Node name = collision.IsMap() ? collision["geometry"] : YAML::Node();
+      if (!collision.IsMap() || !name || !name.IsScalar())
+        fail(file_, line_of(collision), "'collision' must name its geometry");
+      const YAML::Node named = groups[name.Scalar()];
+      if (!named) fail(file_, line_of(name), "there is no geometry '" + name.Scalar() + "'");
+      group.reset(named);
+      read_buffer(collision["buffer_distance"], "buffer_distance");
+    } else if (groups.size() > 1) {
+      fail(file_, line_of(groups), "'collision' must say which geometry is meant");
+    }
+    if (!group.IsMap()) fail(file_, line_of(groups), kXrdfForm);
+    for (const auto& entry : group)
+      if (entry.first.Scalar() != "spheres")
+        fail(file_, line_of(entry.first),
+             "a geometry of spheres is read, no '" + entry.first.Scalar() + "'");
+    const YAML::Node spheres = group["spheres"];
+    if (!spheres || !spheres.IsMap()) fail(file_, line_of(group), kXrdfForm);
+    SphereFile out{{}, "XRDF", {}};
+    read_links(spheres, out);
+    if (out.links.empty()) fail(file_, line_of(spheres), kXrdfForm);
+    if (buffered_) out.notes.emplace_back("collision's buffer_distance is added to the radii");
+    if (root["modifiers"])
+      out.notes.emplace_back(
+          "its modifiers of the URDF are not applied: links are those of the robot");
     return out;
   }
 
- private:
-  static constexpr const char* kForm =
-      "no spheres; as cuRobo has them:\n  collision_spheres:\n    link_name:\n      - center: [0, "
-      "0, 0.1]\n        radius: 0.05";
-
-  void read_buffer(const YAML::Node& node) {
+  void read_buffer(const YAML::Node& node, const std::string& name) {
     if (!node || node.IsNull()) return;
     buffered_ = true;
     if (!node.IsMap()) {
-      buffer_ = number_of(node, file_, "collision_sphere_buffer");
+      buffer_ = number_of(node, file_, name);
       return;
     }
     for (const auto& entry : node)
-      of_link_[entry.first.Scalar()] = number_of(entry.second, file_, "collision_sphere_buffer");
+      of_link_[entry.first.Scalar()] = number_of(entry.second, file_, name);
   }
 
   void read_link(const YAML::Node& list, LinkSpheres& link) const {
@@ -163,10 +237,11 @@ SphereFile read_spheres(const std::string& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   if (!stream) throw Error(ErrorCode::InvalidInput, file + ": cannot be read");
-  if (extension != ".yml" && extension != ".yaml")
-    fail(file, 0, "spheres are read from .yml and .yaml (cuRobo) and from .urdf");
+  if (extension == ".srdf") return read_srdf(file, text.str());
+  if (extension != ".yml" && extension != ".yaml" && extension != ".xrdf")
+    fail(file, 0, "spheres are read from .yml and .yaml (cuRobo, XRDF), .xrdf, .srdf and .urdf");
 #ifdef KABOUM_HAS_YAML
-  return CuroboFile(file).read(text.str());
+  return YamlFile(file).read(text.str());
 #else
   throw Error(ErrorCode::NotBuilt, "--spheres: this build has no yaml-cpp to read " + file);
 #endif
