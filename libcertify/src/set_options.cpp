@@ -53,7 +53,7 @@ void add_limits(std::vector<Option<R>>& out) {
   out.push_back(choice<R>(
       {.name = "bodies",
        .text = "polytopes; or spheres, whose union holds the solid and every triangle, as planners "
-               "with spheres take them (a robot's are written as cuRobo YAML)"},
+               "with spheres take them (a robot's are written as cuRobo YAML, XRDF, SRDF or URDF)"},
       [](auto& r) -> auto& { return r.request.body_kind; }, kBodyKinds));
   out.push_back(choice<R>(
       {.name = "direction",

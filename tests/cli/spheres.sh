@@ -43,6 +43,18 @@ expect 2 'yaml' "$B" arm.urdf -o out --bodies spheres --epsilon 0.4
 expect 0 '' "$B" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
 shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres arm.yaml --report judged.json
 json judged.json "r['verdict'] == 'verified' and r['share_outside']['upper'] == 0"
+# The same spheres in other formats, which are judged alike.
+mkdir -p other
+for file in arm.xrdf arm.srdf arm-spheres.urdf other/arm.urdf; do
+  expect 0 '' "$B" arm.urdf -o "$file" --bodies spheres --epsilon 0.4 --effort fast
+  shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres "$file" --report one.json
+  python3 - <<'P' || fail "$file: other spheres"
+import json
+a, b = json.load(open("judged.json")), json.load(open("one.json"))
+assert a["count"] == b["count"] and [l["spheres"] for l in a["links"]] == [l["spheres"] for l in b["links"]]
+P
+done
+expect 2 'link_sphere_approximation' "$B" arm.urdf -o arm.txt --bodies spheres --epsilon 0.4
 # So many for all links: no link is farther than it has to be.
 expect 0 '' "$B" arm.urdf -o twelve.yaml --bodies spheres --robot-bodies 12 --effort fast --no-cache --report twelve.json
 json twelve.json "2 < r['spheres'] <= 12 and r['reach_upper'] < 0.4"

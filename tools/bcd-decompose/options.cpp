@@ -23,7 +23,7 @@ void add_input(CLI::App& app, DecomposeOptions& o) {
          "Where the bodies go: a .glb container, an .obj with one object per body, or a "
          "folder with one STL per body (- for stdout); for robots a folder, which gets a "
          "URDF, the bodies that it refers to, and a container per link; with --bodies spheres a "
-         ".yaml file as cuRobo has them")
+         ".yaml (cuRobo), .xrdf, .srdf or .urdf file")
       ->required()
       ->type_name("PATH");
 }

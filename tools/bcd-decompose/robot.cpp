@@ -22,7 +22,7 @@
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
-#include "robots/sphere_yaml.h"
+#include "robots/sphere_output.h"
 #include "words.h"
 
 namespace kaboum::tools {
@@ -188,10 +188,11 @@ void write_page(const Run& run, const RobotWriter& output) {
 
 /// Spheres of all links, in one file: no shapes of a URDF.
 int decompose_into_spheres(const DecomposeOptions& o) {
-  const std::string extension = std::filesystem::path(o.output).extension().string();
-  if (extension != ".yaml" && extension != ".yml")
+  const std::optional<SphereFormat> format = sphere_format_of(o.output);
+  if (!format)
     throw Error(ErrorCode::InvalidArgument,
-                "--bodies spheres of a robot are written as cuRobo YAML: end --output in .yaml");
+                "--bodies spheres of a robot: end --output in .yaml (cuRobo), .xrdf, .srdf "
+                "(link_sphere_approximation) or .urdf (spheres as collision shapes)");
   if (o.srdf || !o.preview.empty() || !o.robot.html.empty())
     throw Error(
         ErrorCode::InvalidArgument,
@@ -227,7 +228,8 @@ int decompose_into_spheres(const DecomposeOptions& o) {
   };
   const certify::CertifiedBodies bodies =
       certify::certify_bodies(run.robot, run.request, cache, hooks);
-  io::write_file(o.output, sphere_yaml(run.robot, bodies, run.request.parameters()));
+  io::write_file(o.output,
+                 sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
   log(o.common.quiet, o.output + ": " + counted(bodies.artefact().size(), "sphere", "spheres") +
                           ", no point farther from its link's shapes than " +
                           number_up(bodies.certificate().distance) + "; bound-verify robot " +
