@@ -79,10 +79,10 @@ class Rows {
     // The nearest point stays where it is in the second frame, to first order along u.
     const Vec3 u = off / (far * length_);
     const Vec3 arm = a_.point - a_.origin, other = a_.point - b_.origin;
-    first_.back().head<3>() = u.transpose();
-    first_.back().tail<3>() = arm.cross(u).transpose();
-    second_.back().head<3>() = -u.transpose();
-    second_.back().tail<3>() = -other.cross(u).transpose();
+    move_first() = u.transpose();
+    turn_first() = arm.cross(u).transpose();
+    move_second() = -u.transpose();
+    turn_second() = -other.cross(u).transpose();
   }
   /// u · v, u fixed to the first frame, v to the second.
   void dot(const Vec3& u, const Vec3& v) {
