@@ -39,38 +39,8 @@ class Descent {
 
   /// Moves q to where the error is least near it. Whether that is within the bound.
   bool run(std::vector<double>& q) const {
-    double damping = 1e-3;
-    Transform pose;
-    auto j = jacobian(arm_, q, &pose);
-    Vec6 e = gap(pose, target_, length_);
-    for (int i = 0; i < options_.iterations; ++i) {
-      if (met(pose)) return true;
-      j.topRows(3) /= length_;
-      freeze(j, e, q);
-      Eigen::MatrixXd normal = j.transpose() * j;
-      normal.diagonal().array() += damping;
-      const Eigen::VectorXd step = normal.ldlt().solve(j.transpose() * e);
-      std::vector<double> next = q;
-      double moved = 0;
-      for (std::size_t k = 0; k < q.size(); ++k) {
-        next[k] += std::clamp(step[static_cast<Eigen::Index>(k)], -1.0, 1.0);
-        if (options_.limits) next[k] = into_limits(arm_.axes[k], next[k]);
-        moved = std::max(moved, std::abs(next[k] - q[k]));
-      }
-      auto next_j = jacobian(arm_, next, &pose);
-      const Vec6 next_e = gap(pose, target_, length_);
-      if (next_e.norm() < e.norm()) {
-        q = std::move(next);
-        j = std::move(next_j);
-        e = next_e;
-        damping = std::max(damping / 8, 1e-15);
-      } else {
-        if (damping > 1e3 || moved < 1e-15) return false;  // nowhere is better: a local minimum
-        damping *= 16;
-        j = jacobian(arm_, q, &pose);
-      }
-    }
-    return met(pose);
+    constexpr int kFew = 8;  // axes of which matrices need no memory of their own
+    return arm_.axes.size() <= kFew ? descend<kFew>(q) : descend<Eigen::Dynamic>(q);
   }
 
   [[nodiscard]] PoseError error(const std::vector<double>& q) const {
@@ -78,6 +48,49 @@ class Descent {
   }
 
  private:
+  /// @tparam Most  axes
+  template <int Most>
+  bool descend(std::vector<double>& q) const {
+    using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, Most>;
+    using Square =
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Most, Most>;
+    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1>;
+    double damping = 1e-3;
+    Transform pose;
+    Jacobian here = jacobian(arm_, q, &pose);  // at q
+    Vec6 e = gap(pose, target_, length_);
+    for (int i = 0; i < options_.iterations; ++i) {
+      if (met(pose)) return true;
+      Jacobian j = here;
+      j.topRows(3) /= length_;
+      freeze(j, e, q);
+      Square normal = j.transpose().lazyProduct(j);
+      normal.diagonal().array() += damping;
+      const Column step = normal.ldlt().solve(Column(j.transpose().lazyProduct(e)));
+      std::vector<double> next = q;
+      double moved = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        next[k] += std::clamp(step[static_cast<Eigen::Index>(k)], -1.0, 1.0);
+        if (options_.limits) next[k] = into_limits(arm_.axes[k], next[k]);
+        moved = std::max(moved, std::abs(next[k] - q[k]));
+      }
+      Transform next_pose;
+      const Jacobian there = jacobian(arm_, next, &next_pose);
+      const Vec6 next_e = gap(next_pose, target_, length_);
+      if (next_e.norm() < e.norm()) {
+        q = std::move(next);
+        here = there;
+        pose = next_pose;
+        e = next_e;
+        damping = std::max(damping / 8, 1e-15);
+      } else {
+        if (damping > 1e3 || moved < 1e-15) return false;  // nowhere is better: a local minimum
+        damping *= 16;
+      }
+    }
+    return met(pose);
+  }
+
   static Axis free(Axis axis) {
     axis.lower = -std::numeric_limits<double>::infinity();
     axis.upper = -axis.lower;
@@ -90,8 +103,8 @@ class Descent {
   }
 
   /// Joints on a limit that the step would take past it do not take part in it.
-  void freeze(Eigen::Matrix<double, 6, Eigen::Dynamic>& j, const Vec6& e,
-              const std::vector<double>& q) const {
+  template <class Jacobian>
+  void freeze(Jacobian& j, const Vec6& e, const std::vector<double>& q) const {
     if (!options_.limits) return;
     for (std::size_t k = 0; k < q.size(); ++k) {
       const double downhill = j.col(static_cast<Eigen::Index>(k)).dot(e);
