@@ -313,7 +313,9 @@ TEST_F(Push, ConstraintsAreOfTheLine) {
     const bool turns = std::abs(hand.linear(2, 2)) > 0.9 && joint == 5;
     EXPECT_EQ(outcome(off, std::span(kept).subspan(2, 1)),
               turns ? ConstraintAnswer::Outcome::Kept : ConstraintAnswer::Outcome::Broken);
-    if (turns) EXPECT_EQ(outcome(off, std::span(kept).last(1)), ConstraintAnswer::Outcome::Broken);
+    if (turns) {
+      EXPECT_EQ(outcome(off, std::span(kept).last(1)), ConstraintAnswer::Outcome::Broken);
+    }
   }
 }
 
