@@ -55,11 +55,13 @@ double angle_between(const Vec3& a, const Vec3& b) {
 
 /// A constraint of two objects that they meet, just about, where the second one has this pose in
 /// the first one's frame.
-ToleratedConstraint met_at(const Transform& pose, Draws& draws) {
+/// @param kinds_of_features: as many of the first ones
+ToleratedConstraint met_at(const Transform& pose, Draws& draws, std::size_t kinds_of_features = 4) {
   for (;;) {
     ToleratedConstraint c;
     c.relation = static_cast<Relation>(draws.index(5));
-    const Kind kinds[2] = {static_cast<Kind>(draws.index(4)), static_cast<Kind>(draws.index(4))};
+    const Kind kinds[2] = {static_cast<Kind>(draws.index(kinds_of_features)),
+                           static_cast<Kind>(draws.index(kinds_of_features))};
     c.first = {To::Object, 0, 0, draws.feature(kinds[0])};
     c.second = {To::Object, 1, 0, draws.feature(kinds[1])};
     const double slack = draws.index(2) == 0 ? 1e-6 : 0.05;
@@ -112,6 +114,13 @@ TEST(Contradictions, AreNeverFoundWhereAPoseMeetsAll) {
     EXPECT_FALSE(find_contradiction(all)) << "round " << round;
   }
   EXPECT_GT(several, 500U);
+  // Of points alone, which are to be away from each other as well as near.
+  for (int round = 0; round < 3000; ++round) {
+    const Transform pose = draws.pose();
+    std::vector<ToleratedConstraint> all;
+    for (std::size_t n = 2 + draws.index(2); n > 0; --n) all.push_back(met_at(pose, draws, 1));
+    EXPECT_FALSE(find_contradiction(all)) << "round " << round << " of points";
+  }
 }
 
 FixedFeature of(std::size_t object, Feature feature) {
