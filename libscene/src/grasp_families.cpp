@@ -152,12 +152,8 @@ class FreeSpace {
   std::vector<StatedGrasp> families() {
     Cells cells(counts_, hold_.turn.has_value());
     for (std::size_t i = 0; i < counts_[0]; ++i)
-      for (std::size_t k = 0; k < counts_[1]; ++k) {
-        if (!fits(box_of({{i, k, 0}, {1, 1, 1}}))) continue;
-        for (std::size_t t = 0; t < counts_[2]; ++t)
-          if (hand_.is_free(base_, box_of({{i, k, t}, {1, 1, 1}}), kPartsOfCell))
-            cells.set_open({i, k, t});
-      }
+      for (std::size_t k = 0; k < counts_[1]; ++k)
+        if (fits(box_of({{i, k, 0}, {1, 1, 1}}))) open({{i, k, 0}, {1, 1, counts_[2]}}, cells);
     const std::size_t all = cells.left();
     std::vector<StatedGrasp> out;
     while (out.size() < kMostFamilies) {
@@ -179,6 +175,22 @@ class FreeSpace {
     for (const world::FreeSlide& slide : grasp.slides) out.push_back({slide.from, slide.to});
     if (grasp.turn) out.push_back({grasp.turn->from, grasp.turn->to});
     return out;
+  }
+
+  /// Opens those of some cells that are free: all at once, or those of either half.
+  void open(const Cells::Box& some, Cells& cells) {
+    const std::size_t count = some.count[2];
+    if (hand_.is_free(base_, box_of(some), count == 1 ? kPartsOfCell : 1)) {
+      for (std::size_t t = 0; t < count; ++t)
+        cells.set_open({some.first[0], some.first[1], some.first[2] + t});
+    } else if (count > 1) {
+      Cells::Box half = some;
+      half.count[2] = count / 2;
+      open(half, cells);
+      half.first[2] += half.count[2];
+      half.count[2] = count - half.count[2];
+      open(half, cells);
+    }
   }
 
   [[nodiscard]] double cell_of(std::size_t freedom) const {

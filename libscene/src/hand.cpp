@@ -71,9 +71,19 @@ Hand::Hand(const world::World& world, std::size_t object, std::size_t robot,
   std::vector<world::Item> items;
   for (std::size_t s = 0; s < model.shapes.size(); ++s)
     if (hand_[model.shapes[s].link] && !is_allowed(s)) items.push_back({robot, s});
+  parts_.reserve(items.size());
   for (const world::Checker::PosedItem& one : checker_.places(state_, items, scratch_))
     parts_.push_back(
         {one.place, margin_between(world, state_, {world::Item::kObject, object}, one.item)});
+  const collide::BoundingSet& set = world.objects[object].outer;
+  balls_.reserve(set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const collide::Polytope& body = set.polytope(i);
+    collide::BoundingSet::Ball ball{body.center(), 0};
+    for (std::uint32_t k = 0; k < body.size(); ++k)
+      ball.radius = std::max(ball.radius, (body.point(k) - ball.center).norm() * kUp);
+    balls_.push_back(ball);
+  }
 }
 
 std::optional<std::string> Hand::contact_at(const Transform& grasp) {
@@ -128,19 +138,33 @@ bool Hand::may_meet(const world::Grasp& grasp, const MemberBox& box) {
   const Transform here;
   for (std::size_t i = 0; i < set.size(); ++i) {
     const collide::Polytope& body = set.polytope(i);
+    geom::Box3 centers;
+    for (const Transform& place : places) centers.extend(place * balls_[i].center);
     std::vector<Vec3> points;
-    points.reserve(places.size() * body.size());
-    for (const Transform& place : places)
-      for (std::uint32_t k = 0; k < body.size(); ++k) points.emplace_back(place * body.point(k));
-    const collide::Polytope swept(points);
-    const collide::Posed placed(swept, here);
-    for (const Part& part : parts_)
+    std::optional<collide::Polytope> swept;
+    for (const Part& part : parts_) {
+      const double near = (bulge + set.body(i).radius + part.place.error() + part.margin) * kUp;
+      // The boxes of the hand have its radii and errors.
+      const auto is_beside = [&](const geom::Box3& other) {
+        const double reach = near + balls_[i].radius;
+        return ((other.min - centers.max).array() > reach).any() ||
+               ((centers.min - other.max).array() > reach).any();
+      };
+      if (is_beside(part.place.box())) continue;
       for (std::size_t j = 0; j < part.place.set().size(); ++j) {
-        const double reach = (bulge + set.body(i).radius + part.place.radius_above(j) +
-                              part.place.error() + part.margin) *
-                             kUp;
-        if (collide::are_within(placed, part.place.body(j), reach)) return true;
+        if (is_beside(part.place.box(j))) continue;
+        if (!swept) {
+          points.reserve(places.size() * body.size());
+          for (const Transform& place : places)
+            for (std::uint32_t k = 0; k < body.size(); ++k)
+              points.emplace_back(place * body.point(k));
+          swept.emplace(points);
+        }
+        const double reach = (near + part.place.radius_above(j)) * kUp;
+        if (collide::are_within(collide::Posed(*swept, here), part.place.body(j), reach))
+          return true;
       }
+    }
   }
   return false;
 }

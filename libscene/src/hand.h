@@ -65,6 +65,7 @@ class Hand {
   std::vector<bool> hand_;
   geom::Transform tool_;
   std::vector<Part> parts_;
+  std::vector<collide::BoundingSet::Ball> balls_;  ///< that hold the cores of the object's bodies
 };
 
 }  // namespace kaboum::scene

@@ -425,6 +425,13 @@ TEST(GraspFamilies, OfTurnedPartsAreAtEachOfTheirDiameters) {
   const std::vector<world::Grasp> neck = round_ones(derive_families(world, {.opening = 0.05}));
   ASSERT_EQ(neck.size(), 5U);
   EXPECT_GE(bounds(neck[0]).first, 0.12);
+  // A can with a handle is round about the can's axis, above the handle.
+  const world::World mug = world_of_bodies(
+      {prism(64, 0.04, 0, 0.1), {"handle", hull_of({{0, -0.01, 0.02}, {0.08, 0.01, 0.04}}, {})}});
+  const std::vector<world::Grasp> above = round_ones(derive_families(mug, {.opening = 0.082}));
+  ASSERT_GE(above.size(), 5U);
+  EXPECT_LT(above[0].turn->point.head<2>().norm(), 1e-9);
+  EXPECT_GE(bounds(above[0]).first, 0.04);
   // A cone has no such side.
   std::vector<Vec3> cone{{0, 0, 0.08}};
   for (int i = 0; i < 64; ++i)
