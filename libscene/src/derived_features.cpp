@@ -267,9 +267,9 @@ std::string why_none(const DerivedGrasps& found, const GraspRequest& request,
     return "no two parallel faces face each other" +
            std::string(families ? ", and no side is round," : "") +
            (std::isfinite(request.opening) ? " within the opening" : "") +
-           (request.tip > 0 ? " with room for the tips" : "");
+           (request.tip ? " with room for the tips" : "");
   if (found.faces == 0)
-    return families && request.tip > 0 ? "no face has room for the cup" : "no face is uncovered";
+    return families && request.tip ? "no face has room for the cup" : "no face is uncovered";
   return "the hand is in contact at each of the " + std::to_string(found.in_contact) +
          " that were tried" + (found.contact.empty() ? "" : ": " + found.contact) +
          (sides ? "; fingers that may touch it need an allowed contact" : "");
@@ -404,7 +404,7 @@ class Ground {
 /// Anywhere on faces, turned about their normal; nullopt where the tips do not fit.
 std::optional<FreeHold> hold_of(const Task& task, const Hold& hold) {
   const double size = task.faces.size();
-  const Ground ground(task.faces, hold, 0.5 * task.request.tip);
+  const Ground ground(task.faces, hold, 0.5 * task.request.tip.value_or(0));
   const MemberBox reach = ground.reach();
   if (reach.empty()) return std::nullopt;
   FreeHold out;
@@ -424,8 +424,8 @@ std::optional<FreeHold> hold_of(const Task& task, const Hold& hold) {
 /// Round an axis, between two heights, in one direction of approach after the other.
 std::vector<FreeHold> holds_of(const Task& task, const RoundSide& side) {
   std::vector<FreeHold> out;
-  const double shorter = task.request.tip > 0 ? 0.5 * task.request.tip
-                                              : 0.5 * (1 - kShares.back()) * (side.high - side.low);
+  const double shorter = task.request.tip ? 0.5 * *task.request.tip
+                                          : 0.5 * (1 - kShares.back()) * (side.high - side.low);
   const double half = 0.5 * (side.high - side.low) - shorter;
   if (half < 0) return out;
   const Vec3 outwards = Axes(side.axis).u;
@@ -759,9 +759,9 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
           {.name = "tip",
            .text = "Of families: width of the fingers' tips, or diameter of the suction cup; it "
                    "stays within the faces, wherever it is turned",
-           .low = 0,
            .high = 1e9,
-           .absolute = true},
+           .absolute = true,
+           .otherwise = "none"},
           [](auto& r) -> auto& { return r.tip; }),
       option<R>(
           {.name = "directions",

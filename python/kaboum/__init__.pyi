@@ -1000,7 +1000,7 @@ def add_grasps(
     form: Literal["both", "families", "poses"] = "both",
     closing: Literal["x", "y"] = "y",
     opening: float | None = None,
-    tip: float = 0.0,
+    tip: float | None = None,
     directions: int = 8,
     most: int = 24,
     gap: float = 0.001,

@@ -521,6 +521,9 @@ TEST(GraspFamilies, NeedRoomForTheTips) {
     for (const world::Grasp& grasp : derive_families(world, {.hold = hold, .tip = 0.03}).grasps)
       EXPECT_GT(std::abs(grasp.turn->axis.x()), 0.9);  // other faces are 0.02 wide
   EXPECT_EQ(derive_families(world, {.tip = 0.11}).faces, 0U);
+  const world::World disc = world_of_bodies({prism(64, 0.03, 0, 0.02)});
+  EXPECT_EQ(round_ones(derive_families(disc, {.opening = 0.061, .tip = 0.019})).size(), 5U);
+  EXPECT_EQ(round_ones(derive_families(disc, {.opening = 0.061, .tip = 0.021})).size(), 0U);
   EXPECT_TRUE(derive_families(world, {.tip = 0.11}).grasps.empty());
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,8 @@ struct GraspRequest {
   /// Largest distance between two faces: how far the fingers open. [length]
   double opening = std::numeric_limits<double>::infinity();
   /// Of families: width of the fingers' tips, or diameter of the suction cup. All of it stays
-  /// within the faces; 0: it stays off the outer twentieth of the way to their edges. [length]
-  double tip = 0;
+  /// within the faces; none: it stays off the outer twentieth of the way to their edges. [length]
+  std::optional<double> tip = {};
   /// Of single poses: of approach, evenly round the axis of closing or of suction.
   std::size_t directions = 8;
   std::size_t most = 24;  ///< grasps
