@@ -32,9 +32,9 @@ constexpr double kPointSlack = 2e-3;
 constexpr double kCoarseCaps = 0.15, kFineCaps = 0.04;
 /// Share of the work for fewer balls before all triangles are held, and again after it.
 constexpr double kReducing = 0.3;
-constexpr int kPatchRounds = 60;  ///< of points added where no ball is
-constexpr std::size_t kAddedAtOnce = 150;
-constexpr int kPieceCuts = 24;  ///< of a triangle
+constexpr int kPatchRounds = 150;                              ///< of points added where no ball is
+constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 600;  ///< while balls move, and after it
+constexpr int kPieceCuts = 24;                                 ///< of a triangle
 constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
 /// Points of the inside that are looked at, of which every so manieth is to be held at first.
 constexpr std::size_t kInnerPoints = 20'000, kInnerShown = 29;
@@ -300,14 +300,18 @@ class BallSearch {
   /// there are none
   bool add_free_points(const std::vector<Ball>& balls) {
     std::vector<std::vector<Vec3>> found(mesh_.triangles.size());
+    const std::size_t wanted = may_move() ? kAddedAtOnce : kAddedAtLast;
+    // Large triangles have many.
+    const std::size_t most =
+        may_move() ? 8 : std::max<std::size_t>(8, 4 * wanted / mesh_.triangles.size());
     kaboum::parallel_for(std::size_t{0}, mesh_.triangles.size(), [&](std::size_t t) {
       const auto& [i, j, k] = mesh_.triangles[t];
-      find_free({mesh_.vertices[i], mesh_.vertices[j], mesh_.vertices[k]}, balls, found[t]);
+      find_free({mesh_.vertices[i], mesh_.vertices[j], mesh_.vertices[k]}, balls, most, found[t]);
     });
     std::vector<Vec3> all;
     for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
     if (all.empty()) all = free_inner_points(balls);
-    const std::size_t stride = all.size() / kAddedAtOnce + 1;
+    const std::size_t stride = all.size() / wanted + 1;
     for (std::size_t i = 0; i < all.size(); i += stride) points_.push_back(all[i]);
     return all.empty();
   }
@@ -331,8 +335,7 @@ class BallSearch {
   };
 
   static void find_free(const std::array<Vec3, 3>& triangle, const std::vector<Ball>& balls,
-                        std::vector<Vec3>& out) {
-    constexpr std::size_t kMost = 8;
+                        std::size_t most, std::vector<Vec3>& out) {
     std::vector<Ball> near;
     const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
     double reach = 0;
@@ -344,7 +347,7 @@ class BallSearch {
       return (p - b.center).squaredNorm() <= b.radius * b.radius;
     };
     std::vector<Piece> open{{triangle, 0}};
-    while (!open.empty() && out.size() < kMost) {
+    while (!open.empty() && out.size() < most) {
       const Piece piece = open.back();
       open.pop_back();
       bool held = false;
@@ -393,13 +396,21 @@ class BallSearch {
   [[nodiscard]] std::vector<Ball> completed(std::vector<Ball> balls, std::size_t most) {
     for (int round = 0; round < kPatchRounds; ++round) {
       show("filling gaps", static_cast<double>(round) / kPatchRounds);
+      if (3 * round >= kPatchRounds) allow_work(0);  // moving fills one gap and opens another
       const std::vector<Ball> out = written(balls);
       const std::size_t known = points_.size();
       if (add_free_points(out)) return out;
       if (may_move() && relaxation_.hold(balls, effort_.sweeps)) continue;
       const std::vector<Vec3> free(points_.begin() + static_cast<std::ptrdiff_t>(known),
                                    points_.end());
-      for (const Vec3& p : free) add_ball_at(p);
+      std::vector<SurfacePoint> at;
+      for (const Vec3& p : free) {
+        add_ball_at(p);
+        const auto& [a, b, c] = query_.corners(query_.nearest(p).triangle);
+        const Vec3 inwards = -(b - a).cross(c - a).normalized();
+        if (inwards.allFinite()) at.push_back({p, inwards});
+      }
+      add_candidates(at);
       std::vector<Ball> more = choose(free, 0);
       // A part of them may do, once all have moved.
       if (may_move()) more.resize((more.size() + 2) / 3);

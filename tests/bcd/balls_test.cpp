@@ -69,6 +69,12 @@ TEST(Balls, TheInsideIsHeldToo) {
   expect_held(ball, found);
 }
 
+// Each triangle takes dozens of small balls.
+TEST(Balls, FewLargeTrianglesAreHeldByManyBalls) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  expect_held(bar, balls_of(bar, within(0.08)));
+}
+
 TEST(Balls, ANumberIsKept) {
   const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
   for (const std::size_t count : {1U, 2U, 4U}) {
