@@ -121,6 +121,25 @@ TEST(Contradictions, AreNeverFoundWhereAPoseMeetsAll) {
     for (std::size_t n = 2 + draws.index(2); n > 0; --n) all.push_back(met_at(pose, draws, 1));
     EXPECT_FALSE(find_contradiction(all)) << "round " << round << " of points";
   }
+  // The rotation is given by two angles: what is said of the place is all that may contradict.
+  for (int round = 0; round < 4000; ++round) {
+    const Transform pose = draws.pose();
+    std::vector<ToleratedConstraint> all;
+    while (all.size() < 2) {
+      const Feature axis = draws.feature(Kind::Line);
+      Feature other = axis;
+      other.direction = pose.linear.transpose() * axis.direction;
+      all.push_back(
+          {Relation::Angle, {To::Object, 0, 0, axis}, {To::Object, 1, 0, other}, 0, 0, 0.02});
+    }
+    while (all.size() < 4) {
+      ToleratedConstraint c = met_at(pose, draws);
+      if (c.relation != Relation::Distance && c.relation != Relation::Coincident) continue;
+      if (c.first.feature.kind != Kind::Point && c.second.feature.kind != Kind::Point) continue;
+      all.push_back(c);
+    }
+    EXPECT_FALSE(find_contradiction(all)) << "round " << round << " of a known rotation";
+  }
 }
 
 FixedFeature of(std::size_t object, Feature feature) {
