@@ -4,6 +4,7 @@
 #include <kaboum/kinematics/sample.h>
 #include <kaboum/motion/goals.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/checker.h>
 
 #include <algorithm>
 
@@ -101,12 +102,20 @@ Goals constraint_goals(const world::RobotModel& robot, const world::ToolFrame& t
 Goals preferred_goals(const world::World& world, std::size_t robot, const world::ToolFrame& tool,
                       const world::ConstraintSet& set, const std::vector<double>& start,
                       std::uint64_t seed) {
+  const world::Checker checker(world);
+  world::Scratch scratch;
+  world::WorldState state = initial_state(world);
+  const auto is_free = [&](const std::vector<double>& q) {
+    state.q[robot] = q;
+    return checker.is_free(state, scratch);
+  };
   Goals out;
-  for (std::size_t count = set.preferred.size() + 1; count > 0 && out.configurations.empty();
-       --count)
+  for (std::size_t count = set.preferred.size() + 1; count > 0; --count) {
     out = constraint_goals(world.robots.at(robot), tool,
                            path_constraints(world, initial_state(world), robot, set, count - 1),
                            start, seed);
+    if (std::ranges::any_of(out.configurations, is_free)) break;
+  }
   return out;
 }
 

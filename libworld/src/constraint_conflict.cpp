@@ -6,13 +6,14 @@
 // t is near a point, a line or a plane, of which two may be too far apart. Where all cells are left
 // out, no pose meets the constraints. docs/scene.md.
 #include <kaboum/base/error.h>
-#include <kaboum/kinematics/arm.h>
 #include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/features.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -28,8 +29,8 @@ using Mat3 = Eigen::Matrix3d;
 constexpr double kPi = std::numbers::pi;
 /// More than sums of a few lengths and angles lose: of a length, and an angle. [1; rad]
 constexpr double kLost = 1e-9;
-/// Cells of rotations that are looked at.
-constexpr std::size_t kMostCells = 20000;
+/// Cells of rotations that are looked at, times what is looked at in each.
+constexpr std::size_t kMostWork = 100000;
 
 /// An interval of the angle of two directions.
 struct AngleBand {
@@ -96,10 +97,8 @@ void add_points(const ToleratedConstraint& c, std::vector<PointBand>& out) {
   if (other.kind == Kind::Plane) band.across = along(other.direction);
   if (other.kind == Kind::Surface) {
     // It lies in a ball about the middle of its surface.
-    double size = other.radius;
-    for (const Vec3& corner : other.outline) size = std::max(size, (corner - other.point).norm());
     band.center += value * other.direction;
-    band.high = size;
+    band.high = radius_of(other);
     value = 0;
     PointBand in_plane = band;
     in_plane.across = along(other.direction);
@@ -140,12 +139,13 @@ bool may_hold(const AngleBand& band, const Mat3& rotation, double turn) {
 /// Two bands of points whose rest is of the same thing: for one rotation Q each asks that
 /// low ≤ |S (t − c)| ≤ high with c = center − Q point, for the same t.
 struct PointPair {
-  Vec3 centers, points;          ///< differences, in the frames of the rest and of the points
-  Mat3 common = Mat3::Zero();    ///< onto what both projections keep
-  bool of_second = false;        ///< Q is the rotation; else its inverse
-  bool is_ball = false;          ///< both keep everything
-  double high = 0;               ///< sum
-  double hole = 0, in_hole = 0;  ///< of the first one's low, with the second one's high; 0: none
+  Vec3 centers, points;        ///< differences, in the frames of the rest and of the points
+  Mat3 common = Mat3::Zero();  ///< onto what both projections keep
+  bool of_second = false;      ///< Q is the rotation; else its inverse
+  bool is_ball = false;        ///< both keep everything
+  double high = 0;             ///< sum
+  /// The low of one less the high of the other one, where that lies in a hole; 0: there is none.
+  std::array<double, 2> holes{};
 };
 
 /// Onto what two projections (onto a point's space, a line's or a plane's) have in common. Where
@@ -185,14 +185,9 @@ std::optional<PointPair> pair_of(const PointBand& a, const PointBand& b) {
   out.of_second = of_second;
   out.is_ball = ball_a && ball_b;
   out.high = a.high + b.high;
-  // Where the second tube lies within the hole of the first one, or the other way round.
-  if (a.low > 0 && out.common == a.across) {
-    out.hole = a.low;
-    out.in_hole = b.high;
-  } else if (b.low > 0 && out.common == b.across) {
-    out.hole = b.low;
-    out.in_hole = a.high;
-  }
+  // Where one tube lies within the hole of the other one.
+  if (a.low > 0 && out.common == a.across) out.holes[0] = a.low - b.high;
+  if (b.low > 0 && out.common == b.across) out.holes[1] = b.low - a.high;
   return out;
 }
 
@@ -208,7 +203,8 @@ bool may_hold(const PointPair& pair, const Mat3& rotation, double turn) {
   // Whatever the rotation is, both points are as far from each other as they are.
   const double least = std::max({apart - chord, fixed - far, pair.is_ball ? far - fixed : 0.0});
   if (least > pair.high + rounding) return false;
-  return !(pair.hole > 0 && apart + chord + pair.in_hole + rounding < pair.hole);
+  return std::ranges::none_of(pair.holes,
+                              [&](double hole) { return apart + chord + rounding < hole; });
 }
 
 class Rotations {
@@ -231,12 +227,13 @@ class Rotations {
         if (!may_hold(angles_[i], angles_[k])) return true;
     std::vector<Cell> cells;
     for (int side = 0; side < 4; ++side) cells.push_back({Eigen::Vector4d::Unit(side), 1, side});
-    for (std::size_t looked = 0; !cells.empty(); ++looked) {
+    const std::size_t work = angles_.size() + pairs_.size();
+    for (std::size_t looked = 0; !cells.empty(); looked += work) {
       const Cell cell = cells.back();
       cells.pop_back();
       const Mat3 rotation = rotation_of(cell);
       if (!is_left(rotation, turn_of(cell))) continue;
-      if (looked >= kMostCells || is_left(rotation, 0)) return false;
+      if (looked >= kMostWork || is_left(rotation, 0)) return false;
       for (int part = 0; part < 8; ++part) {
         Cell& child = cells.emplace_back(cell);
         child.half = cell.half / 2;
@@ -310,17 +307,19 @@ std::string describe(const std::vector<ToleratedConstraint>& constraints,
 
 double longest_reach(const RobotModel& robot, std::uint32_t link, const Vec3& point) {
   const robot::Robot& chain = robot.kinematics;
-  const kinematics::Arm arm =
-      kinematics::arm_of(chain, chain.links.front().name, chain.links[link].name);
-  // From one axis to the next nothing but sliding changes how far their points are apart.
-  double out = 0;
-  Vec3 at = Vec3::Zero();
-  for (const kinematics::Axis& axis : arm.axes) {
-    out += (axis.point - at).norm();
-    at = axis.point;
-    if (!axis.turns) out += axis.rate * std::max(std::abs(axis.lower), std::abs(axis.upper));
+  // Nothing but sliding changes how far a frame is from the one before it.
+  double out = point.norm();
+  for (std::uint32_t l = link; l != 0; l = chain.joints[l - 1].parent) {
+    const robot::Joint& joint = chain.joints[l - 1];
+    out += joint.origin.translation.norm();
+    if (joint.type != robot::JointType::Prismatic) continue;
+    const robot::Variable& v = chain.variables[joint.variable];
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    const double most =
+        std::max(std::abs(v.lower.value_or(kNoLimit)), std::abs(v.upper.value_or(kNoLimit)));
+    out += std::abs(joint.multiplier) * most + std::abs(joint.offset);
   }
-  return (out + (arm.tool * point - at).norm()) * (1 + kLost);
+  return out * (1 + kLost);
 }
 
 bool is_beyond_reach(const RobotModel& robot, const ToleratedConstraint& c) {
@@ -330,14 +329,11 @@ bool is_beyond_reach(const RobotModel& robot, const ToleratedConstraint& c) {
   if (c.first.feature.kind != Kind::Point) return false;
   const Feature& rest = c.second.feature;
   const Vec3 from = robot.base.translation;
-  double distance = (rest.point - from).norm();
-  if (rest.kind == Kind::Line) distance = (rest.point - from).cross(rest.direction).norm();
-  if (rest.kind == Kind::Plane) distance = std::abs((rest.point - from).dot(rest.direction));
-  if (rest.kind == Kind::Surface)
-    distance = (nearest_point(std::get<kinematics::Surface>(kinematics_feature(rest)), from) - from)
-                   .norm();
+  const double distance = distance_from(rest, from);
+  const double rounding = kLost * (rest.point.norm() + from.norm() + std::abs(c.value));
   const double reach = longest_reach(robot, c.first.link, c.first.feature.point);
-  return distance - c.value - c.within > reach || c.value - c.within > reach + distance;
+  return distance - c.value - c.within > reach + rounding ||
+         c.value - c.within > reach + distance + rounding;
 }
 
 }  // namespace kaboum::world

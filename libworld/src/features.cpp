@@ -100,7 +100,8 @@ class Search {
   std::vector<std::string> names_, frames_;
 };
 
-/// Distance of a point from a point, line, plane or surface.
+}  // namespace
+
 double distance_from(const Feature& f, const Vec3& p) {
   switch (f.kind) {
     case Feature::Kind::Point:
@@ -114,7 +115,11 @@ double distance_from(const Feature& f, const Vec3& p) {
   }
 }
 
-}  // namespace
+double radius_of(const Feature& f) {
+  double out = f.radius;
+  for (const Vec3& corner : f.outline) out = std::max(out, (corner - f.point).norm());
+  return out;
+}
 
 bool is_met(const ToleratedConstraint& c, const Transform& first, const Transform& second) {
   using Kind = Feature::Kind;

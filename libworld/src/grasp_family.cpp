@@ -71,10 +71,12 @@ Transform drawn_member(const Grasp& grasp, std::size_t index) {
 }
 
 std::vector<Transform> draw_members(const std::vector<ToleratedConstraint>& constraints,
-                                    double size) {
+                                    const Vec3& center, double size) {
   using FrameKind = kinematics::FrameId::Kind;
   kinematics::ConstraintProblem problem;
-  problem.objects.push_back({Vec3::Constant(-size), Vec3::Constant(size)});
+  // So that its middle may be near the tool, wherever its frame is.
+  const double far = size + center.norm();
+  problem.objects.push_back({Vec3::Constant(-far), Vec3::Constant(far)});
   for (const ToleratedConstraint& c : constraints)
     problem.constraints.push_back({c.relation,
                                    {{FrameKind::World}, kinematics_feature(c.first.feature)},
@@ -163,9 +165,7 @@ double farthest_by_constraints(const Grasp& grasp, const Vec3& point) {
     const Feature &of_tool = c.first.feature, &other = c.second.feature;
     if (!near || of_tool.kind != Feature::Kind::Point) continue;
     if (other.kind != Feature::Kind::Point && other.kind != Feature::Kind::Surface) continue;
-    double size = other.radius;
-    for (const Vec3& corner : other.outline) size = std::max(size, (corner - other.point).norm());
-    out = std::min(out, of_tool.point.norm() + std::abs(c.value) + c.within + size +
+    out = std::min(out, of_tool.point.norm() + std::abs(c.value) + c.within + radius_of(other) +
                             (other.point - point).norm());
   }
   return out;

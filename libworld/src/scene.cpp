@@ -27,6 +27,8 @@ constexpr double kRounding = 1e-9;
 /// Of slides and turns. [length or rad]
 constexpr double kFarthestBound = 1e6;
 constexpr double kLastRank = 100;
+/// Of constraints of grasps. [length, rad]
+constexpr double kLeastTolerance = 1e-6;
 /// Of features of the tool that holds an object.
 constexpr std::string_view kOfTool = "tool.";
 
@@ -146,11 +148,14 @@ class Parser : detail::SceneRobot {
           constraint(one, [&](const Located& value) { return feature_of_grasp(value); }));
       ToleratedConstraint& c = out.constraints.back();
       if (c.second.to == FixedFeature::To::World) std::swap(c.first, c.second);
+      if (c.within < kLeastTolerance || c.within_angle < kLeastTolerance)
+        fail(one, "a tolerance of at least 1e-6 is expected: poses are rounded to a tenth of that");
     }
     if (out.constraints.empty())
       fail(need(g, "all"), "at least one constraint is expected in 'all'");
     require_no_contradiction(need(g, "all"), out.constraints);
-    out.members = draw_members(out.constraints, 2 * world_.objects.back().outer.ball().radius);
+    const auto& ball = world_.objects.back().outer.ball();
+    out.members = draw_members(out.constraints, ball.center, 2 * ball.radius);
     if (out.members.empty())
       fail(g,
            "no hold was found that meets these constraints: look at their values, and at where "
@@ -167,7 +172,13 @@ class Parser : detail::SceneRobot {
       part->name = name;
       return {FixedFeature::To::World, 0, 0, std::move(*part)};
     }
-    FixedFeature out = feature_named(value);
+    FixedFeature out;
+    try {
+      out = find_feature(world_, name);
+      out.feature.name = name;
+    } catch (const Error& error) {
+      fail(value, std::string(error.what()) + "; those of the tool are called 'tool.z'");
+    }
     if (out.to != FixedFeature::To::Object || out.index + 1 != world_.objects.size())
       fail(value, "'" + name + "' is neither a part of the tool, as 'tool.z', nor a feature of '" +
                       world_.objects.back().name + "', whose grasp this is");
@@ -345,17 +356,31 @@ class Parser : detail::SceneRobot {
 
   /// Refuses what no poses meet, or no robot reaches.
   void require_consistent(const Located& c, const ConstraintSet& set) const {
-    const Located& all = need(c, "all");
-    require_no_contradiction(all, set.constraints);
-    for (std::size_t i = 0; i < set.constraints.size(); ++i) {
-      ToleratedConstraint one = set.constraints[i];
+    require_no_contradiction(need(c, "all"), set.constraints);
+    require_within_reach(need(c, "all"), set.constraints);
+    for (std::size_t i = 0; i < set.preferred.size(); ++i) {
+      std::vector<ToleratedConstraint> with = set.constraints;
+      with.push_back(set.preferred[i]);
+      if (const auto found = find_contradiction(with))
+        fail(need(c, "prefer").items[i],
+             "what is preferred is never met: " + describe(with, *found));
+    }
+    if (!set.preferred.empty()) require_within_reach(need(c, "prefer"), set.preferred);
+  }
+
+  /// @param all  where the constraints stand
+  void require_within_reach(const Located& all,
+                            const std::vector<ToleratedConstraint>& constraints) const {
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      ToleratedConstraint one = constraints[i];
       if (one.second.to == FixedFeature::To::Link) std::swap(one.first, one.second);
       if (one.first.to != FixedFeature::To::Link || one.second.to != FixedFeature::To::World)
         continue;
       const RobotModel& robot = world_.robots[one.first.index];
       if (is_beyond_reach(robot, one))
         fail(all.items[i], "'" + robot.name + "' does not reach so far, whatever its joints are: " +
-                               describe(set.constraints[i]));
+                               describe(constraints[i]) +
+                               "; change its value, move the robot, or take the set out");
     }
   }
 

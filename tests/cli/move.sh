@@ -135,7 +135,9 @@ cell = json.load(open("cell.json"))
 cell["robots"][0]["tools"] = [{"name": "end", "link": "tip", "position": [1, 0, 0]}]
 cell["constraints"] = [{"name": "off-wall", "all": [
     {"relation": "distance", "first": "world.zx", "second": "arm/end.origin", "value": 1.5, "within": 0.5}]}]
-cell["objects"][0]["features"] = [{"name": "pad", "surface": {"outline": [[0.1, 0.6, 0], [0.4, 0.6, 0], [0.4, 0.9, 0], [0.1, 0.9, 0]]}}]
+cell["objects"][0]["features"] = [{"name": "middle", "point": [0.3, 0, 0]}, {"name": "pad", "surface": {"outline": [[0.1, 0.6, 0], [0.4, 0.6, 0], [0.4, 0.9, 0], [0.1, 0.9, 0]]}}]
+cell["constraints"].append({"name": "not-into-the-box", "all": [{"relation": "coincident", "first": "arm/end.origin", "second": "world.xy"}],
+    "prefer": [{"relation": "coincident", "first": "arm/end.origin", "second": "box/middle"}]})
 on_pad = {"relation": "coincident", "first": "arm/end.origin", "second": "box/pad"}
 cell["constraints"].append({"name": "on-pad", "all": [on_pad],
     "prefer": [{"relation": "angle", "first": "arm/end.x", "second": "world.x", "value": 0.9, "within_angle": 0.3}]})
@@ -178,6 +180,8 @@ from math import *
 a, b = map(float, input().split(','))
 x, y = cos(a) + cos(a + b) - 1.5, sin(a) + sin(a + b)
 assert 0.099 <= x <= 0.401 and 0.599 <= y <= 0.901 and abs(abs(a + b) - 0.9) <= 0.301, (x, y, a + b)" || fail "not on the pad: $(tail -1 pad.csv)"
+# What is preferred and in contact is not gone to.
+expect 0 '' "$M" kept.json --from=0.6,1 --reach not-into-the-box -o beside.csv
 END_ON_PAD=$(tail -1 pad.csv)
 expect 0 'kept: on-pad within 0.001' "$M" kept.json "--from=$END_ON_PAD" "--to=$END_ON_PAD" --keep on-pad -o stay.csv
 expect 1 "the goal breaks a constraint: 'on-pad' is off by" "$M" kept.json "--from=$END_ON_PAD" --to=0.3,0 --keep on-pad -o none.csv

@@ -7,6 +7,7 @@
 #include <kaboum/world/features.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -40,7 +41,14 @@ class Draws {
   Feature feature(Kind kind) {
     Feature out{"f", kind, point()};
     if (kind != Kind::Point) out.direction = direction();
-    if (kind == Kind::Surface) out.radius = between(0.1, 1);
+    if (kind != Kind::Surface) return out;
+    out.radius = between(0.1, 1);
+    if (index(2) == 0) return out;
+    // A triangle round the point.
+    const Vec3 x = out.direction.unitOrthogonal(), y = out.direction.cross(x);
+    for (const double angle : {0.3, 2.4, 4.4})
+      out.outline.push_back(out.point + out.radius * (std::cos(angle) * x + std::sin(angle) * y));
+    out.radius = 0;
     return out;
   }
 
@@ -184,12 +192,17 @@ TEST(Contradictions, AreFoundInAnglesAndInDistances) {
       // Upright, and the rim over the middle of the table as the bottom is.
       {c(Relation::Angle, line(z), line(z), 0), c(Relation::Coincident, point({0, 0, 0}), line(z)),
        c(Relation::Coincident, point({0.1, 0, 0.1}), line(z))},
+      {c(Relation::Distance, point({0, 0, 0}), point({0, 0, 0}), 0.1),
+       c(Relation::Distance, point({0, 0, 0}), point({0, 0, 0}), 0.5)},
   };
   for (std::size_t i = 0; i < sets.size(); ++i) {
     auto set = sets[i];
     const auto found = find_contradiction(set);
     ASSERT_TRUE(found) << i;
     EXPECT_EQ(found->size(), set.size()) << i << ": each of them is needed";
+    std::reverse(set.begin(), set.end());
+    EXPECT_TRUE(find_contradiction(set)) << i << ", the other way round";
+    std::reverse(set.begin(), set.end());
     // What is not in the way is not named, in whichever order.
     set.insert(set.begin(), c(Relation::Angle, line(x), line(x), 0.3));
     if (i == 0) {
@@ -226,6 +239,53 @@ TEST(Contradictions, TolerancesDecide) {
   EXPECT_TRUE(find_contradiction(set));
   for (ToleratedConstraint& c : set) c.within_angle = 0.151;
   EXPECT_FALSE(find_contradiction(set));
+}
+
+/// A column that does not move, on it a slide along z from −0.5 to 0.25 m times −2 and 0.1, and on
+/// that an arm of 1 m that turns about x, as far as a mimic joint has it.
+RobotModel sliding_arm() {
+  RobotModel out;
+  out.name = "lift";
+  robot::Robot& r = out.kinematics;
+  for (const char* name : {"root", "column", "slide", "arm"}) r.links.push_back({name, {}, {}});
+  const auto joint = [&](robot::JointType type, std::uint32_t parent, const Vec3& at,
+                         const Vec3& axis) {
+    r.joints.push_back({"j", type, parent, {Eigen::Matrix3d::Identity(), at}, axis, 0, 1, 0});
+  };
+  joint(robot::JointType::Fixed, 0, {0, 0, 1}, Vec3::UnitZ());
+  joint(robot::JointType::Prismatic, 1, {0, 0, 0}, Vec3::UnitZ());
+  r.joints.back().multiplier = -2;
+  r.joints.back().offset = 0.1;
+  joint(robot::JointType::Revolute, 2, {0, 0, 0}, Vec3::UnitX());
+  r.variables.push_back({"j", -0.5, 0.25});
+  out.base.translation = {10, 0, 0};
+  return out;
+}
+
+TEST(Reach, IsThatOfTheChainWhateverItsJointsAre) {
+  RobotModel lift = sliding_arm();
+  EXPECT_NEAR(longest_reach(lift, 0, {0, 0, 2}), 2, 1e-6);
+  EXPECT_NEAR(longest_reach(lift, 1, {0, 0, 0}), 1, 1e-6);
+  const double most = 1 + 2 * 0.5 + 0.1 + 1;
+  EXPECT_NEAR(longest_reach(lift, 3, {0, 1, 0}), most, 1e-6);
+  const auto beyond = [&](Relation relation, Feature rest, double value) {
+    rest.point += lift.base.translation;
+    for (Vec3& corner : rest.outline) corner += lift.base.translation;
+    return is_beyond_reach(
+        lift, {relation, {To::Link, 0, 3, point({0, 1, 0})}, {To::World, 0, 0, rest}, value, 0.01});
+  };
+  for (const double off : {-0.001, 0.001}) {
+    const double d = most + 0.01 + off;
+    EXPECT_EQ(beyond(Relation::Coincident, point({0, 0, d}), 0), off > 0);
+    EXPECT_EQ(beyond(Relation::Coincident, line(Vec3::UnitX(), {5, d, 0}), 0), off > 0);
+    EXPECT_EQ(beyond(Relation::Coincident, plane(Vec3::UnitY(), {7, -d, 3}), 0), off > 0);
+    EXPECT_EQ(beyond(Relation::Coincident, disc(Vec3::UnitX(), {0, 0, d + 0.2}, 0.2), 0), off > 0);
+    EXPECT_EQ(beyond(Relation::Distance, point({0, 0, d + 2}), 2), off > 0);
+    EXPECT_EQ(beyond(Relation::Distance, point({0, 0, 1}), d + 1), off > 0) << "so far away";
+    EXPECT_FALSE(beyond(Relation::Parallel, line(Vec3::UnitX(), {0, d, 0}), 0));
+  }
+  lift.kinematics.variables[0].upper.reset();
+  EXPECT_FALSE(beyond(Relation::Coincident, point({0, 0, 1e6}), 0)) << "it slides without end";
 }
 
 class ConstraintScene : public ::testing::Test {
@@ -284,6 +344,17 @@ TEST_F(ConstraintScene, WhatNothingMeetsIsRefused) {
            value + "}";
   };
   expect_refused(at("3.12"), {"'arm' does not reach so far"});
+  // What is fixed to the root has a place, which may be the one that is asked for.
+  EXPECT_NO_THROW((void)files_.world(
+      scene(R"({"relation": "coincident", "first": "arm.origin", "second": "world.xy"})")));
+  expect_refused(
+      R"({"relation": "coincident", "first": "arm.origin", "second": "world.xy"}], "prefer": [
+      {"relation": "distance", "first": "arm.origin", "second": "world.xy", "value": 0.5})",
+      {"what is preferred is never met: these constraints contradict each other"});
+  expect_refused(R"({"relation": "parallel", "first": "arm.x", "second": "world.x"}], "prefer": [
+      {"relation": "coincident", "first": "arm/flange.origin", "second": "box/lid"}, {
+       "relation": "distance", "first": "world.origin", "second": "arm/flange.origin", "value": 7})",
+                 {"does not reach so far"});
   EXPECT_NO_THROW((void)files_.world(scene(at("3.1"))));
 }
 

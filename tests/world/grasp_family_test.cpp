@@ -299,6 +299,9 @@ TEST_F(GraspScene, ConstraintsOfGraspsAreOfTheToolAndTheObject) {
   expect_refused(all(one, R"(, "position": [0, 0, 1])"), {"has no 'position'"});
   expect_refused(all(one, R"(, "turn": {"about": "cup.z"})"), {"has no 'turn'"});
   expect_refused(all(""), {"at least one constraint"});
+  expect_refused(
+      all(R"({"relation": "coincident", "first": "tool.origin", "second": "cup/axis", "within": 1e-7})"),
+      {"a tolerance of at least 1e-6"});
   expect_refused(all(R"({"relation": "coincident", "first": "tool.tip", "second": "cup/axis"})"),
                  {"a tool has the parts origin"});
   expect_refused(all(R"({"relation": "coincident", "first": "tool.origin", "second": "mat.z"})"),

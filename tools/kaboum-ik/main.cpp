@@ -88,12 +88,15 @@ Answer find(const Options& o, const Chain& chain) {
   return answer;
 }
 
-std::string unreached(const Answer& answer, bool free_heading) {
+std::string unreached(const Answer& answer, bool free_heading, bool ignore_limits) {
+  // What joints before the last six can do, they can within their limits.
+  const bool limited = answer.redundant > 0 && !ignore_limits;
   const bool five = answer.form && answer.form->family == ik::Family::FiveAxes;
   return five && !free_heading
              ? "the pose is out of reach; five axes reach most poses with another "
                "heading only, see --free-heading"
-             : "the pose is out of reach";
+             : std::string("the pose is out of reach") +
+                   (limited ? " within the joints' limits; see --ignore-limits" : "");
 }
 
 int run(const Options& o) {
@@ -136,7 +139,7 @@ int run(const Options& o) {
   }
   std::cerr << "kaboum-ik: "
             << (answer.found == 0 && !answer.outside
-                    ? unreached(answer, o.request.free_heading)
+                    ? unreached(answer, o.request.free_heading, o.request.ignore_limits)
                     : "the pose is reached outside the joints' limits only; see "
                       "--ignore-limits")
             << '\n';

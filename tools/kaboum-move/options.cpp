@@ -48,9 +48,10 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("POSE");
-  app.add_option("--reach", o.reach,
-                 "Constraints of the scene to meet at the end, by their name; may be repeated. One "
-                 "of 16 configurations that do, drawn at random, is gone to")
+  app.add_option(
+         "--reach", o.reach,
+         "Constraints of the scene to meet at the end, by their name: one of 16 configurations "
+         "that do, drawn at random, is gone to. May be repeated: one of them is met")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("NAME");
@@ -71,10 +72,9 @@ void describe(CLI::App& app, MoveOptions& o) {
       "says nothing "
       "(docs/algorithms/motion-planning.md).\n"
       "Exit codes: 0 done; 1 the start, or every goal, is not free, breaks a constraint or is out "
-      "of "
-      "reach; 2 usage; 3 bad input; 4 output failed; 6 internal error; 7 no path found "
-      "(--max-work, "
-      "--max-nodes, --timeout).");
+      "of reach; 2 usage; 3 bad input; 4 output failed; 6 internal error; 7 no path found "
+      "(--max-work, --max-nodes, --timeout), or there may be other goals than those that were "
+      "found for a pose or constraints.");
 }
 
 }  // namespace kaboum::tools

@@ -76,6 +76,7 @@ void add_constraint_goals(MoveRequest& r, const MoveOptions& o) {
   std::size_t number = o.to.size() + o.to_pose.size();
   for (const std::string& name : o.reach) {
     ++number;
+    r.all_known = false;  // they are drawn
     const motion::Goals goals = motion::preferred_goals(
         r.scene.world, r.robot, motion::moving_frame(r.model(), o.keep.tool),
         r.scene.world.constraint_set(name), r.start, o.search.seed);

@@ -42,7 +42,7 @@ Goals constraint_goals(const world::RobotModel& robot, const world::ToolFrame& t
                        const std::vector<double>& start, std::uint64_t seed, std::size_t most = 16);
 
 /// The same for constraints of a scene, in its first state. Where some are preferred: with all of
-/// them, else without the least important one, and so on until goals are found.
+/// them, else without the least important one, and so on until one of the goals is free of contact.
 /// @throws Error{InvalidArgument} as path_constraints
 Goals preferred_goals(const world::World& world, std::size_t robot, const world::ToolFrame& tool,
                       const world::ConstraintSet& set, const std::vector<double>& start,

@@ -20,15 +20,14 @@ std::optional<std::vector<std::size_t>> find_contradiction(
 std::string describe(const std::vector<ToleratedConstraint>& constraints,
                      const std::vector<std::size_t>& contradiction);
 
-/// No point that is fixed to a link comes farther away from the root of its robot. [length]
+/// A point that is fixed to a link never comes farther away from the root of its robot; infinite
+/// where a joint slides without limits. [length]
 /// @param point  in the link's frame
-/// @throws Error{InvalidArgument} as kinematics::arm_of
 double longest_reach(const RobotModel& robot, std::uint32_t link, const Vec3& point);
 
 /// Whether a constraint cannot be met because the robot does not reach so far, whatever its joints
 /// are.
 /// @pre the first feature is fixed to a link of the robot, the second one to the world
-/// @throws Error{InvalidArgument} as kinematics::arm_of
 bool is_beyond_reach(const RobotModel& robot, const ToleratedConstraint& constraint);
 
 }  // namespace kaboum::world

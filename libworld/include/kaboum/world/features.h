@@ -28,6 +28,12 @@ std::string describe(const ToleratedConstraint& constraint);
 /// @param first, second  poses of the frames that the features are fixed to, in any one frame
 bool is_met(const ToleratedConstraint& constraint, const Transform& first, const Transform& second);
 
+/// Distance of a point from a feature. [length]
+double distance_from(const Feature& feature, const Vec3& point);
+
+/// How far a surface reaches from its point; 0 of other features. [length]
+double radius_of(const Feature& surface);
+
 /// A feature of one frame in another one, in which the first has this pose.
 Feature moved(const Feature& feature, const Transform& pose);
 

@@ -24,9 +24,9 @@ Transform drawn_member(const Grasp& grasp, std::size_t index);
 
 /// Poses that meet constraints of a tool and an object, evenly spread as far as that goes: as many
 /// as kMostMembers, or fewer where the search for one more fails.
-/// @param size  of the object: how far away a tool's features are looked for [length]
+/// @param center, size  of the object: how far from its middle a tool is looked for [length]
 std::vector<Transform> draw_members(const std::vector<ToleratedConstraint>& constraints,
-                                    double size);
+                                    const Vec3& center, double size);
 
 /// The pose of one member, by its slides and turn: from the object's frame to the tool's.
 /// @param values  of the slides [length], then of the turn, if there is one [rad]
