@@ -130,6 +130,14 @@ TEST(Language, ExternValuesInEffects) {
   EXPECT_EQ(measure(m, solved(m, Algorithm::BreadthFirst).plan).longest, 1U);
 }
 
+TEST(Language, AnObjectMayBeCalledTable) {
+  const Model m = model_of(
+      "domain d\ntypes: tabletop, post\nconstants: tabletop table\nconstants: post stand\n"
+      "predicates: p(tabletop)\n"
+      "action act(?x : tabletop) preconds: true effects: add(Kf, p(?x))\ngoal: K(p(table))");
+  EXPECT_EQ(measure(m, solved(m, Algorithm::BreadthFirst).plan).longest, 1U);
+}
+
 TEST(Language, EffectsDeleteFirstAndLookBack) {
   // Both conditions look at the state before the action: the two atoms swap.
   const Model m = model_of(kHead +

@@ -61,7 +61,8 @@ bool TokenStream::at_section() const {
   if (is("symbols")) return true;
   for (const char* keyword : kOthers)
     if (is(keyword) && peek(1).kind == Token::Kind::Name)
-      return !is("table") || is(":", 2);  // an object may be called table
+      // An object may be called table: a table has rows.
+      return !is("table") || (is(":", 2) && is("(", 3));
   return false;
 }
 
