@@ -47,7 +47,8 @@ py::array array_from(const py::object& value) {
 
 void require_doubles(const py::array& array, const std::string& name) {
   const char kind = array.dtype().kind();
-  const py::ssize_t size = array.dtype().itemsize();
+  // As NumPy says it: pybind11 before 2.12 reads NumPy 2's descriptors wrongly.
+  const auto size = array.attr("itemsize").cast<py::ssize_t>();
   const auto refuse = [&] { throw Error(ErrorCode::InvalidArgument, name + " must be numbers"); };
   if (kind == 'f' && size > 8) {
     require_same<long double>(array, name,

@@ -61,7 +61,7 @@ void take_radii(const py::object& value, geom::ConvexSet& set) {
 }
 
 py::array_t<double> radii_of(const geom::ConvexSet& set) {
-  py::array_t<double> out(static_cast<py::ssize_t>(set.bodies.size()));
+  py::array_t<double> out = row_of<double>(set.bodies.size());
   auto at = out.mutable_unchecked<1>();
   for (std::size_t i = 0; i < set.bodies.size(); ++i)
     at(static_cast<py::ssize_t>(i)) = set.bodies[i].radius;

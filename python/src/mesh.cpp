@@ -214,7 +214,7 @@ py::array_t<std::uint32_t> faces_of(const std::shared_ptr<const geom::Mesh>& mes
                  {static_cast<py::ssize_t>(mesh->triangles.size()), 3}, mesh);
 }
 
-py::array_t<double> array_of(const geom::Vec3& p) { return py::array_t<double>(3, p.data()); }
+py::array_t<double> array_of(const geom::Vec3& p) { return row_of(3, p.data()); }
 
 void bind_meshes(py::module_& module) {
   bind_mesh_class(module);

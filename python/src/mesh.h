@@ -62,6 +62,14 @@ py::array_t<Scalar> view_of(const Scalar* data, std::vector<py::ssize_t> shape,
 py::array_t<double> vertices_of(const std::shared_ptr<const geom::Mesh>& mesh);
 py::array_t<std::uint32_t> faces_of(const std::shared_ptr<const geom::Mesh>& mesh);
 
+/// An array of n values, copied where there are some to copy. By its shape: pybind11 before 2.12
+/// takes the strides of an array that is made by its size from NumPy's descriptors, which are
+/// others from NumPy 2 on, so that all values would be at one place.
+template <class Scalar>
+py::array_t<Scalar> row_of(std::size_t n, const Scalar* values = nullptr) {
+  return py::array_t<Scalar>(std::vector<py::ssize_t>{static_cast<py::ssize_t>(n)}, values);
+}
+
 /// An array of three numbers.
 py::array_t<double> array_of(const geom::Vec3& p);
 

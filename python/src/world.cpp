@@ -215,7 +215,7 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
     });
     return out;
   });
-  py::array_t<bool> out(static_cast<py::ssize_t>(free.size()));
+  py::array_t<bool> out = row_of<bool>(free.size());
   for (std::size_t i = 0; i < free.size(); ++i)
     out.mutable_at(static_cast<py::ssize_t>(i)) = free[i] != 0;
   return out;
@@ -1051,7 +1051,7 @@ It never changes. Angles are in radians, lengths in the scene's unit.)");
           "home",
           [](const WorldValue& w, const std::optional<std::string>& robot) {
             const std::vector<double>& home = w.world().robots[robot_index(w.world(), robot)].home;
-            return py::array_t<double>(static_cast<py::ssize_t>(home.size()), home.data());
+            return row_of(home.size(), home.data());
           },
           py::arg("robot") = py::none(), "The configuration that the scene gives a robot.")
       .def("__repr__", [](const WorldValue& w) {

@@ -133,6 +133,20 @@ def test_scene_in_process_is_the_one_on_disk(parts, tmp_path):
         filled(parts).write(tmp_path / "there" / "cell.yaml")
 
 
+def test_each_value_of_a_row_has_a_place_of_its_own(parts):
+    """Of arrays by their size, pybind11 2.10 took the strides from descriptors that NumPy 2 has no more."""
+    scene = kaboum.Scene()
+    scene.add_robot("arm", kaboum.certify_robot(parts / "arm.urdf", epsilon="5%"), home=[0.25, 0.125])
+    home = kaboum.World(scene).home()
+    assert home.tolist() == [0.25, 0.125] and home.strides == (8,)
+    balls = kaboum.ConvexSet([np.zeros((1, 3)), np.ones((1, 3))], radii=[0.25, 0.5])
+    assert balls.radii.tolist() == [0.25, 0.5]
+    lost = 2**53 + 1
+    for dtype in (np.int64, np.uint64):
+        with pytest.raises(kaboum.Error, match="9007199254740993"):
+            kaboum.World(scene).are_free(np.array([[0, lost]], dtype))
+
+
 def test_scene_that_was_read_is_added_to(parts, tmp_path):
     filled(parts).write(tmp_path / "cell.json")
     kept = files_in(tmp_path / "cell")
