@@ -18,6 +18,7 @@
 #include "hand.h"
 #include "round_sides.h"
 #include "set_maker.h"
+#include "upper_surfaces.h"
 
 namespace kaboum::scene {
 namespace {
@@ -30,6 +31,8 @@ constexpr double kTilted = 45;
 constexpr std::array kElevations{0.0, 90.0, -90.0, kTilted, -kTilted};
 /// Cosine of the angle between an axis and the normals of faces that are parts of its round side.
 constexpr double kAlmostAcross = 0.02;
+/// Share of an object's size: points that are so near to a surface are on it.
+constexpr double kNear = 1e-6;
 /// Holds of less than that share of the largest one's area are tried later.
 constexpr double kSmallShare = 0.25;
 
@@ -245,11 +248,6 @@ const char* word_of(GraspRequest::Hold hold) {
 
 bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-/// "top", "top2", …
-bool is_top(std::string_view name) {
-  return name == "top" || (name.starts_with("top") && is_number(name.substr(3)));
 }
 
 bool is_round(const collide::BoundingSet& set) {
@@ -542,7 +540,104 @@ const world::RobotModel* other_with_tool(const world::World& world, std::size_t 
   return nullptr;
 }
 
-/// Where an object is at first, from its frame to the world.
+/// The middle of the faces on which an object stands, at its lowest: what stands on it does not
+/// sink in.
+std::optional<Vec3> bottom_of(const Faces& faces, const Vec3& up) {
+  const collide::BoundingSet& set = faces.set();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < set.size(); ++i)
+    for (const Vec3& corner : set.body(i).core.vertices)
+      lowest = std::min(lowest, up.dot(corner) - set.body(i).radius);
+  Vec3 bottom = Vec3::Zero();
+  double below = 0;
+  for (const Face& face : faces.all()) {
+    if (face.normal.dot(up) > 0 || face.normal.cross(up).norm() > kParallel) continue;
+    const Axes axes(face.normal);
+    const Middle middle = middle_of(flattened(face, axes));
+    if (!(middle.area > kNothing * faces.size() * faces.size())) continue;
+    const Vec3 place =
+        middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
+    if (!(up.dot(place) < lowest + 1e-3 * faces.size())) continue;
+    bottom += middle.area * place;
+    below += middle.area;
+  }
+  if (!(below > 0)) return std::nullopt;
+  bottom /= below;
+  return Vec3(bottom + (lowest - up.dot(bottom)) * up);
+}
+
+/// Middles of level faces that no other body covers there, the largest first; then those of
+/// surfaces on which none of these is.
+std::vector<Vec3> tops_of(const Faces& faces, const std::vector<Face>& level,
+                          const std::vector<UpperSurface>& surfaces, double epsilon) {
+  struct Top {
+    Vec3 place;
+    double area;
+  };
+  std::vector<Top> tops;
+  for (const Face& face : level) {
+    const Axes axes(face.normal);
+    const Middle middle = middle_of(flattened(face, axes));
+    const Vec3 place =
+        middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
+    if (!faces.is_covered(face, place)) tops.push_back({place, middle.area});
+  }
+  std::ranges::stable_sort(
+      tops, [](const Top& a, const Top& b) { return a.area > b.area * (1 + kNothing); });
+  std::vector<Vec3> out;
+  out.reserve(tops.size() + surfaces.size());
+  for (const Top& top : tops) out.push_back(top.place);
+  const double within = epsilon + kNear * faces.size();
+  for (const UpperSurface& surface : surfaces)
+    if (std::ranges::none_of(tops,
+                             [&](const Top& top) { return is_on(surface, top.place, within); }))
+      out.push_back(surface.middle);
+  return out;
+}
+
+/// "top", "top2", …
+std::string numbered(const char* name, std::size_t index) {
+  return index == 0 ? name : name + std::to_string(index + 1);
+}
+
+bool is_of_other_kind(const world::Object& object, const std::string& name) {
+  return std::ranges::any_of(object.features, [&](const world::Feature& feature) {
+    return feature.name == name && feature.kind != world::Feature::Kind::Surface;
+  });
+}
+
+/// A kind of places, of which all are kept or replaced together.
+struct PlaceKind {
+  const char* name;    ///< of the first one; of others, with a number
+  const char* member;  ///< of the scene's entries
+  const char* none;    ///< why there are none
+  const char* so;      ///< what follows of that, where it is a shortfall
+};
+constexpr std::array kPlaceKinds{
+    PlaceKind{"bottom", "point", "it stands on no face", ", so that it has no bottom"},
+    PlaceKind{"top", "point", "no face looks up", ""},
+    PlaceKind{"face", "surface", "no face that looks up is wide enough", nullptr}};
+
+bool is_called(std::string_view name, const PlaceKind& kind) {
+  const std::string_view first = kind.name;
+  return name == first ||
+         (name.starts_with(first) && first != "bottom" && is_number(name.substr(first.size())));
+}
+
+Json as_json(const world::Feature& feature, double size) {
+  Json out = {{"name", feature.name}};
+  if (feature.kind == world::Feature::Kind::Point) {
+    out["point"] = numbers(plain(feature.point, size));
+    return out;
+  }
+  Json corners = Json::array();
+  for (const Vec3& corner : feature.outline) corners.push_back(numbers(plain(corner, size)));
+  out["surface"] = {{"outline", std::move(corners)}};
+  return out;
+}
+
+}  // namespace
+
 Transform pose_at_first(const world::World& world, std::size_t object) {
   const world::Object& thing = world.objects.at(object);
   if (object >= world.attachments.size() || !world.attachments[object]) return thing.pose;
@@ -550,8 +645,6 @@ Transform pose_at_first(const world::World& world, std::size_t object) {
   const world::RobotModel& robot = world.robots[held.robot];
   return robot.base * robot::forward(robot.kinematics, robot.home)[held.link] * held.pose;
 }
-
-}  // namespace
 
 DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
                             const GraspRequest& request) {
@@ -569,43 +662,25 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
   const world::Object& thing = world.objects.at(object);
   const Faces faces(thing.outer);
   const Vec3 up = pose_at_first(world, object).linear.transpose() * Vec3::UnitZ();
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < thing.outer.size(); ++i)
-    for (const Vec3& corner : thing.outer.body(i).core.vertices)
-      lowest = std::min(lowest, up.dot(corner) - thing.outer.body(i).radius);
-  struct Top {
-    Vec3 place;
-    double area;
-  };
-  Vec3 bottom = Vec3::Zero();
-  double below = 0;
-  std::vector<Top> tops;
-  for (const Face& face : faces.all()) {
-    if (face.normal.cross(up).norm() > kParallel) continue;
-    const Axes axes(face.normal);
-    const Middle middle = middle_of(flattened(face, axes));
-    if (!(middle.area > kNothing * faces.size() * faces.size())) continue;
-    const Vec3 place =
-        middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
-    if (face.normal.dot(up) > 0) {
-      if (!faces.is_covered(face, place)) tops.push_back({place, middle.area});
-    } else if (up.dot(place) < lowest + 1e-3 * faces.size()) {
-      bottom += middle.area * place;
-      below += middle.area;
-    }
-  }
-  std::ranges::stable_sort(
-      tops, [](const Top& a, const Top& b) { return a.area > b.area * (1 + kNothing); });
   std::vector<world::Feature> out;
-  if (below > 0) {
-    // At the lowest: what stands on it does not sink in.
-    bottom /= below;
-    out.push_back({"bottom", world::Feature::Kind::Point, bottom + (lowest - up.dot(bottom)) * up,
-                   Vec3::Zero()});
-  }
+  if (const std::optional<Vec3> bottom = bottom_of(faces, up))
+    out.push_back({"bottom", world::Feature::Kind::Point, *bottom, Vec3::Zero()});
+  const std::vector<Face> level = level_faces(faces, up);
+  const double epsilon = thing.outer.epsilon();
+  std::vector<UpperSurface> surfaces = upper_surfaces(faces, level, epsilon);
+  const std::vector<Vec3> tops = tops_of(faces, level, surfaces, epsilon);
   for (std::size_t i = 0; i < std::min(request.most, tops.size()); ++i)
-    out.push_back({i == 0 ? "top" : "top" + std::to_string(i + 1), world::Feature::Kind::Point,
-                   tops[i].place, Vec3::Zero()});
+    out.push_back({numbered("top", i), world::Feature::Kind::Point, tops[i], Vec3::Zero()});
+  if (request.inset > 0) surfaces = upper_surfaces(faces, level, epsilon + request.inset);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < std::min(request.most, surfaces.size()); ++i) {
+    // A name that is there in two kinds is of none.
+    while (is_of_other_kind(thing, numbered("face", next))) ++next;
+    world::Feature& face = out.emplace_back();
+    face = {numbered("face", next++), world::Feature::Kind::Surface, surfaces[i].middle,
+            surfaces[i].normal};
+    face.outline = std::move(surfaces[i].outline);
+  }
   return out;
 }
 
@@ -669,48 +744,50 @@ AddedFeatures add_places(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const PlaceRequest& request) {
   SceneEdit edit(scene);
   const world::World& world = edit.world();
+  std::vector<std::string> notes;
   AddedFeatures out = edit.run(
       objects, "features", [&](std::size_t object, Json& list, AddedFeatures::OfObject& added) {
-        const auto is_point = [](const Json& one, bool top) {
-          const auto name = one.at("name").get<std::string>();
-          return one.contains("point") && (top ? is_top(name) : name == "bottom");
-        };
         const std::vector<world::Feature> found = derive_places(world, object, request);
         const double size = world.objects[object].outer.box().diagonal();
-        for (const bool top : {false, true}) {
-          const bool any = std::ranges::any_of(
-              found, [&](const world::Feature& feature) { return is_top(feature.name) == top; });
-          // Nothing takes the place of what is not found.
-          const auto same = [&](const Json& one) { return is_point(one, top); };
-          const std::vector<std::string> has = names_of(entries_of(list, same));
-          if (!has.empty() && (!request.replace || !any)) {
-            added.kept.insert(added.kept.end(), has.begin(), has.end());
-            if (request.replace)
-              added.shortfall += std::string(added.shortfall.empty() ? "" : "; ") +
-                                 (top ? "no face looks up" : "it stands on no face") + ": '" +
-                                 has.front() + "' is kept";
-            continue;
-          }
-          if (!any) {
-            added.shortfall +=
-                std::string(added.shortfall.empty() ? "" : "; ") +
-                (top ? "no face looks up" : "it stands on no face, so that it has no bottom");
-            continue;
-          }
+        bool top = false, face = false;
+        const auto lacks = [&](const std::string& what) {
+          added.shortfall += (added.shortfall.empty() ? "" : "; ") + what;
+        };
+        for (const PlaceKind& kind : kPlaceKinds) {
+          const auto same = [&](const Json& one) {
+            return one.contains(kind.member) && is_called(one.at("name").get<std::string>(), kind);
+          };
           Json derived = Json::array();
-          for (const world::Feature& feature : found) {
-            if (is_top(feature.name) != top) continue;
-            derived.push_back(
-                {{"name", feature.name}, {"point", numbers(plain(feature.point, size))}});
-            added.names.push_back(feature.name);
+          for (const world::Feature& feature : found)
+            if (is_called(feature.name, kind)) derived.push_back(as_json(feature, size));
+          // Nothing takes the place of what is not found.
+          const std::vector<std::string> has = names_of(entries_of(list, same));
+          const bool any = !derived.empty() || !has.empty();
+          if (kind.name == std::string_view("top")) top = any;
+          if (kind.name == std::string_view("face")) face = any;
+          if (!has.empty() && (!request.replace || derived.empty())) {
+            added.kept.insert(added.kept.end(), has.begin(), has.end());
+            if (request.replace) lacks(std::string(kind.none) + ": '" + has.front() + "' is kept");
+            continue;
           }
+          if (derived.empty()) {
+            if (kind.so != nullptr) lacks(std::string(kind.none) + kind.so);
+            continue;
+          }
+          for (const std::string& name : names_of(derived)) added.names.push_back(name);
           list = with_replaced(list, same, derived);
         }
+        if (top && !face)
+          notes.push_back(
+              "object '" + added.object +
+              "': nothing is left of its faces that look up when they are taken smaller "
+              "all round, so that it has no surface");
       });
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   for (const AddedFeatures::OfObject& object : out.objects)
     if (!object.kept.empty() && !request.replace)
       out.notes.push_back("object '" + object.object +
-                          "': the points that it has are kept; «force» replaces them");
+                          "': the points and surfaces that it has are kept; «force» replaces them");
   return out;
 }
 
@@ -792,12 +869,22 @@ const std::vector<Option<PlaceRequest>>& place_options() {
   static const std::vector<Option<R>> options{
       option<R>(
           {.name = "most",
-           .text = "Most points on top of an object: top, top2, …",
+           .text =
+               "Most points on top of an object (top, top2, …), and most surfaces (face, face2, …)",
            .low = 1,
            .high = 100},
           [](auto& r) -> auto& { return r.most; }),
       option<R>(
-          {.name = "force", .text = "Replace points of these names that the scene has"},
+          {.name = "inset",
+           .text = "How much smaller than faces surfaces are taken all round, beyond the set's "
+                   "epsilon: the radius of what is to stand there with all of its base",
+           .low = 0,
+           .high = 1e9,
+           .absolute = true},
+          [](auto& r) -> auto& { return r.inset; }),
+      option<R>(
+          {.name = "force",
+           .text = "Replace points and surfaces of these names that the scene has"},
           [](auto& r) -> auto& { return r.replace; })};
   return options;
 }

@@ -17,18 +17,6 @@ constexpr double kSameFace = 1e-6;
 /// Share of a set's size: what is so far from a face is just outside of it.
 constexpr double kJustOutside = 1e-6;
 
-/// The part of a polygon on the left of a line.
-Polygon left_of(const Polygon& polygon, const Vec2& from, const Vec2& along) {
-  Polygon kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-    const double at_p = cross(along, p - from), at_q = cross(along, q - from);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p >= 0) != (at_q >= 0)) kept.emplace_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return kept;
-}
-
 }  // namespace
 
 Faces::Faces(const collide::BoundingSet& set)
@@ -129,6 +117,17 @@ Polygon flattened(const Face& face, const Axes& axes) {
   Polygon points;
   for (const Vec3& corner : face.corners) points.push_back(axes(corner));
   return hull_of(std::move(points));
+}
+
+Polygon left_of(const Polygon& polygon, const Vec2& from, const Vec2& along) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+    const double at_p = cross(along, p - from), at_q = cross(along, q - from);
+    if (at_p >= 0) kept.push_back(p);
+    if ((at_p >= 0) != (at_q >= 0)) kept.emplace_back(p + at_p / (at_p - at_q) * (q - p));
+  }
+  return kept;
 }
 
 /// Sutherland and Hodgman 1974.

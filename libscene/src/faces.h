@@ -69,6 +69,9 @@ Polygon hull_of(Polygon points);
 /// A face in a plane's coordinates.
 Polygon flattened(const Face& face, const Axes& axes);
 
+/// The part of a polygon on the left of a line.
+Polygon left_of(const Polygon& polygon, const Vec2& from, const Vec2& along);
+
 /// The common part of two polygons.
 Polygon common_part(Polygon a, const Polygon& b);
 

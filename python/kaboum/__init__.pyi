@@ -1012,6 +1012,7 @@ def add_places(
     *,
     # options of add_places
     most: int = 8,
+    inset: float = 0.0,
     force: bool = False,
     # end of options
 ) -> dict[str, Any]: ...

@@ -344,8 +344,9 @@ dict
     looked at. 'unchecked': by object, links of the hand that were not looked at. 'notes'.)";
 
 constexpr const char* kPlacesDoc =
-    R"(Derives points on which objects stand ('bottom') and on which others are put ('top', 'top2', …)
-from level faces of their sets, and writes them into the scene: `kaboum-scene places`.
+    R"(Derives points on which objects stand ('bottom') and on which others are put ('top', 'top2', …),
+and the surfaces that look up ('face', 'face2', …), from level faces of their sets, and writes them
+into the scene: `kaboum-scene places`.
 
 Parameters
 ----------
@@ -357,7 +358,7 @@ objects : str or sequence of str, optional
 Returns
 -------
 dict
-    'names': by object, those of its points that were derived. 'kept': by object, of those that it
+    'names': by object, those of what was derived. 'kept': by object, of those that it
     had. 'without': by object, what it has not. 'unchecked': empty. 'notes'.)";
 
 constexpr const char* kSceneDoc =

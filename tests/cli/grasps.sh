@@ -58,15 +58,15 @@ done
 expect 2 'srdf would overwrite' "$S" pairs cell.json --srdf arm.urdf
 cmp cell.json before.json || fail "a refused request changed the scene"
 
-expect 0 'shelf: 2' "$S" places cell.json --report p.json
+expect 0 'shelf: 3' "$S" places cell.json --report p.json
 expect 0 'b3: ' "$S" grasps cell.json --object b1 --object b2 --object b3 --closing x --opening 0.03 --report g.json
 # A table is wider than the hand opens; that is said whatever is quiet, and is not 0.
 expect 1 'table: none; no two parallel faces' "$S" grasps cell.json --object table --closing x --opening 0.03 --quiet
 # Again: the same grasps, not twice as many.
 cp cell.json once.json
 expect 0 '' "$S" grasps cell.json --object b1 --object b2 --object b3 --closing x --opening 0.03
-expect 0 'the points that it has are kept; --force' "$S" places cell.json --report kept.json
-grep -q 'b1: 2 kept (bottom' err.txt || fail "does not say what is kept: $(cat err.txt)"
+expect 0 'the points and surfaces that it has are kept; --force' "$S" places cell.json --report kept.json
+grep -q 'b1: 3 kept (bottom' err.txt || fail "does not say what is kept: $(cat err.txt)"
 cmp cell.json once.json || fail "deriving again changed the scene"
 python3 - <<'END' || fail "reports and scene differ"
 import json
@@ -76,9 +76,9 @@ points = {o["name"]: [f["name"] for f in o["features"]] for o in scene["objects"
 for o in json.load(open("g.json"))["objects"]:
     assert o["names"] == grasps[o["object"]] and o["names"][0] == "hand/side-1" and not o["shortfall"], o
 for o in json.load(open("p.json"))["objects"]:
-    assert o["names"] == points[o["object"]] == ["bottom", "top"] and not o["kept"] and not o["shortfall"], o
+    assert o["names"] == points[o["object"]] == ["bottom", "top", "face"] and not o["kept"] and not o["shortfall"], o
 for o in json.load(open("kept.json"))["objects"]:
-    assert o["kept"] == ["bottom", "top"] and not o["names"] and not o["shortfall"], o
+    assert o["kept"] == ["bottom", "top", "face"] and not o["names"] and not o["shortfall"], o
 assert grasps["table"] == []
 # Single poses first, then families, which are tried later; round b3 is held round its axis.
 for o in scene["objects"]:
@@ -108,6 +108,27 @@ END
 expect 0 'solved: 3 nodes' "$BIN/kaboum-plan" solve stow.kpl --scene cell.json -o plan.json
 shows 0 'valid' "$BIN/kaboum-plan" check stow.kpl --scene cell.json --plan plan.json
 shows 0 '^good' "$BIN/kaboum-plan" run stow.kpl --scene cell.json --plan plan.json
+# Anywhere on the shelf by a mate with its surface, so much smaller that all of a base is on it.
+cat >stow.task <<'END'
+# Anywhere on the shelf, upright, a little above it.
+scene shelf.json
+mate anywhere: bottom distance face 1.5 mm within 0.5 mm; .z angle .z 0 deg within 0.1 deg
+put b1 b2 b3 on shelf by anywhere
+END
+cp cell.json shelf.json
+expect 0 'shelf: 3' "$S" places shelf.json --object shelf --inset 0.017 --force --preview shelf.html
+expect 0 'solved: ' "$BIN/kaboum-plan" solve stow.task -o plan.json
+shows 0 'valid' "$BIN/kaboum-plan" check stow.task --plan plan.json
+shows 0 '^good' "$BIN/kaboum-plan" run stow.task --plan plan.json
+# The page has the sheet of the surface where it is in the world, and marks of both points.
+python3 - <<'END' || fail "the page of places has not what it should show"
+import json, re
+data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', open("shelf.html").read(), re.S).group(1))
+assert [layer["name"] for layer in data["layers"]] == ["shelf", "shelf: bottom", "shelf: top", "shelf: face"], data["layers"]
+assert [len(layer["shapes"]) for layer in data["layers"]] == [1, 1, 1, 1]
+assert dict(data["facts"])["shelf: face"] == "0.0193 m²", data["facts"]  # 0.166 x 0.116
+END
+expect 2 'html' "$S" places shelf.json --preview shelf.png
 expect 0 'b1: 2' "$S" grasps cell.json --object b1 --hold face --form poses --directions 1
 python3 -c '
 import json
@@ -131,14 +152,14 @@ json.dump(d, open('edited.json', 'w'), indent=1)"
   cp edited.json before.json
 }
 edit "of['b1']['pose'] = {'position': [0.4, -0.25, 0.04], 'rpy': [0.5, 0.3, 0]}"
-expect 1 "b1: 2 kept (bottom …); it stands on no face: 'bottom' is kept; no face looks up: 'top' is kept" \
+expect 1 "b1: 3 kept (bottom …); it stands on no face: 'bottom' is kept; no face looks up: 'top' is kept; no face that looks up is wide enough: 'face' is kept" \
   "$S" places edited.json --object b1 --force
 cmp edited.json before.json || fail "points are gone where none were found"
 # Nor does a point go that the scene needs.
 edit "
 of['b1']['features'].append({'name': 'top2', 'point': [0, 0, 0]})
 d['constraints'] = [{'name': 'c', 'all': [{'relation': 'coincident', 'first': 'b1/top2', 'second': 'b2/top'}]}]"
-expect 0 'b1: 3 kept' "$S" places edited.json --object b1
+expect 0 'b1: 4 kept' "$S" places edited.json --object b1
 expect 3 "edited.json: nothing is written, .* 'b1/top2'" "$S" places edited.json --object b1 --force
 cmp edited.json before.json || fail "a point that a constraint names is gone"
 # A pyramid stands, and nothing stands on it.
@@ -207,7 +228,29 @@ expect 0 'how far the fingers open was not stated (--opening)' "$S" grasps cell.
 cat >nor.json <<'END'
 {"kaboum_scene": 1, "unit": "mm", "objects": [{"name": "b", "shape": {"box": {"size": [10, 10, 10]}}}]}
 END
-expect 0 'b: 2' "$S" places nor.json
+expect 0 'b: 3' "$S" places nor.json
+# Smaller surfaces, in place of those that it has; none are left of too small ones, and these stay.
+expect 0 'b: 3' "$S" places nor.json --inset 2 --force
+python3 - <<'END' || fail "the surface is not as much smaller as was asked for"
+import json
+outline = json.load(open("nor.json"))["objects"][0]["features"][2]["surface"]["outline"]
+assert sorted(outline) == [[x, y, 5] for x in (-3, 3) for y in (-3, 3)], outline
+END
+expect 1 "b: 2 (bottom …), 1 kept (face …); no face that looks up is wide enough: 'face' is kept" "$S" places nor.json --inset 5 --force
+grep -q 'so that it has no surface' err.txt && fail "what is kept is said not to be there"
+expect 2 'inset' "$S" places nor.json --inset -1
+# Another feature of a name leaves that name to it: constraints name features of all kinds.
+python3 - <<'END'
+import json
+d = json.load(open("nor.json"))
+d["objects"][0]["features"] = [{"name": "face", "plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}]
+json.dump(d, open("other.json", "w"))
+END
+expect 0 'b: 3' "$S" places other.json
+python3 -c '
+import json
+of = [f["name"] for f in json.load(open("other.json"))["objects"][0]["features"]]
+assert of == ["face", "bottom", "top", "face2"], of' || fail "a name is there in two kinds"
 grep -q '"robots"' nor.json && fail "a scene got robots"
 expect 2 'nor.json: .*no robot' "$S" grasps nor.json
 edit "d['objects'].append({'name': 'ball', 'shape': {'sphere': {'radius': 0.015}}})"

@@ -47,7 +47,7 @@ def test_grasps_and_places_are_the_programs(parts, monkeypatch):
         (parts / name).write_text(json.dumps(scene))
     said = program(parts, "places", "a.json", code=1)  # nobody stands on a ball
     places = kaboum.add_places("b.json")
-    assert places["names"]["post"] == ["bottom", "top"] and "stands on no face" in places["without"]["ball"]
+    assert places["names"]["post"] == ["bottom", "top", "face"] and "stands on no face" in places["without"]["ball"]
     assert "ball: none; it stands on no face" in said
     program(parts, "grasps", "a.json", "--object", "post", "--closing", "x", "--opening", "0.05", "--directions", 3, "--tip", 0.01)
     grasps = kaboum.add_grasps("b.json", "post", closing="x", opening=0.05, directions=3, tip=0.01)
@@ -68,7 +68,7 @@ def test_grasps_and_places_are_the_programs(parts, monkeypatch):
     none = kaboum.add_grasps("b.json", "post", closing="x", opening=0.001)
     assert none["names"] == {"post": []} and none["kept"] == grasps["names"] and "are kept" in none["without"]["post"]
     again = kaboum.add_places("b.json", "post")
-    assert again["kept"] == {"post": ["bottom", "top"]} and again["without"] == {}
+    assert again["kept"] == {"post": ["bottom", "top", "face"]} and again["without"] == {}
 
 
 def test_scene_is_the_programs(parts, monkeypatch):

@@ -336,6 +336,24 @@ TEST(Grasps, NameWhatIsNotThere) {
   EXPECT_NE(refused({}).find("no tools"), std::string::npos);
 }
 
+/// Twice the area of an outline, along its normal.
+Vec3 area_of(const std::vector<Vec3>& outline) {
+  Vec3 out = Vec3::Zero();
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    out += (outline[k] - outline[0]).cross(outline[(k + 1) % outline.size()] - outline[0]);
+  return out;
+}
+
+void expect_outline(const world::Feature& feature, const std::vector<Vec3>& corners, double area) {
+  ASSERT_EQ(feature.kind, world::Feature::Kind::Surface);
+  EXPECT_EQ(feature.outline.size(), corners.size()) << feature.name;
+  for (const Vec3& corner : corners)
+    EXPECT_TRUE(std::ranges::any_of(feature.outline,
+                                    [&](const Vec3& p) { return (p - corner).norm() < 1e-9; }))
+        << feature.name << " " << corner.transpose();
+  EXPECT_NEAR(area_of(feature.outline).norm() / 2, area, 1e-9);
+}
+
 TEST(Places, AreWhereTheObjectStandsAndWhatLooksUp) {
   // An L that stands on its side: its y is up.
   const std::vector<Block> ell{{{0, 0, 0}, {0.25, 0.1, 0.1}}, {{0, 0.1, 0}, {0.1, 0.3, 0.1}}};
@@ -343,14 +361,20 @@ TEST(Places, AreWhereTheObjectStandsAndWhatLooksUp) {
   world.objects[0].pose.linear =
       Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitX()).toRotationMatrix();
   const std::vector<world::Feature> found = derive_places(world, 0, {});
-  ASSERT_EQ(found.size(), 3U);
+  ASSERT_EQ(found.size(), 5U);
   EXPECT_EQ(found[0].name, "bottom");
   EXPECT_LT((found[0].point - Vec3(0.125, 0, 0.05)).norm(), 1e-9);
   EXPECT_EQ(found[1].name, "top");
   EXPECT_LT((found[1].point - Vec3(0.125, 0.1, 0.05)).norm(), 1e-9);
   EXPECT_EQ(found[2].name, "top2");
   EXPECT_LT((found[2].point - Vec3(0.05, 0.3, 0.05)).norm(), 1e-9);
-  EXPECT_EQ(derive_places(world, 0, {.most = 1}).size(), 2U);
+  EXPECT_EQ(found[3].name, "face");
+  // Of the foot, what the other box leaves; then that box.
+  expect_outline(found[3], {{0.1, 0.1, 0}, {0.1, 0.1, 0.1}, {0.25, 0.1, 0.1}, {0.25, 0.1, 0}},
+                 0.015);
+  EXPECT_EQ(found[4].name, "face2");
+  expect_outline(found[4], {{0, 0.3, 0}, {0, 0.3, 0.1}, {0.1, 0.3, 0.1}, {0.1, 0.3, 0}}, 0.01);
+  EXPECT_EQ(derive_places(world, 0, {.most = 1}).size(), 3U);
   // On its edge it has neither.
   world.objects[0].pose.linear =
       Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
@@ -366,7 +390,7 @@ TEST(Places, OfWhatIsAttachedAreAsItsRobotHoldsIt) {
   held.pose.linear = Eigen::AngleAxisd(std::acos(-1.0), Vec3::UnitX()).toRotationMatrix();
   world.attachments[0] = held;
   const std::vector<world::Feature> found = derive_places(world, 0, {});
-  ASSERT_EQ(found.size(), 2U);
+  ASSERT_EQ(found.size(), 3U);
   EXPECT_LT((found[0].point - Vec3(0, 0, 0.3)).norm(), 1e-9);  // upside down
   EXPECT_LT((found[1].point - Vec3(0, 0, -0.3)).norm(), 1e-9);
   // The robot is turned with its base.
@@ -384,14 +408,16 @@ TEST(Places, OfRoundBodiesAreOnTheirFlatFacesOnly) {
   const geom::ConvexBody box{"box", hull_of({-half, half}, {}), 0.05};
   world.objects[0].outer = {{box}, collide::Direction::Outer, 0};
   const std::vector<world::Feature> found = derive_places(world, 0, {});
-  ASSERT_EQ(found.size(), 2U);
+  ASSERT_EQ(found.size(), 3U);
+  expect_outline(
+      found[2], {{-0.1, -0.2, 0.35}, {0.1, -0.2, 0.35}, {0.1, 0.2, 0.35}, {-0.1, 0.2, 0.35}}, 0.08);
   EXPECT_LT((found[0].point - Vec3(0, 0, -0.35)).norm(), 1e-12);
   EXPECT_LT((found[1].point - Vec3(0, 0, 0.35)).norm(), 1e-12);
   // It stands on a ball, not on the box.
   geom::ConvexBody ball{"ball", {}, 0.2};
   ball.core.vertices = {{0, 0, -0.25}};
   world.objects[0].outer = {{box, ball}, collide::Direction::Outer, 0};
-  ASSERT_EQ(derive_places(world, 0, {}).size(), 1U);
+  ASSERT_EQ(derive_places(world, 0, {}).size(), 2U);
   EXPECT_EQ(derive_places(world, 0, {})[0].name, "top");
 }
 

@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "grasp_page.h"
+#include "derived_page.h"
 #include "names.h"
 #include "options.h"
 #include "pairs.h"
@@ -151,8 +151,15 @@ int add_grasps(const tools::SceneOptions& o) {
 
 int add_places(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
-  tools::require_apart({{"--report", o.common.report}}, scene::files_of(o.scene));
-  return say_added(o, scene::add_places(o.scene, o.objects, o.derived_places), "places");
+  tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}},
+                       scene::files_of(o.scene));
+  const scene::AddedFeatures added = scene::add_places(o.scene, o.objects, o.derived_places);
+  if (!o.preview.empty()) {
+    const std::string page =
+        tools::page_of_places(o.scene, world::read_scene(o.scene).world, added);
+    io::write_file(o.preview, {page.data(), page.size()});
+  }
+  return say_added(o, added, "places");
 }
 
 }  // namespace

@@ -109,10 +109,17 @@ CLI::App* describe_grasps(CLI::App& app, SceneOptions& o) {
 CLI::App* describe_places(CLI::App& app, SceneOptions& o) {
   CLI::App* places = describe_derived(
       app, o, "places",
-      "Derive points on which objects stand (bottom), and on which others are "
-      "put (top, top2, …), from level faces of their sets, and write them into the scene",
-      "An object that gets points; may be repeated [all]");
+      "Derive points on which objects stand (bottom), and on which others are put (top, top2, …), "
+      "and "
+      "the surfaces that look up (face, face2, …), from level faces of their sets, and write them "
+      "into the scene",
+      "An object that gets them; may be repeated [all]");
   add_request_options(*places, scene::place_options(), o.derived_places, o.stated);
+  places
+      ->add_option("--preview", o.preview,
+                   "Write a page (.html) that shows the points and surfaces on their objects")
+      ->type_name("FILE")
+      ->check(page_name());
   add_common_options(*places, o.common);
   return places;
 }

@@ -79,16 +79,22 @@ DerivedGrasps derive_grasps(const world::World& world, std::size_t object,
 /// The links of a robot's hand: those that move with its tool, by link.
 std::vector<bool> links_of_hand(const world::RobotModel& robot, const world::ToolFrame& tool);
 
+/// Where an object is at first, from its frame to the world; attached: as its robot holds it at
+/// home.
+geom::Transform pose_at_first(const world::World& world, std::size_t object);
+
 /// Request for places where objects stand.
 struct PlaceRequest {
-  std::size_t most = 8;  ///< points on top of an object
-  bool replace = false;  ///< points of these names that the scene has already
+  std::size_t most = 8;  ///< points on top of an object, and surfaces
+  double inset = 0;      ///< by which surfaces are smaller all round, beyond the set's ε [length]
+  bool replace = false;  ///< points and surfaces of these names that the scene has already
 };
 
-/// Points of an object as placing reads them, in its frame: "bottom", the middle of the faces on
-/// which it stands as the scene has it (attached: as its robot at home holds it), and "top",
-/// "top2", … in the middle of faces that look up, the largest first, whose middle no other body
-/// covers. Faces are level within 0.001 rad.
+/// Places of an object, in its frame: the points "bottom", the middle of the faces on which it
+/// stands as the scene has it (attached: as its robot at home holds it), and "top", "top2", … in
+/// the middle of faces that look up; and the surfaces "face", "face2", …, convex parts of these
+/// faces that no other body covers. The largest come first. Faces are level within 0.001 rad, or
+/// within the set's ε where nearly all of a body is. docs/scene.md, "Grasps and places".
 std::vector<world::Feature> derive_places(const world::World& world, std::size_t object,
                                           const PlaceRequest& request);
 
@@ -96,7 +102,7 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
 struct AddedFeatures {
   struct OfObject {
     std::string object;
-    std::vector<std::string> names;  ///< of grasps or points that were derived
+    std::vector<std::string> names;  ///< of grasps or places that were derived
     std::vector<std::string> kept;   ///< of those that it had, and that stay in their place
     /// What it lacks of what was asked for, and why; or that no link of the hand was looked at.
     /// Empty: it lacks nothing.
@@ -117,7 +123,7 @@ struct AddedFeatures {
 AddedFeatures add_grasps(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const GraspRequest& request);
 
-/// Likewise points on which objects are placed, and on which they stand.
+/// Likewise points on which objects are placed, and on which they stand, and surfaces.
 AddedFeatures add_places(const std::filesystem::path& scene,
                          const std::vector<std::string>& objects, const PlaceRequest& request);
 

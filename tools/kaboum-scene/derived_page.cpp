@@ -1,6 +1,6 @@
-// A page of grasps round the objects of a scene.
+// Pages of grasps round the objects of a scene, and of places on them.
 
-#include "grasp_page.h"
+#include "derived_page.h"
 
 #include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/convex_hull.h>
@@ -28,6 +28,9 @@ using kinematics::inverse;
 constexpr std::size_t kHands = 4, kTools = 60;
 /// Share of the object's size: length of the pointers that stand for tools.
 constexpr double kPointer = 0.6;
+
+/// Share of the object's size: radius of the mark of a point, and thickness of that of a surface.
+constexpr double kMark = 0.02, kSheet = 0.004;
 
 geom::Mesh moved(geom::Mesh mesh, const Transform& pose) {
   for (Vec3& v : mesh.vertices) v = pose * v;
@@ -64,6 +67,30 @@ geom::Mesh pointer(double length, scene::GraspRequest::Axis closing) {
                                   at(-half, -thin, -length), at(half, -thin, -length),
                                   at(half, thin, -length),   at(-half, thin, -length)};
   return geom::convex_hull(corners).value_or(geom::Mesh());
+}
+
+/// A mark of a point, or a sheet on a surface.
+geom::Mesh mark_of(const world::Feature& feature, double size) {
+  std::vector<Vec3> corners;
+  if (feature.kind == world::Feature::Kind::Point) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sense : {1.0, -1.0})
+        corners.emplace_back(feature.point + sense * kMark * size * Vec3::Unit(axis));
+  } else {
+    for (const Vec3& corner : feature.outline)
+      for (const double above : {0.0, kSheet * size})
+        corners.emplace_back(corner + above * feature.direction);
+  }
+  return geom::convex_hull(corners).value_or(geom::Mesh());
+}
+
+/// A layer of an object's sets.
+page::Layer layer_of(const world::Object& object, const Transform& pose) {
+  page::Layer out{object.name};
+  out.result = false;
+  out.bodies = true;
+  add_set(object.outer, pose, out.shapes);
+  return out;
 }
 
 std::string number(double x) {
@@ -110,11 +137,7 @@ std::string page_of_grasps(const std::string& scene, const world::World& world,
     const auto index = world.find_object(of.object);
     if (!index) continue;
     const world::Object& object = world.objects[*index];
-    page::Layer thing{of.object};
-    thing.result = false;
-    thing.bodies = true;
-    add_set(object.outer, object.pose, thing.shapes);
-    out.layers.push_back(std::move(thing));
+    out.layers.push_back(layer_of(object, object.pose));
     if (!of.shortfall.empty()) out.facts.emplace_back(of.object, of.shortfall);
     const geom::Mesh wedge = pointer(kPointer * object.outer.box().diagonal(), request.closing);
     for (const world::Grasp& grasp : object.grasps) {
@@ -133,6 +156,43 @@ std::string page_of_grasps(const std::string& scene, const world::World& world,
         for (const page::Shape& part : hand) layer.shapes.push_back({moved(part.mesh, at)});
       }
       out.layers.push_back(std::move(layer));
+    }
+  }
+  return page::preview_page(out);
+}
+
+std::string page_of_places(const std::string& scene, const world::World& world,
+                           const scene::AddedFeatures& added) {
+  page::Preview out{"Places of " + std::filesystem::path(scene).filename().string(), world.unit};
+  out.facts.emplace_back("points", "where an object stands (bottom), and where others are put");
+  out.facts.emplace_back("surfaces",
+                         "parts of faces that look up and that nothing covers, smaller all round");
+  for (const scene::AddedFeatures::OfObject& of : added.objects) {
+    const auto index = world.find_object(of.object);
+    if (!index) continue;
+    const world::Object& object = world.objects[*index];
+    const Transform pose = scene::pose_at_first(world, *index);
+    const double size = object.outer.box().diagonal();
+    out.layers.push_back(layer_of(object, pose));
+    if (!of.shortfall.empty()) out.facts.emplace_back(of.object, of.shortfall);
+    for (const world::Feature& feature : object.features) {
+      const auto is_it = [&](const std::string& name) { return name == feature.name; };
+      const bool point = feature.kind == world::Feature::Kind::Point;
+      if ((!point && feature.kind != world::Feature::Kind::Surface) ||
+          (std::ranges::none_of(of.names, is_it) && std::ranges::none_of(of.kept, is_it)))
+        continue;
+      page::Layer layer{of.object + ": " + feature.name};
+      layer.bodies = true;
+      layer.shapes.push_back({moved(mark_of(feature, size), pose)});
+      out.layers.push_back(std::move(layer));
+      if (feature.outline.empty()) continue;
+      double area = 0;
+      for (std::size_t i = 1; i + 1 < feature.outline.size(); ++i)
+        area +=
+            0.5 * feature.direction.dot((feature.outline[i] - feature.outline[0])
+                                            .cross(feature.outline[i + 1] - feature.outline[0]));
+      out.facts.emplace_back(of.object + ": " + feature.name,
+                             number(area) + " " + world.unit + "²");
     }
   }
   return page::preview_page(out);
