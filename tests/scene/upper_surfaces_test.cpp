@@ -203,6 +203,27 @@ TEST(UpperSurfaces, OfContainersAreTheirFloors) {
   EXPECT_EQ(points, 2U);
 }
 
+TEST(UpperSurfaces, OfManyBodiesAreFew) {
+  // A tray of 256 tiles in any order, with walls across that make 16 compartments.
+  std::vector<Block> blocks;
+  for (int x = 0; x < 16; ++x)
+    for (int y = 0; y < 16; ++y) blocks.push_back({{1.0 * x, 1.0 * y, 0}, {x + 1.0, y + 1.0, 0.1}});
+  std::mt19937_64 random(13);
+  std::ranges::shuffle(blocks, random);
+  for (int k = 0; k <= 4; ++k) {
+    blocks.push_back({{4.0 * k - 0.1, 0, 0.05}, {4.0 * k + 0.1, 16, 1}});
+    blocks.push_back({{0, 4.0 * k - 0.1, 0.05}, {16, 4.0 * k + 0.1, 1}});
+  }
+  std::size_t floors = 0;
+  for (const std::vector<Vec3>& outline :
+       surfaces_of(standing(blocks, {}, 0.01), {}, {.most = 100})) {
+    if (std::abs(outline.front().z() - 0.1) > 1e-9) continue;
+    ++floors;
+    EXPECT_NEAR(area_seen(outline), 3.78 * 3.78, 1e-9);
+  }
+  EXPECT_EQ(floors, 16U);
+}
+
 TEST(UpperSurfaces, OfTopsAreLevelWithinEpsilon) {
   // A plate whose upper corners are not of one height.
   const auto plate = [](double lower, double epsilon) {
