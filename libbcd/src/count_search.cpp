@@ -72,12 +72,14 @@ std::vector<Body> CountSearch::gather(std::size_t target, double epsilon) {
 std::vector<Finished> CountSearch::at_most(std::size_t target) {
   std::vector<Body> bodies = gather(target);
   const double free_cost = kFreeShare * state_.options().simplify_share() * worst_of(bodies);
+  // No vertex that need not be left out makes a body the worst.
+  const double decisive = kMisjudged * worst_of(bodies);
   std::vector<Finished> finished;
   // What measuring finds is refined once more.
   for (int round = 0; round < state_.tuning().rounds; ++round) {
     if (round > 0 && target > 1) local_.refine(bodies, target);
     state_.report("simplifying", 0.75 + 0.02 * round);
-    std::vector<Finished> next = finisher_.finish(bodies, free_cost);
+    std::vector<Finished> next = finisher_.finish(bodies, free_cost, decisive);
     bool misjudged = false;
     bodies.clear();
     for (const Finished& f : next) {
@@ -98,12 +100,14 @@ std::vector<Finished> CountSearch::at_most(std::size_t target) {
     state_.report("refining", 0.8 + 0.2 * round / rounds);
     if (state_.spent(kImproving) || !improve(finished, target, free_cost)) break;
   }
+  finisher_.measure_largest(finished);
   return finished;
 }
 
 /// Splits the body with the largest certified distance, and merges others instead. @return false
 /// when that did not help.
 bool CountSearch::improve(std::vector<Finished>& finished, std::size_t target, double free_cost) {
+  finisher_.measure_largest(finished);
   std::size_t worst = 0;
   for (std::size_t i = 1; i < finished.size(); ++i)
     if (finished[i].excess.lower > finished[worst].excess.lower) worst = i;

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "concavity.h"
 #include "outward.h"
 #include "thicken.h"
 
@@ -111,6 +113,23 @@ void Finisher::keep(const std::vector<Finished>& bodies, const std::vector<std::
     if (f.excess.upper <= decisive)
       known_.emplace(f.body.leaves, Finished{{}, f.hull, f.excess, f.thickened});
   }
+}
+
+void Finisher::measure_largest(std::vector<Finished>& bodies) const {
+  const ExcessOptions how = excess_options(bodies.size());
+  double known = 0;
+  for (const Finished& f : bodies) known = std::max(known, f.excess.lower);
+  known = (1 + how.relative_gap) * known + how.absolute_gap;
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].excess.upper > known) open.push_back(i);
+  if (open.empty()) return;
+  std::vector<Mesh> hulls;
+  hulls.reserve(open.size());
+  for (const std::size_t i : open) hulls.push_back(bodies[i].hull);
+  const std::vector<Excess> measured = measure(hulls, state_.solid(), how, known);
+  for (std::size_t i = 0; i < open.size(); ++i)
+    if (measured[i].upper < bodies[open[i]].excess.upper) bodies[open[i]].excess = measured[i];
 }
 
 /// @param first  whether shapes are simplified now; else those that have been are left as they were
@@ -231,12 +250,21 @@ Mesh Finisher::rounded(const Body& body, const Simplified& shape, std::size_t mo
     for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
     required = std::move(hull);
   }
+  std::optional<Mesh> pushed;
   if (!body.concavity.flat) {
-    if (auto hull = push_out(shape.vertices, required, most)) return *std::move(hull);
-    if (shape.needed.size() > shape.vertices.size())
-      if (auto hull = push_out(shape.needed, required, most)) return *std::move(hull);
+    pushed = push_out(shape.vertices, required, most);
+    if (!pushed && shape.needed.size() > shape.vertices.size())
+      pushed = push_out(shape.needed, required, most);
   }
-  return enclose(body.hull, required, most);
+  if (!pushed) return enclose(body.hull, required, most);
+  if (body.hull.size() <= most) return *std::move(pushed);
+  // Few vertices for what is long and thin: contractions leave it skew, or with edges like knives.
+  std::optional<Mesh> prism = prism_round(required, most);
+  if (!prism) return *std::move(pushed);
+  const double far = estimate_concavity(pushed->vertices, state_.solid(), builder).worst;
+  const bool nearer =
+      estimate_concavity(prism->vertices, state_.solid(), builder, true, far).worst < far;
+  return nearer ? *std::move(prism) : *std::move(pushed);
 }
 
 }  // namespace kaboum::bcd

@@ -37,6 +37,10 @@ class Finisher {
   /// goes farther; else only the largest excess is exact. [length]
   std::vector<Finished> finish(std::vector<Body>& bodies, double free_cost, double decisive = 0);
 
+  /// Measures bodies anew that were only told to be no farther than another one, where that one is
+  /// gone: the largest excess is exact again.
+  void measure_largest(std::vector<Finished>& bodies) const;
+
   /// As few vertices as epsilon allows each body, by bisection of their number.
   void simplify_hulls(std::vector<Finished>& bodies, double epsilon);
 

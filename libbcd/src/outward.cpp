@@ -126,25 +126,6 @@ std::vector<Vec3> distinct(std::span<const Vec3> points, const std::vector<Vec3>
   return out;
 }
 
-/// A float32 prism of at most `most` vertices that contains the points, exactly.
-std::optional<geom::Mesh> prism_round(std::span<const Vec3> points, double ulp, std::size_t most) {
-  const std::optional<PrincipalPrism> prism = PrincipalPrism::round(points, most);
-  if (!prism) return std::nullopt;
-  geom::HullBuilder builder;
-  for (double margin = kFirstMargin * ulp; margin < kLastMargin * ulp; margin *= 2) {
-    std::vector<Vec3> corners = prism->corners(margin);
-    for (Vec3& p : corners) p = geom::to_float32(p);
-    if (!builder.build(corners)) continue;
-    bool good = true;
-    for (const Triangle& t : builder.triangles())
-      for (const Vec3& p : points)
-        good = good && geom::orient3d(corners[t[0]], corners[t[1]], corners[t[2]], p) !=
-                           geom::Sign::Positive;
-    if (good) return builder.mesh();
-  }
-  return std::nullopt;
-}
-
 /// float32's spacing at the largest coordinate.
 double spacing_at(std::span<const Vec3> points) {
   double magnitude = 0;
@@ -242,6 +223,25 @@ std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const 
   return std::nullopt;
 }
 
+std::optional<geom::Mesh> prism_round(std::span<const Vec3> points, std::size_t most) {
+  const double ulp = spacing_at(points);
+  const std::optional<PrincipalPrism> prism = PrincipalPrism::round(points, most);
+  if (!prism) return std::nullopt;
+  geom::HullBuilder builder;
+  for (double margin = kFirstMargin * ulp; margin < kLastMargin * ulp; margin *= 2) {
+    std::vector<Vec3> corners = prism->corners(margin);
+    for (Vec3& p : corners) p = geom::to_float32(p);
+    if (!builder.build(corners)) continue;
+    bool good = true;
+    for (const Triangle& t : builder.triangles())
+      for (const Vec3& p : points)
+        good = good && geom::orient3d(corners[t[0]], corners[t[1]], corners[t[2]], p) !=
+                           geom::Sign::Positive;
+    if (good) return builder.mesh();
+  }
+  return std::nullopt;
+}
+
 geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most) {
   if (std::optional<geom::Mesh> pushed = push_out(shape, required, most)) return *std::move(pushed);
   const double ulp = spacing_at(required);
@@ -249,7 +249,7 @@ geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, 
   // Too thin to be pushed along normals: the points themselves, or a prism round them.
   if (builder.build(required) && builder.vertices().size() <= most) return builder.mesh();
   if (!required.empty()) {
-    if (auto prism = prism_round(required, ulp, most)) return *std::move(prism);
+    if (auto prism = prism_round(required, most)) return *std::move(prism);
   }
   // Flat: boxes of a few float32 steps.
   std::vector<Vec3> thick;

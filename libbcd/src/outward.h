@@ -22,7 +22,11 @@ std::vector<Vec3> outer_points(const Piece& piece, double error);
 std::optional<geom::Mesh> push_out(std::span<const Vec3> shape, std::span<const Vec3> required,
                                    std::size_t most);
 
-/// The same; instead of nothing the hull of `required`, or, if it has more than `most` vertices, a
+/// A prism of at most `most` vertices, with float32 coordinates, that contains `required`, exactly;
+/// nullopt when none is found.
+std::optional<geom::Mesh> prism_round(std::span<const Vec3> required, std::size_t most);
+
+/// push_out; instead of nothing the hull of `required`, or, if it has more than `most` vertices, a
 /// prism across its thinnest direction.
 geom::Mesh enclose(std::span<const Vec3> shape, std::span<const Vec3> required, std::size_t most);
 

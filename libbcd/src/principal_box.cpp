@@ -1,8 +1,9 @@
-// Boxes along the axes of the covariance of points.
+// Boxes round points, along the axes of their covariance or others.
 
 #include "principal_box.h"
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 
 namespace kaboum::bcd {
 
@@ -18,15 +19,10 @@ std::vector<Vec3> PrincipalBox::corners(double margin) const {
   return out;
 }
 
-std::optional<PrincipalBox> principal_box(std::span<const Vec3> points) {
-  if (points.empty()) return std::nullopt;
+PrincipalBox box_along(std::span<const Vec3> points, const Eigen::Matrix3d& axes) {
   PrincipalBox out;
   for (const Vec3& p : points) out.mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) covariance += (p - out.mean) * (p - out.mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  out.axes = eigen.eigenvectors();
-  if (!out.axes.allFinite()) return std::nullopt;
+  out.axes = axes;
   out.low = Vec3::Constant(std::numeric_limits<double>::infinity());
   out.high = -out.low;
   for (const Vec3& p : points) {
@@ -35,6 +31,17 @@ std::optional<PrincipalBox> principal_box(std::span<const Vec3> points) {
     out.high = out.high.cwiseMax(q);
   }
   return out;
+}
+
+std::optional<PrincipalBox> principal_box(std::span<const Vec3> points) {
+  if (points.empty()) return std::nullopt;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  if (!eigen.eigenvectors().allFinite()) return std::nullopt;
+  return box_along(points, eigen.eigenvectors());
 }
 
 }  // namespace kaboum::bcd

@@ -10,8 +10,9 @@
 
 namespace kaboum::bcd {
 
-/// A prism round points, across the axis along which they vary least: the box along the axes of
-/// their covariance, or with 8, 16, 32 or 64 sides where those make its base smaller by a fiftieth.
+/// A prism round points: the box along the axes of their covariance, or one with a side on a facet
+/// of their hull and another along an edge of its outline, whichever is smallest. It has 8, 16, 32
+/// or 64 sides instead of four where those make its base smaller by a fiftieth.
 class PrincipalPrism {
  public:
   /// @param most  vertices; at least 8.
@@ -22,7 +23,8 @@ class PrincipalPrism {
   [[nodiscard]] std::vector<geom::Vec3> corners(double margin = 0) const;
 
  private:
-  explicit PrincipalPrism(const PrincipalBox& box) : box_(box) {}
+  PrincipalPrism(std::span<const geom::Vec3> points, const PrincipalBox& box, std::size_t most);
+  [[nodiscard]] double volume() const;
 
   PrincipalBox box_;
   std::vector<double> heights_;  // of the sides, whose normals are evenly spaced from axis 1 on

@@ -5,7 +5,10 @@
 #include <kaboum/io/convex_io.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 #include "part.h"
 #include "solid_field.h"
@@ -112,34 +115,70 @@ TEST(Cover, InteriorCornersOfCellsAreCovered) {
   }
 }
 
-TEST(Cover, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
-  // [gaschler2016] Fig. 4.8: n equal arcs of radius r are r (1 − cos π/n) from their hulls.
+/// A closed ring of radius 1 along z.
+Mesh thin_ring(std::uint32_t segments, double inner, double height) {
   Mesh ring;
-  constexpr std::uint32_t n = 256;
-  constexpr double inner = 0.99;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double a = 2 * M_PI * i / n, c = std::cos(a), s = std::sin(a);
-    for (const auto& [r, z] : {std::pair{inner, 0.0}, {1.0, 0.0}, {1.0, 0.02}, {inner, 0.02}})
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    const double a = 2 * M_PI * i / segments, c = std::cos(a), s = std::sin(a);
+    for (const auto& [r, z] : {std::pair{inner, 0.0}, {1.0, 0.0}, {1.0, height}, {inner, height}})
       ring.vertices.emplace_back(r * c, r * s, z);
-    const std::uint32_t j = (i + 1) % n;
+    const std::uint32_t j = (i + 1) % segments;
     for (std::uint32_t k = 0; k < 4; ++k) {
       const std::uint32_t l = (k + 1) % 4;
       ring.triangles.push_back({4 * i + k, 4 * j + l, 4 * i + l});
       ring.triangles.push_back({4 * i + k, 4 * j + k, 4 * j + l});
     }
   }
-  const geom::Prepared input = geom::prepare(ring);
+  return ring;
+}
+
+/// What find_cover reaches with at most so many bodies.
+double reach_of(const geom::Prepared& input, std::size_t bodies, std::size_t max_vertices) {
+  CoverOptions options;
+  options.max_bodies = bodies;
+  options.max_vertices = max_vertices;
+  const CoverCandidate result = find_cover(input.solid, options);
+  EXPECT_LE(result.bodies.size(), bodies);
+  EXPECT_LE(result.statistics.largest, max_vertices);
+  return result.excess_upper;
+}
+
+TEST(Cover, ThinRingsDistanceFallsWithTheSquareOfTheNumberOfBodies) {
+  // [gaschler2016] Fig. 4.8: n equal arcs of radius r are r (1 − cos π/n) from their hulls.
+  constexpr double inner = 0.99;
+  const geom::Prepared input = geom::prepare(thin_ring(256, inner, 0.02));
   double xy = 0, xx = 0;  // of logarithms, about n = 16
   for (const std::size_t bodies : {8U, 16U, 32U}) {
-    CoverOptions options;
-    options.max_bodies = bodies;
-    const double reach = find_cover(input.solid, options).excess_upper;
+    const double reach = reach_of(input, bodies, 64);
     EXPECT_LE(reach, 1.3 * inner * (1 - std::cos(M_PI / static_cast<double>(bodies))));
     const double x = std::log(static_cast<double>(bodies) / 16);
     xy += x * std::log(reach);
     xx += x * x;
   }
   EXPECT_NEAR(xy / xx, -2, 0.1);
+}
+
+TEST(Cover, ThinRingsOfEightVerticesPerBodyAreAsNearAsEqualSegments) {
+  // The ring of the reproduction: trapezoids round equal segments are 1 / cos π/n − 1 outwards.
+  const geom::Prepared input = geom::prepare(thin_ring(720, 0.998, 0.1));
+  for (const std::size_t bodies : {8U, 16U, 24U, 32U})
+    EXPECT_LE(reach_of(input, bodies, 8),
+              1.3 * (1 / std::cos(M_PI / static_cast<double>(bodies)) - 1))
+        << bodies;
+}
+
+TEST(Cover, MoreBodiesOfEightVerticesAreNoFarther) {
+  const std::vector<Mesh> family{thin_ring(96, 0.995, 0.08), kaboum::test::torus(1, 0.3, 24, 12),
+                                 prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)};
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    const geom::Prepared input = geom::prepare(family[i]);
+    double last = std::numeric_limits<double>::infinity();
+    for (const std::size_t bodies : {2U, 4U, 8U, 16U, 32U}) {
+      const double reach = reach_of(input, bodies, 8);
+      EXPECT_LE(reach, last) << i << ' ' << bodies;
+      last = reach;
+    }
+  }
 }
 
 TEST(Cover, WallsThinnerThanTheGridAndFlatParts) {

@@ -81,6 +81,28 @@ TEST(Enclose, ThinDiscsByPrismsWithAsManySidesAsAllowed) {
   }
 }
 
+TEST(PrismRound, LiesOnFacetsHoweverUnevenlyPointsAreSpread) {
+  // A slab; many points at two opposite corners turn the axes of covariance.
+  const Vec3 size(0.2, 0.005, 0.1);
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(0.4, Vec3::UnitX()) * Eigen::AngleAxisd(0.7, Vec3::UnitZ()))
+          .toRotationMatrix();
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = size.cwiseProduct(Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1));
+    for (int k = 0; k < (i == 0 || i == 7 ? 30 : 1); ++k) {
+      const Vec3 inwards = (i == 7 ? -1e-4 : 1e-4) * k * Vec3::UnitX();
+      points.emplace_back(turn * (corner + inwards));
+    }
+  }
+  const std::vector<Vec3> required = rounded(points);
+  const auto prism = prism_round(required, 8);
+  ASSERT_TRUE(prism);
+  expect_enclosed(*prism, required);
+  EXPECT_EQ(prism->vertices.size(), 8U);
+  EXPECT_LT(std::abs(geom::signed_volume(*prism)), 1.01 * size.prod());
+}
+
 TEST(Simplify, EnclosesUpToRoundingWithinTheCap) {
   for (const int n : {80, 300}) {
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
