@@ -42,8 +42,7 @@ void BallRelaxation::ask(std::size_t ball, const Vec3& about, double reach) {
   near_.clear();
   work_ += kPairWork * static_cast<double>(points_.size());
   for (std::uint32_t b = 0; b < balls_.size(); ++b)
-    if (b != ball && (balls_[b].center - about).norm() < balls_[b].radius + 2 * reach)
-      near_.push_back(b);
+    if (b != ball && is_near(balls_[b], about, reach)) near_.push_back(b);
   const double square = reach * reach;
   for (std::uint32_t p = 0; p < points_.size(); ++p) {
     const Vec3& at = points_[p];
@@ -100,23 +99,49 @@ void BallRelaxation::move(std::size_t ball) {
   step_[ball] = step;
 }
 
+/// Of what a ball alone holds or is near to, how much farther it would be without it.
+double BallRelaxation::loss_without(std::size_t ball) {
+  const Ball& b = balls_[ball];
+  ask(ball, b.center, (1 + kNear) * b.radius);
+  double out = 0;
+  for (const Asked& a : asked_) {
+    const double own = std::max(0.0, gap(b, points_[a.point]));
+    const double other = std::min(a.other, 2 * b.radius);
+    if (own < other) out += weight_[a.point] * (other * other - own * own);
+  }
+  return out;
+}
+
 std::size_t BallRelaxation::least_needed() {
   std::size_t out = 0;
   double least = kFar;
   for (std::size_t b = 0; b < balls_.size(); ++b) {
-    ask(b, balls_[b].center, (1 + kNear) * balls_[b].radius);
-    double loss = 0;
-    for (const Asked& a : asked_) {
-      const double own = std::max(0.0, gap(balls_[b], points_[a.point]));
-      const double other = std::min(a.other, 2 * balls_[b].radius);
-      if (own < other) loss += weight_[a.point] * (other * other - own * own);
-    }
+    const double loss = loss_without(b);
     if (loss < least) {
       least = loss;
       out = b;
     }
   }
   return out;
+}
+
+/// @return whether so many were left out before the work was done
+bool BallRelaxation::leave_out(std::size_t count) {
+  std::vector<double> losses(balls_.size());
+  for (std::size_t b = 0; b < balls_.size() && work() < limit_; ++b) losses[b] = loss_without(b);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto b = std::ranges::min_element(losses) - losses.begin();
+    const Ball gone = balls_[static_cast<std::size_t>(b)];
+    balls_.erase(balls_.begin() + b);
+    step_.erase(step_.begin() + b);
+    losses.erase(losses.begin() + b);
+    for (std::size_t i = 0; i < balls_.size(); ++i) {
+      if (!(work() < limit_)) return false;
+      if (is_near(gone, balls_[i].center, (1 + kNear) * balls_[i].radius))
+        losses[i] = loss_without(i);
+    }
+  }
+  return true;
 }
 
 void BallRelaxation::find_free() {
@@ -178,18 +203,14 @@ bool BallRelaxation::hold(std::vector<Ball>& balls, int sweeps) {
       in_vain = 0;
       fewest = points_.size() + 1;
     }
-    for (std::size_t b = 0; b < balls_.size(); ++b) move(b);
+    for (std::size_t b = 0; b < balls_.size() && work() < limit_; ++b) move(b);
   }
   return false;
 }
 
 bool BallRelaxation::hold_with_fewer(std::vector<Ball>& balls, std::size_t count, int sweeps) {
   begin(balls);
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto b = static_cast<std::ptrdiff_t>(least_needed());
-    balls_.erase(balls_.begin() + b);
-    step_.erase(step_.begin() + b);
-  }
+  if (!leave_out(count)) return false;
   std::vector<Ball> fewer = balls_;
   if (!hold(fewer, sweeps)) return false;
   balls = std::move(fewer);

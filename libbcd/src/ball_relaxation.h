@@ -50,11 +50,17 @@ class BallRelaxation {
   [[nodiscard]] double gap(const Ball& ball, const geom::Vec3& p) const {
     return (p - ball.center).norm() - ball.radius * (1 - spare_);
   }
+  /// Whether a ball may hold what is within `reach` of a place, or be near to it.
+  [[nodiscard]] static bool is_near(const Ball& ball, const geom::Vec3& about, double reach) {
+    return (ball.center - about).norm() < ball.radius + 2 * reach;
+  }
   void ask(std::size_t ball, const geom::Vec3& about, double reach);
   [[nodiscard]] double cost(const Ball& ball);
   [[nodiscard]] geom::Vec3 direction();
   void move(std::size_t ball);
+  [[nodiscard]] double loss_without(std::size_t ball);
   [[nodiscard]] std::size_t least_needed();
+  bool leave_out(std::size_t count);
   void find_free();
   void relocate();
 

@@ -332,27 +332,36 @@ class BallSearch {
   struct Piece {
     std::array<Vec3, 3> corner;
     int cuts;
+    std::vector<Ball> near;  ///< balls that may hold something of it
   };
+
+  /// The balls, less the slack, that meet the ball round a piece.
+  static std::vector<Ball> near_piece(const std::array<Vec3, 3>& corner,
+                                      const std::vector<Ball>& balls) {
+    const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3;
+    double reach = 0;
+    for (const Vec3& p : corner) reach = std::max(reach, (p - middle).norm());
+    std::vector<Ball> out;
+    for (const Ball& b : balls)
+      if ((b.center - middle).norm() <= b.radius + reach) out.push_back(b);
+    return out;
+  }
 
   static void find_free(const std::array<Vec3, 3>& triangle, const std::vector<Ball>& balls,
                         std::size_t most, std::vector<Vec3>& out) {
-    std::vector<Ball> near;
-    const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
-    double reach = 0;
-    for (const Vec3& p : triangle) reach = std::max(reach, (p - middle).norm());
-    for (const Ball& b : balls)
-      if ((b.center - middle).norm() <= b.radius + reach)
-        near.push_back({b.center, b.radius * (1 - kBallSlack)});
+    constexpr std::size_t kFew = 8;
+    std::vector<Ball> smaller = near_piece(triangle, balls);
+    for (Ball& b : smaller) b.radius *= 1 - kBallSlack;
     const auto holds = [](const Ball& b, const Vec3& p) {
       return (p - b.center).squaredNorm() <= b.radius * b.radius;
     };
-    std::vector<Piece> open{{triangle, 0}};
+    std::vector<Piece> open{{triangle, 0, std::move(smaller)}};
     while (!open.empty() && out.size() < most) {
-      const Piece piece = open.back();
+      const Piece piece = std::move(open.back());
       open.pop_back();
       bool held = false;
       std::array<bool, 3> some{};
-      for (const Ball& b : near) {
+      for (const Ball& b : piece.near) {
         bool all = true;
         for (std::size_t k = 0; k < 3; ++k) {
           const bool one = holds(b, piece.corner[k]);
@@ -382,10 +391,11 @@ class BallSearch {
       const std::size_t next = (longest + 1) % 3;
       const Vec3 half = 0.5 * (piece.corner[longest] + piece.corner[next]);
       for (const std::size_t k : {longest, next}) {
-        Piece part = piece;
-        part.corner[k] = half;
-        ++part.cuts;
-        open.push_back(part);
+        std::array<Vec3, 3> corner = piece.corner;
+        corner[k] = half;
+        std::vector<Ball> near =
+            piece.near.size() > kFew ? near_piece(corner, piece.near) : piece.near;
+        open.push_back({corner, piece.cuts + 1, std::move(near)});
       }
     }
   }
@@ -435,12 +445,14 @@ class BallSearch {
       reduce(balls, any ? 1 : most);
     }
     allow_work(effort_.work);
-    if (balls.size() > most) return {};
-    std::vector<Ball> best = completed(std::move(balls), most);
+    const std::size_t limit = any ? options_.most : most;
+    std::vector<Ball> best;
+    if (balls.size() <= limit) best = completed(std::move(balls), limit);
     if (best.empty() && any)
-      throw Error(
-          ErrorCode::LimitReached,
-          "no spheres were found that hold all triangles within epsilon; allow a larger one");
+      throw Error(ErrorCode::LimitReached, "no " + std::to_string(limit) +
+                                               " spheres or fewer were found that hold all "
+                                               "triangles within epsilon; allow a larger one");
+    if (best.empty()) return {};
     allow_work(kReducing * effort_.work);
     if (any && !is_started) reduce_complete(best);
     if (any && options_.nearest) bring_nearer(best);

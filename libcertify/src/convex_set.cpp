@@ -77,6 +77,7 @@ bcd::BallOptions balls_of(const SetRequest& r, double diagonal, const Hooks& hoo
   out.max_bodies = r.max_bodies;
   out.effort = r.effort;
   out.nearest = r.nearest && !r.max_bodies;
+  out.most = r.most_spheres;
   return out;
 }
 

@@ -91,6 +91,22 @@ TEST(Balls, ANumberIsKept) {
   }
 }
 
+// Beyond that the search ends, and what is found within it is the same.
+TEST(Balls, MoreThanAllowedAreNotSearchedFor) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  BallOptions options = within(0.1);
+  const CoverCandidate all = balls_of(bar, options);
+  options.most = all.bodies.size() - 1;
+  try {
+    balls_of(bar, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::LimitReached);
+  }
+  options.most = 200;
+  EXPECT_EQ(balls_of(bar, options).bodies.size(), all.bodies.size());
+}
+
 TEST(Balls, BallsToBeginWithHoldWhatTheyDidNot) {
   const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
   BallOptions options = within(0.3);

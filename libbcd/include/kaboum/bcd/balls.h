@@ -3,6 +3,7 @@
 #include <kaboum/bcd/cover.h>
 #include <kaboum/geom/solid_mesh.h>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -14,12 +15,17 @@ struct Ball {
   double radius;
 };
 
+/// More balls than these are of no use to planners, and their search would take minutes.
+inline constexpr std::size_t kMostBalls = 10'000;
+
 /// Request for find_balls.
 struct BallOptions : SearchRun {
   std::optional<std::size_t> max_bodies;
   Effort effort = Effort::Normal;
   /// Within epsilon: once no fewer are found, the same number as near as it was found to allow.
   bool nearest = false;
+  /// Within epsilon, more than so many are not searched for.
+  std::size_t most = kMostBalls;
   std::vector<geom::Vec3> held;  ///< points of the solid that the balls are to hold as well
   /// Balls of an earlier search with this epsilon: they are moved, and others added, until all is
   /// held, `held` too. Not with max_bodies.
@@ -38,8 +44,8 @@ struct BallOptions : SearchRun {
 /// No claim that they cover: certify::certify_set decides that. The distances are certified.
 ///
 /// @pre epsilon or max_bodies is given
-/// @throws Error{InvalidArgument} on contradictory options; Error{LimitReached} where epsilon would
-///   take more balls than can be searched for
+/// @throws Error{InvalidArgument} on contradictory options; Error{LimitReached} where epsilon takes
+///   more balls than options.most, or none were found that hold all
 CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& options);
 
 }  // namespace kaboum::bcd

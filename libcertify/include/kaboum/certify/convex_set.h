@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/base/length.h>
+#include <kaboum/bcd/balls.h>
 #include <kaboum/bcd/cover.h>
 #include <kaboum/certify/certified.h>
 #include <kaboum/certify/subject.h>
@@ -25,6 +26,9 @@ struct SetRequest : bcd::CoverSettings {
   enum class BodyKind { Polytopes, Spheres } body_kind = BodyKind::Polytopes;
   /// Spheres within epsilon: the same number, as near as it was found to allow.
   bool nearest = false;
+  /// Spheres within epsilon: more are not searched for, with an error instead (LimitReached). What
+  /// is found does not depend on it.
+  std::size_t most_spheres = bcd::kMostBalls;
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;
