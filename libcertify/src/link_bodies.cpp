@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
+#include <map>
 
 #include "issuer.h"
 #include "link_shapes.h"
@@ -46,6 +48,10 @@ CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
           certify_file(mesh.file, request.format, asked, cache, of_mesh)};
 }
 
+bool is_of_mesh(const Error& error) {
+  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
+}
+
 namespace {
 
 /// One body round a wrap, however far it is from the mesh.
@@ -55,10 +61,6 @@ SetRequest loosest(SetRequest r) {
   r.max_bodies = 1;
   r.wrap.emplace();
   return r;
-}
-
-bool is_of_mesh(const Error& error) {
-  return error.code() == ErrorCode::InvalidInput || error.code() == ErrorCode::LimitReached;
 }
 
 /// The hooks, which set `ended` where one of them throws: that is no mesh's flaw.
@@ -237,6 +239,18 @@ double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodie
   return g.size.cwiseAbs().maxCoeff() * set.provenance.epsilon.value_or(0);
 }
 
+double mean_distance(const CertifiedBodies& bodies) {
+  const BodiesCertificate& made = bodies.certificate();
+  std::map<std::uint32_t, double> of_link;
+  for (const robot::LinkBody& body : bodies.artefact()) of_link[body.link] = 0;
+  for (std::size_t i = 0; i < made.shapes.size(); ++i)
+    if (const auto link = of_link.find(made.shapes[i].link); link != of_link.end())
+      link->second = std::max(link->second, made.distances[i]);
+  double sum = 0;
+  for (const auto& [link, distance] : of_link) sum += distance;
+  return of_link.empty() ? 0 : sum / static_cast<double>(of_link.size());
+}
+
 CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest& request,
                                const SetCache* cache, const RobotHooks& hooks) {
   if (request.set.direction != SetRequest::Direction::Outer)
@@ -261,6 +275,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   out.shapes = std::move(found.shapes);
   for (const robot::LinkShape& shape : out.shapes) {
     const robot::Link& link = robot.robot.links[shape.link];
+    out.distances.push_back(0);
     if (shape.mesh && !out.meshes[*shape.mesh].held) continue;
     const Geometry& g = request.shapes.shapes_of(link)[shape.index];
     if (request.set.body_kind == SetRequest::BodyKind::Spheres && !robot::is_point(g) &&
@@ -272,14 +287,15 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
                           shape.link,
                           {body.core.vertices[0]},
                           body.radius + error});
-      out.distance = std::max(out.distance, distance_of(robot, out, shape) + error +
-                                                set.artefact().provenance.epsilon.value_or(0));
+      out.distances.back() =
+          distance_of(robot, out, shape) + error + set.artefact().provenance.epsilon.value_or(0);
       continue;
     }
     place_shape(g, shape.mesh ? &out.meshes[*shape.mesh].made.found.set.artefact() : nullptr,
                 request.set.body_kind, link.name, shape.link, bodies);
-    out.distance = std::max(out.distance, distance_of(robot, out, shape));
+    out.distances.back() = distance_of(robot, out, shape);
   }
+  for (const double distance : out.distances) out.distance = std::max(out.distance, distance);
   if (bodies.empty() && first) std::rethrow_exception(first);
   if (bodies.empty())
     throw Error(ErrorCode::InvalidInput,

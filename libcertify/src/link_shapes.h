@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/base/error.h>
 #include <kaboum/certify/link_bodies.h>
 
 // Shapes of links and their meshes, for sets of either direction. Internal to kaboum_certify.
@@ -11,6 +12,9 @@ CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
                                     const std::optional<Length>& epsilon,
                                     const RobotRequest& request, const SetCache* cache,
                                     const RobotHooks& hooks);
+
+/// Whether an error may be a mesh's flaw, which other meshes, or another epsilon, need not have.
+bool is_of_mesh(const Error& error);
 
 /// Whether scaling and placing a mesh's float32 vertices rounds nothing.
 bool is_placed_exactly(const robot::Geometry& g);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "link_shapes.h"
+
 namespace kaboum::certify {
 namespace {
 
@@ -26,6 +28,7 @@ class Trials {
          const SetCache* cache, const RobotHooks& hooks)
       : robot_(robot), request_(std::move(request)), budget_(budget), cache_(cache) {
     hooks_.progress = hooks.progress;
+    if (has_spheres()) request_.partial = false;  // larger ones would be no answer
   }
 
   Trial at(const Length& epsilon) {
@@ -43,6 +46,28 @@ class Trials {
   [[nodiscard]] bool fits(const Trial& t) const {
     return t.reached && t.bodies <= budget_.bodies.value_or(t.bodies) &&
            t.vertices <= budget_.vertices.value_or(t.vertices);
+  }
+
+  /// Whether the bodies within epsilon are; where a mesh has no spheres, they are not.
+  bool fits_at(const Length& epsilon) {
+    try {
+      return fits(at(epsilon));
+    } catch (const Error& error) {
+      if (!has_spheres() || !is_of_mesh(error)) throw;
+      return false;
+    }
+  }
+
+  [[nodiscard]] bool has_spheres() const {
+    return request_.set.body_kind == SetRequest::BodyKind::Spheres;
+  }
+
+  /// The fewest that there are, in words.
+  [[nodiscard]] std::string fewest(const Trial& t) const {
+    if (has_spheres())
+      return ": one for each of its shapes are " + std::to_string(t.bodies) + " spheres";
+    return ": one convex body for each part of its shapes are " + std::to_string(t.bodies) +
+           " bodies with " + std::to_string(t.vertices) + " vertices";
   }
 
  private:
@@ -69,14 +94,12 @@ Length epsilon_within(const robot::RobotFile& robot, RobotRequest request,
                     ": not even one hull for each part is made with the work that is allowed");
   if (!trials.fits(hulls))
     throw Error(ErrorCode::InvalidArgument,
-                robot.path.string() + ": one convex body for each part of its shapes are " +
-                    std::to_string(hulls.bodies) + " bodies with " +
-                    std::to_string(hulls.vertices) + " vertices; the budget is less");
+                robot.path.string() + trials.fewest(hulls) + "; the budget is less");
   if (!(hulls.distance > 0)) return {kHullOnly, true};  // nothing to gain
   // Powers of two of the hulls' distance. From above, since small epsilons are dear.
   double most = 0, least = -1;
   const auto fits = [&](double power) {
-    return trials.fits(trials.at({hulls.distance * std::exp2(power), false}));
+    return trials.fits_at({hulls.distance * std::exp2(power), false});
   };
   while (least >= -kOctaves && fits(least)) most = least--;
   for (int i = 0; i < kHalvings && least >= -kOctaves; ++i) {

@@ -57,7 +57,15 @@ done
 expect 2 'link_sphere_approximation' "$B" arm.urdf -o arm.txt --bodies spheres --epsilon 0.4
 # So many for all links: no link is farther than it has to be.
 expect 0 '' "$B" arm.urdf -o twelve.yaml --bodies spheres --robot-bodies 12 --effort fast --no-cache --report twelve.json
-json twelve.json "2 < r['spheres'] <= 12 and r['reach_upper'] < 0.4"
+json twelve.json "2 < r['spheres'] <= 12 and r['mean_reach_upper'] <= r['reach_upper'] < 0.4"
+expect 0 '' "$B" arm.urdf -o mean.yaml --bodies spheres --robot-bodies 12 --share mean --effort fast --no-cache --report mean.json
+json mean.json "2 < r['spheres'] <= 12"
+shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres mean.yaml
+expect 0 '' "$B" arm.urdf -o again.yaml --bodies spheres --robot-bodies 12 --share mean --effort fast --no-cache --threads 1
+cmp mean.yaml again.yaml
+expect 2 'robot-bodies' "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --share mean
+expect 2 'bodies spheres' "$B" arm.urdf -o x --robot-bodies 12 --share mean
+expect 2 'farthest' "$B" arm.urdf -o x.yaml --bodies spheres --robot-bodies 12 --share median
 shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres twelve.yaml
 expect 2 'budget is less' "$B" arm.urdf -o x.yaml --bodies spheres --robot-bodies 2 --effort fast --no-cache
 expect 2 'no vertices' "$B" arm.urdf -o x.yaml --bodies spheres --robot-vertices 20

@@ -38,6 +38,21 @@ void add_budget(CLI::App& app, const char* name, std::size_t& value, const char*
       ->type_name("N");
 }
 
+void add_share(CLI::App& app, DecomposeOptions& o) {
+  app.add_option_function<std::string>(
+         "--share",
+         [&o](const std::string& value) {
+           o.share = value == "mean" ? certify::SphereShare::Mean : certify::SphereShare::Farthest;
+         },
+         "What --robot-bodies makes least over the links with --bodies spheres: the farthest point "
+         "of any link, and with spheres that are left the mean; or the mean of the links' farthest "
+         "points")
+      ->check(CLI::IsMember({"farthest", "mean"}).description(""))
+      ->default_str("farthest")
+      ->needs("--robot-bodies")
+      ->type_name("farthest|mean");
+}
+
 void add_output(CLI::App& app, DecomposeOptions& o) {
   app.add_option(
          "--preview", o.preview,
@@ -66,6 +81,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_robot_options(app, o.robot, true);
   add_budget(app, "--robot-bodies", o.robot_bodies, "bodies");
   add_budget(app, "--robot-vertices", o.robot_vertices, "vertices");
+  add_share(app, o);
   app.add_flag(
       "--srdf", o.srdf,
       "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
@@ -111,6 +127,9 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     require_absent(app, budget,
                    {"--epsilon", "--epsilons", "--max-bodies", "--max-total-vertices"});
   }
+  if (app.count("--share") != 0 &&
+      o.set.request.body_kind != certify::SetRequest::BodyKind::Spheres)
+    throw Error(ErrorCode::InvalidArgument, "--share is for --bodies spheres");
   if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,

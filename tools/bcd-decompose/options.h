@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/certify/set_options.h>
+#include <kaboum/certify/sphere_shares.h>
 #include <kaboum/picture/bodies.h>
 
 #include <set>
@@ -22,6 +23,7 @@ struct DecomposeOptions {
   std::string input, output, input_format, output_format, preview, depfile;
   double explode = picture::kExplode;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
+  certify::SphereShare share = certify::SphereShare::Farthest;
   bool no_cache = false, srdf = false;
   RobotOptions robot;
   CommonOptions common;

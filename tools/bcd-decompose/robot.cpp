@@ -74,14 +74,19 @@ struct Run {
   }
 };
 
-/// The epsilon that a budget for the whole robot allows.
+/// What a budget for the whole robot allows: one epsilon, or of spheres one for each link.
 void share_out(Run& run, const certify::SetCache* cache) {
   const auto given = [](std::size_t n) { return n > 0 ? std::optional(n) : std::nullopt; };
   Progress progress(run.o.common.quiet);
-  const auto show = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
-  run.request.set.epsilon = epsilon_within(run.robot, run.request,
-                                           {given(run.o.robot_bodies), given(run.o.robot_vertices)},
-                                           cache, {.progress = show, .note = {}, .made = {}});
+  certify::RobotHooks hooks;
+  hooks.progress = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
+  if (run.request.set.body_kind == certify::SetRequest::BodyKind::Spheres)
+    run.request.epsilons =
+        share_spheres(run.robot, run.request, run.o.robot_bodies, run.o.share, cache, hooks);
+  else
+    run.request.set.epsilon =
+        epsilon_within(run.robot, run.request,
+                       {given(run.o.robot_bodies), given(run.o.robot_vertices)}, cache, hooks);
 }
 
 void certify_links(Run& run) {
@@ -206,8 +211,8 @@ int decompose_into_spheres(const DecomposeOptions& o) {
   const certify::SetCache kept(certify::SetCache::default_folder());
   const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
   if (o.robot_bodies > 0) {
-    share_out(run, cache);
     run.request.set.nearest = true;
+    share_out(run, cache);
   }
   Progress progress(o.common.quiet);
   certify::RobotHooks hooks =
@@ -232,13 +237,15 @@ int decompose_into_spheres(const DecomposeOptions& o) {
                  sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
   log(o.common.quiet, o.output + ": " + counted(bodies.artefact().size(), "sphere", "spheres") +
                           ", no point farther from its link's shapes than " +
-                          number_up(bodies.certificate().distance) + "; bound-verify robot " +
-                          o.input + " --spheres " + o.output + " decides it");
+                          number_up(bodies.certificate().distance) + ", on the mean of links " +
+                          number_up(mean_distance(bodies)) + "; bound-verify robot " + o.input +
+                          " --spheres " + o.output + " decides it");
   for (const std::string& note : run.notes.lines()) log(o.common.quiet, "note: " + note);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
                  {{"spheres", bodies.artefact().size()},
                   {"reach_upper", bodies.certificate().distance},
+                  {"mean_reach_upper", mean_distance(bodies)},
                   {"meshes", std::move(meshes)},
                   {"stop", reached ? "done" : "epsilon not reached"},
                   {"input", {{"file", o.input}, {"sha256", run.robot.sha256}}},

@@ -61,7 +61,8 @@ struct BodiesCertificate {
   robot::ShapeChoice choice;  ///< the shapes that they stand for
   std::vector<CertifiedLinkMesh> meshes;
   std::vector<robot::LinkShape> shapes;  ///< `mesh` is an index in `meshes`
-  double distance = 0;  ///< bound of how far a body reaches beyond its shape [length]
+  double distance = 0;            ///< bound of how far a body reaches beyond its shape [length]
+  std::vector<double> distances;  ///< the same of each shape; 0 of those that are not held
   std::vector<std::filesystem::path>
       files;  ///< meshes and what they refer to; some are there twice
 };
@@ -76,6 +77,9 @@ using CertifiedBodies = Certified<std::vector<robot::LinkBody>, BodiesCertificat
 /// @throws Error naming the link or the file; when no link has a shape; TooCoarse.
 CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest& request,
                                const SetCache* cache = nullptr, const RobotHooks& hooks = {});
+
+/// The mean over the links that have bodies of how far those of each reach at most. [length]
+double mean_distance(const CertifiedBodies& bodies);
 
 /// Bound of how far the bodies of one shape reach beyond it. [length]
 double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodies,
