@@ -23,8 +23,8 @@ struct SphereFile {
 
 /// Reads spheres of cuRobo's YAML (`collision_spheres`, alone or under `robot_cfg: kinematics:`,
 /// with its `collision_sphere_buffer` added to the radii); of XRDF 1.0 and 2.0 (`geometry`, the one
-/// that `collision` names, with its `buffer_distance`); of an SRDF's <link_sphere_approximation>; or
-/// those of a URDF's <collision> elements, as foam and VAMP write them.
+/// that `collision` names, with its `buffer_distance`); of an SRDF's <link_sphere_approximation>;
+/// or those of a URDF's <collision> elements, as foam and VAMP write them.
 /// @throws Error{InvalidInput} naming file and line: what is not well-formed, radii that are not
 ///   above 0, numbers that are not finite, shapes that are no spheres; Error{NotBuilt} without
 ///   yaml-cpp

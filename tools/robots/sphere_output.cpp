@@ -17,7 +17,7 @@
 namespace kaboum::tools {
 namespace {
 
-constexpr int kDigits = 9;  ///< that float32 numbers need
+constexpr int kDigits = 17;  ///< so that readers of float32 and of float64 read the same number
 
 struct LinkSphere {
   std::uint32_t link;
