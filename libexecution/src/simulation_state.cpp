@@ -18,6 +18,8 @@ namespace {
 
 /// Ten times what words of poses are rounded to. [length, 1]
 constexpr double kSame = 1e-6;
+/// How far a plane may be from upright that is pushed: objects count as level up to this. [1]
+constexpr double kUpright = 1e-4;
 /// How far what is pushed may be off its line [length], and leaning or turned [rad].
 constexpr double kOffLine = 1e-3, kOffTurn = 5e-3;
 
@@ -209,7 +211,7 @@ std::optional<geom::Vec3> pushed_way(const world::World& world, std::size_t robo
       const geom::Vec3 way = link_pose.linear * front.feature.direction,
                        apart = object_pose * side.point - link_pose * front.feature.point;
       const double ahead = apart.dot(way);
-      if ((way + object_pose.linear * side.direction).norm() <= kSame &&
+      if ((way + object_pose.linear * side.direction).norm() <= kUpright + kSame &&
           std::abs(way.z()) <= kSame && ahead >= 0 && ahead <= gap &&
           (apart - ahead * way).norm() <= kSame)
         return way;

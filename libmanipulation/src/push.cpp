@@ -66,12 +66,13 @@ std::vector<Sequence::PushSide> Sequence::push_sides(std::size_t robot, std::siz
   std::vector<PushSide> out;
   const bool has_front = std::ranges::any_of(
       model.features, [](const world::LinkFeature& f) { return is_for_pushing(f.feature); });
-  bool listed = false, possible = false, reached = false;
+  bool listed = false, upright = false, possible = false, reached = false;
   for (const world::Feature& side : thing.features) {
     if (!is_for_pushing(side)) continue;
     listed = true;
     const auto direction = push_direction(at, side, pushed.center());
     if (!direction) continue;
+    upright = true;
     PushSide& found = out.emplace_back();
     found.farthest = pushed.farthest(*direction);
     if (found.farthest < kShortest) continue;
@@ -98,8 +99,10 @@ std::vector<Sequence::PushSide> Sequence::push_sides(std::size_t robot, std::siz
     fail(Answer::Kind::Impossible,
          !has_front ? "the scene lists no planes 'push…' of " + model.name
          : !listed  ? "the scene lists no planes 'push…' of " + thing.name
-                    : thing.name + " cannot be pushed 2 cm from any of its planes 'push…' and " +
-                         "stay where it stands");
+         : !upright
+             ? "no plane 'push…' of " + thing.name + " is upright with its centre ahead of it"
+             : thing.name + " cannot be pushed 2 cm from any of its planes 'push…' and " +
+                   "stay where it stands");
     listed_ = true;
     return {};
   }

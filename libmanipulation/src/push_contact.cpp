@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "standing.h"
 
@@ -19,12 +20,12 @@ using world::Transform;
 
 /// The centre of mass is at least so far inside the edges of what it is above. [m]
 constexpr double kBalance = 0.01;
-/// Contact reaches at least so far to both sides of the line of the push. [m]
+/// Contact reaches at least so far, and both ε, to both sides of the line of the push. [m]
 constexpr double kHalfContact = 3e-3;
 /// How far beyond its gap an object may be above what it stands on. [m]
 constexpr double kAbove = 1e-3;
 /// How far from upright a plane may be that is pushed. [1]
-constexpr double kUpright = 1e-6;
+constexpr double kUpright = 1e-4;
 /// So much nearer than allowed, that the rounding of words leaves what was pushed where it may be
 /// pushed again. [m]
 constexpr double kRounded = 1e-5;
@@ -107,25 +108,27 @@ PushedObject::PushedObject(const world::Object& object, const Transform& at,
   const world::Feature* mass = find_point(object, "mass");
   balanced_ = mass != nullptr;
   center_ = at * (balanced_ ? mass->point : bottom);
-  const double epsilon = object.outer.epsilon() + support.outer.epsilon();
+  const double own = object.outer.epsilon(), epsilon = own + support.outer.epsilon();
   const std::string stand = object.name + " does not stand ";
   if (!is_level(below.linear)) {
     refusal_ = support.name + " is not level";
     return;
   }
+  double radius = 0;
   for (const Vec3& v : base_of(object, at.linear, bottom, epsilon + kFlat)) {
-    if (v.z() < -(epsilon + kFlat)) refusal_ = stand + "on its point 'bottom'";
+    if (v.z() < -(own + kFlat)) refusal_ = stand + "on its point 'bottom'";
     base_.push_back(at * bottom + v);
+    radius = std::max(radius, (base_.back() - center_).norm());
   }
   if (!refusal_.empty()) return;
-  if (!bridges_slots(base_, support)) {
+  const Outline foot = foot_of(object, at.linear, bottom);
+  if (!bridges_slots(foot, object, support)) {
     refusal_ = object.name + " has a base too narrow to be pushed on " + support.name;
     return;
   }
-  double radius = 0;
-  for (const Vec3& v : base_) radius = std::max(radius, (v - center_).norm());
-  slack_ = kOffLine + 2 * kOffTurn * radius;
-  if (balanced_ && !Outline(base_).holds(center_, kBalance)) {
+  const double turning = 2 * kOffTurn * radius;
+  slack_ = std::numbers::sqrt2 * kOffLine + turning;
+  if (balanced_ && !foot.holds(center_ - at * bottom, kBalance + own + turning)) {
     refusal_ = object.name + " has its point 'mass' too near the edge of its base";
     return;
   }
@@ -184,16 +187,18 @@ std::optional<PushContact> push_contact(const world::RobotModel& robot,
                          axes_of(direction, -Vec3::UnitZ()) *
                          axes_of(own, look_of(robot, front.link, own)).transpose();
   const Vec3 touched = at * side.point;
-  Reach reach;
+  bool wide = false;
   for (const world::LinkShape& shape : robot.shapes) {
     if (shape.link != front.link) continue;
-    const double gap = clearance + object.outer.epsilon() + shape.outer.epsilon();
+    const double epsilon = object.outer.epsilon() + shape.outer.epsilon(),
+                 gap = clearance + epsilon, least = kHalfContact + epsilon;
     const Vec3 before = touched - gap * direction;
     out.link_pose.translation = before - out.link_pose.linear * front.feature.point;
-    reach =
+    const Reach reach =
         reach_of(shape.outer, out.link_pose, before, object.outer, at, touched, -direction, center);
+    wide = reach.least <= -least && reach.most >= least;
   }
-  if (reach.least > -kHalfContact || reach.most < kHalfContact) return std::nullopt;
+  if (!wide) return std::nullopt;
   return out;
 }
 

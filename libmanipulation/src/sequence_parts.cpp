@@ -153,7 +153,7 @@ std::vector<Sequence::Footing> Sequence::footings(std::size_t object, std::size_
   const double close = thing.outer.epsilon() + below.outer.epsilon() + kFlat;
   // Its base as it stands, about the point 'bottom'.
   const std::vector<geom::Vec3> base = base_of(thing, thing.pose.linear, bottom, close);
-  if (!bridges_slots(base, below)) return out;
+  if (!bridges_slots(foot_of(thing, thing.pose.linear, bottom), thing, below)) return out;
   for (std::size_t i = 0; i < below.outer.size(); ++i) {
     const UpperFace face(below.outer.body(i), below.outer.epsilon());
     const bool meant = std::ranges::any_of(tops, [&](const geom::Vec3& point) {

@@ -4,6 +4,8 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace kaboum::manipulation {
@@ -12,6 +14,8 @@ namespace {
 /// A base is at least so many epsilons of its support wide: slots up to 2 wide may be closed in
 /// sets.
 constexpr double kBridges = 4;
+/// Seen from above, so near points count as one. [m]
+constexpr double kOnePoint = 1e-9;
 /// How far from level a support may lie. [1 - cosine]
 constexpr double kLevel = 1e-9;
 
@@ -32,6 +36,31 @@ std::vector<geom::Vec3> highest(const geom::ConvexBody& body) {
   std::ranges::copy_if(body.core.vertices, std::back_inserter(out),
                        [&](const geom::Vec3& v) { return v.z() >= height - kFlat; });
   return out;
+}
+
+/// Corners of what of a body is no higher than `close` above a point, turned as the body stands.
+/// Of a rounded body: of its core, lowered by the radius.
+std::vector<geom::Vec3> low_corners(const geom::ConvexBody& body, const Eigen::Matrix3d& stands,
+                                    const geom::Vec3& point, double close) {
+  std::vector<geom::Vec3> all, low;
+  all.reserve(body.core.vertices.size());
+  for (const geom::Vec3& v : body.core.vertices)
+    all.emplace_back(stands * (v - point) - body.radius * geom::Vec3::UnitZ());
+  std::ranges::copy_if(all, std::back_inserter(low),
+                       [&](const geom::Vec3& v) { return v.z() <= close; });
+  const auto cut = [&](const geom::Vec3& a, const geom::Vec3& b) {
+    if (a.z() > b.z() || a.z() > close || b.z() <= close) return;
+    const geom::Vec3 p = a + (close - a.z()) / (b.z() - a.z()) * (b - a);
+    if ((p - a).head<2>().norm() > kOnePoint) low.push_back(p);
+  };
+  if (all.size() == 2) {
+    cut(all[0], all[1]);
+    cut(all[1], all[0]);
+  }
+  // Each edge is in two triangles, once in each direction: it is cut on its way up.
+  for (const auto& t : body.core.triangles)
+    for (std::size_t k = 0; k < 3; ++k) cut(all[t[k]], all[t[(k + 1) % 3]]);
+  return low;
 }
 
 }  // namespace
@@ -60,6 +89,22 @@ bool Outline::holds(const geom::Vec3& p, double inside) const {
     if (turn(a, b, p) < inside * (b - a).head<2>().norm()) return false;
   }
   return true;
+}
+
+/// It is least across one of the sides.
+double Outline::width() const {
+  if (corners_.size() < 3) return 0;
+  double out = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const geom::Vec3 &a = corners_[i], &b = corners_[(i + 1) % corners_.size()];
+    double low = 0, high = 0;
+    for (const geom::Vec3& p : corners_) {
+      low = std::min(low, turn(a, b, p));
+      high = std::max(high, turn(a, b, p));
+    }
+    out = std::min(out, (high - low) / (b - a).head<2>().norm());
+  }
+  return out;
 }
 
 /// Cut by one side of the other after the other (Sutherland and Hodgman).
@@ -102,24 +147,37 @@ bool is_level(const Eigen::Matrix3d& turned) { return turned(2, 2) >= 1 - kLevel
 std::vector<geom::Vec3> base_of(const world::Object& object, const Eigen::Matrix3d& stands,
                                 const geom::Vec3& point, double close) {
   std::vector<geom::Vec3> base;
-  for (std::size_t i = 0; i < object.outer.size(); ++i)
-    for (const geom::Vec3& v : object.outer.body(i).core.vertices) {
-      const geom::Vec3 at = stands * (v - point);
-      if (at.z() <= close + object.outer.body(i).radius) base.push_back(at);
-    }
+  for (std::size_t i = 0; i < object.outer.size(); ++i) {
+    const geom::ConvexBody& body = object.outer.body(i);
+    const std::vector<geom::Vec3> corners = low_corners(body, stands, point, close);
+    base.insert(base.end(), corners.begin(), corners.end());
+    if (body.radius == 0) continue;
+    // At `close` balls round points of the core are no wider than that round its lowest one:
+    // squares hold them.
+    double above = 0;
+    for (const geom::Vec3& v : corners) above = std::max(above, close - v.z());
+    above = std::min(above, body.radius);
+    const double reach = std::sqrt(above * (2 * body.radius - above));
+    for (const geom::Vec3& v : corners)
+      for (const double x : {-reach, reach})
+        for (const double y : {-reach, reach}) base.emplace_back(v + geom::Vec3(x, y, 0));
+  }
   return base;
 }
 
+Outline foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
+                const geom::Vec3& point) {
+  std::vector<geom::Vec3> foot;
+  for (std::size_t i = 0; i < object.outer.size(); ++i)
+    std::ranges::copy(low_corners(object.outer.body(i), stands, point, kFlat),
+                      std::back_inserter(foot));
+  return Outline(std::move(foot));
+}
+
 /// Bodies reach beyond the support by epsilon, and close slots twice as wide: a base has to bridge
-/// these.
-bool bridges_slots(const std::vector<geom::Vec3>& base, const world::Object& support) {
-  if (base.empty()) return false;
-  geom::Vec3 low = base.front(), high = base.front();
-  for (const geom::Vec3& v : base) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  return (high - low).head<2>().minCoeff() > kBridges * support.outer.epsilon();
+/// these. The solid's own is narrower than its set's by up to its epsilon on both sides.
+bool bridges_slots(const Outline& foot, const world::Object& object, const world::Object& support) {
+  return foot.width() - 2 * object.outer.epsilon() > kBridges * support.outer.epsilon();
 }
 
 const world::Feature& feature_named(const world::Object& object, const std::string& name,

@@ -20,6 +20,9 @@ class Outline {
   [[nodiscard]] bool holds(const geom::Vec3& p, double inside) const;
   /// What of it lies inside the other one as well; empty: nothing that has an area.
   [[nodiscard]] Outline common_with(const Outline& other) const;
+  /// The distance of two parallel lines with all of it between them, where that is least. 0: it has
+  /// no area. [length]
+  [[nodiscard]] double width() const;
   /// Counterclockwise; fewer than three: no area.
   [[nodiscard]] const std::vector<geom::Vec3>& corners() const { return corners_; }
 
@@ -51,12 +54,17 @@ class UpperFace {
 /// True of an object whose z axis is the world's.
 bool is_level(const Eigen::Matrix3d& turned);
 
-/// Vertices of an object's outer set that are no higher than a point of it, but for `close`: about
-/// that point, turned as the object stands.
+/// What of an object's outer set is no higher than a point of it, but for `close`: no less than all
+/// of it is in the convex hull of these. About that point, turned as the object stands.
 std::vector<geom::Vec3> base_of(const world::Object& object, const Eigen::Matrix3d& stands,
                                 const geom::Vec3& point, double close);
-/// True of a base wide enough to stand on an outer set, which may close slots of the solid.
-bool bridges_slots(const std::vector<geom::Vec3>& base, const world::Object& support);
+/// What of an object's outer set is no higher than a point of it, but for `kFlat`, and no more than
+/// that: the outline made smaller by the set's ε is inside that of the solid's points no higher
+/// than ε + `kFlat`. About that point, turned as the object stands.
+Outline foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
+                const geom::Vec3& point);
+/// True of a foot wide enough to stand on an outer set, which may close slots of the solid.
+bool bridges_slots(const Outline& foot, const world::Object& object, const world::Object& support);
 
 /// @param needs  what needs it: "putting it down"
 /// @throws Error{InvalidInput} when the object has no such feature.

@@ -267,6 +267,43 @@ TEST_F(Actions, OtherChoicesPutThingsElsewhere) {
   EXPECT_EQ(places.size(), 4U);
 }
 
+/// A base that may not bridge the support's slots stands on the points alone, however it is turned.
+TEST_F(Actions, NarrowThingsStandOnThePointsAlone) {
+  const Words words = holding(0, 0, kDown);
+  const std::vector<std::string> arguments = {"left", "block", "socket", "home"};
+  const geom::Mesh face = box_at({0.1, 0.1, 0.04}, Vec3::Zero());
+  world::Object &block = arms_.world.objects[TwoArms::kBlock],
+                &socket = arms_.world.objects[TwoArms::kSocket];
+  const auto stands_beside = [&](double epsilon) {
+    socket.outer = {{{"", face}}, collide::Direction::Outer, epsilon};
+    const plan::ExternalBindings externals = manipulation::bind_externals(arms_.world, {});
+    int beside = 0;
+    for (unsigned choice = 0; choice <= 3; ++choice) {
+      WordState state(words);
+      const Answer answer = externals.at("put")({arguments, state, 1000U + choice, 0, choice});
+      EXPECT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+      if (answer.kind != Answer::Kind::Value) continue;
+      const Vec3 at =
+          manipulation::place_of(answer.value, arms_.world, TwoArms::kBlock).pose.translation;
+      beside += (at - Vec3(0.55, 0.05, at.z())).norm() > 1e-6 ? 1 : 0;
+    }
+    return beside > 0;
+  };
+  // The block is 50 mm wide, less twice its own ε: more than four times the first ε.
+  for (const double turn : {0.0, 0.25 * M_PI}) {
+    block.pose.linear = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+    EXPECT_TRUE(stands_beside(0.0122)) << turn;
+    EXPECT_FALSE(stands_beside(0.0126)) << turn;
+  }
+  // Now on a foot of 40 mm, as high as 5 mm.
+  block.outer = {{{"", box_at({0.05, 0.05, 0.155}, {0, 0, 0.0025})},
+                  {"", box_at({0.04, 0.04, 0.16}, Vec3::Zero())}},
+                 collide::Direction::Outer,
+                 TwoArms::kEpsilon};
+  EXPECT_TRUE(stands_beside(0.0098));
+  EXPECT_FALSE(stands_beside(0.0102));
+}
+
 /// What fails among the things that a call names fails whatever else there is: nothing else is
 /// read. What succeeds among them has looked at everything.
 TEST_F(Actions, WhatFailsAmongWhatItNamesReadsNothingElse) {
