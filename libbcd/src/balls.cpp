@@ -407,7 +407,7 @@ class BallSearch {
     for (int round = 0; round < kPatchRounds; ++round) {
       show("filling gaps", static_cast<double>(round) / kPatchRounds);
       if (3 * round >= kPatchRounds) allow_work(0);  // moving fills one gap and opens another
-      const std::vector<Ball> out = written(balls);
+      std::vector<Ball> out = written(balls);
       const std::size_t known = points_.size();
       if (add_free_points(out)) return out;
       if (may_move() && relaxation_.hold(balls, effort_.sweeps)) continue;

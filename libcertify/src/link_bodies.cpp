@@ -1,6 +1,7 @@
 // The shapes of a robot's links as certified convex bodies in the links' frames.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/certify/link_bodies.h>
 #include <kaboum/certify/set_options.h>
 #include <kaboum/geom/convex_hull.h>
@@ -153,14 +154,27 @@ double placing_error(const Geometry& g, double size) {
 namespace {
 
 /// Spheres for a box or a cylinder, in the frame of its link. Its polytope's corners are placed
-/// within placing_error.
+/// within placing_error. What the polytope is farther than the shape is taken off epsilon.
 CertifiedSet spheres_of(const Geometry& g, const robot::RobotFile& robot, const std::string& link,
                         const RobotRequest& request) {
   SetRequest asked = request.set;
   if (const auto own = request.epsilons.find(link); own != request.epsilons.end())
     asked.epsilon = own->second;
-  std::optional<CertifiedSet> set =
-      certify_set(*geom::convex_hull(robot::bounding_points(g)), robot.sha256, asked);
+  const std::vector<geom::Vec3> points = robot::bounding_points(g);
+  if (asked.epsilon) {
+    geom::Vec3 low = points.front(), high = low;
+    for (const geom::Vec3& p : points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const double beyond = robot::bounding_excess(g) + placing_error(g, 2 * g.size.norm());
+    asked.epsilon = Length{asked.epsilon->of((high - low).norm()) - beyond, false};
+    if (!(asked.epsilon->value > 0))
+      throw TooCoarse(robot.path.string() + ": link '" + link + "': its " + robot::describe(g) +
+                      " is covered by way of a polytope that is up to " + number_text(beyond) +
+                      " farther: allow an epsilon above that");
+  }
+  std::optional<CertifiedSet> set = certify_set(*geom::convex_hull(points), robot.sha256, asked);
   if (!set)
     throw TooCoarse(robot.path.string() + ": link '" + link +
                     "': float32 cannot hold spheres as near to its " + robot::describe(g));

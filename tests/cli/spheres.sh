@@ -181,3 +181,13 @@ srdf 9 | head -5 >bad.srdf
 expect 3 'bad.srdf' "$V" robot arm.urdf --spheres bad.srdf
 echo '<robot name="arm"/>' >bad.srdf
 expect 3 'as SRDF has them' "$V" robot arm.urdf --spheres bad.srdf
+
+# A cylinder is held by way of a polytope round it: what that adds is taken off epsilon. What is plainly missed is refuted.
+echo '<robot name="can"><link name="can"><collision><geometry><cylinder radius="0.09" length="0.2"/></geometry></collision></link></robot>' >can.urdf
+expect 0 '' "$B" can.urdf -o can.yaml --bodies spheres --epsilon 0.04 --effort fast --no-cache --report can.json
+json can.json "r['reach_upper'] <= 0.04"
+shows 0 '^verified' "$V" robot can.urdf --spheres can.yaml
+sed 's/"radius": [0-9.]*/"radius": 0.001/' can.yaml >tiny.yaml
+cmp -s can.yaml tiny.yaml && fail "no radius was made smaller"
+shows 1 "refuted: its point (.*), of a shape without triangles, is in none of its [0-9]* spheres" "$V" robot can.urdf --spheres tiny.yaml
+expect 3 'up to 0.00045.* farther: allow an epsilon above that' "$B" can.urdf -o fine.yaml --bodies spheres --epsilon 0.0004 --no-cache

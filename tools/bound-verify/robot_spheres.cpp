@@ -13,6 +13,8 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "common/verdict.h"
@@ -29,7 +31,8 @@ struct LinkJudged {
   Answer answer = Answer::Undefined;
   verify::Inclusion inclusion;
   verify::OutsideBalls outside;
-  std::string open;  ///< why it is not known that shapes without triangles are held
+  std::string open;                  ///< why it is not known that shapes without triangles are held
+  std::optional<geom::Vec3> missed;  ///< a point of such a shape that no sphere holds
 };
 
 /// @throws Error{InvalidInput} naming the first link that the robot does not have.
@@ -72,6 +75,32 @@ std::string open_shape(const std::vector<robot::Geometry>& shapes, const geom::C
   return {};
 }
 
+/// A point of a cylinder or a sphere that is in no ball for certain, of some that are spread over
+/// it.
+std::optional<geom::Vec3> missed_point(const robot::Geometry& g, const geom::ConvexSet& balls) {
+  constexpr int kRound = 64, kAlong = 16, kAcross = 4;
+  constexpr double kInwards = 1 - 1e-9;  // rounding leaves the points in the shape
+  const bool cylinder = g.shape == robot::Geometry::Shape::Cylinder;
+  const auto is_missed = [&](const geom::Vec3& p) {
+    return std::ranges::none_of(balls.bodies, [&](const geom::ConvexBody& ball) {
+      const geom::Vec3& c = ball.core.vertices[0];
+      return (p - c).norm() <= ball.radius + 1e-9 * (p.norm() + c.norm() + ball.radius);
+    });
+  };
+  for (int i = 0; i <= kAlong; ++i)
+    for (int k = 0; k < kRound; ++k)
+      for (int n = 1; n <= (cylinder ? kAcross : 1); ++n) {
+        const double share = 2.0 * i / kAlong - 1, angle = 2 * std::numbers::pi * k / kRound;
+        const double across = cylinder ? g.size.x() * n / kAcross
+                                       : g.size.x() * std::sqrt(std::max(0.0, 1 - share * share));
+        const double along = share * (cylinder ? g.size.y() / 2 : g.size.x());
+        const geom::Vec3 p = g.origin * (kInwards * geom::Vec3(across * std::cos(angle),
+                                                               across * std::sin(angle), along));
+        if (is_missed(p)) return p;
+      }
+  return std::nullopt;
+}
+
 LinkJudged judge(const std::string& name, const geom::Mesh& mesh,
                  const std::vector<robot::Geometry>& round, const geom::ConvexSet* balls) {
   LinkJudged out;
@@ -88,6 +117,10 @@ LinkJudged judge(const std::string& name, const geom::Mesh& mesh,
   out.answer = Answer::Verified;
   out.open = open_shape(round, *balls);
   if (!out.open.empty()) out.answer = Answer::Undecided;
+  for (const robot::Geometry& g : round)
+    if (!out.open.empty() && !out.missed && !robot::is_point(g))
+      out.missed = missed_point(g, *balls);
+  if (out.missed) out.answer = Answer::Refuted;
   if (mesh.triangles.empty()) return out;
   out.inclusion = verify::verify_ball_cover(mesh, *balls);
   out.answer = verify::worse(out.answer, out.inclusion.surface.answer);
@@ -117,6 +150,10 @@ std::string sentence_of(const LinkJudged& link) {
     return std::to_string(link.spheres) + " spheres hold every triangle" +
            (in.solid.answer == Answer::Verified ? " and the solid" : "; its mesh is open");
   if (link.answer == Answer::Undecided && !link.open.empty()) return link.open;
+  if (link.missed && in.surface.answer != Answer::Refuted)
+    return "its point (" + number(link.missed->x()) + ", " + number(link.missed->y()) + ", " +
+           number(link.missed->z()) + "), of a shape without triangles, is in none of its " +
+           std::to_string(link.spheres) + " spheres";
   if (in.surface.answer == Answer::Undecided || in.solid.answer == Answer::Undecided)
     if (in.surface.answer != Answer::Refuted)
       return (in.surface.answer == Answer::Undecided ? in.surface.reason : in.solid.reason) +
