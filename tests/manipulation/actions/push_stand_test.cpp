@@ -111,6 +111,7 @@ TEST(PushStand, WhatReachesBelowItsBottomDoesNotStandOnIt) {
 /// A convex polytope, by drawn points.
 geom::ConvexBody drawn_body(Random& random) {
   std::vector<Vec3> points;
+  points.reserve(12);
   for (int i = 0; i < 12; ++i)
     points.emplace_back(random.between(-1, 1), random.between(-1, 1), random.between(0, 1));
   return {"", *geom::convex_hull(points)};
@@ -181,6 +182,7 @@ TEST(PushStand, TheWidthOfAnOutlineIsLeastOverAllDirections) {
   Random random(7);
   for (int round = 0; round < 50; ++round) {
     std::vector<Vec3> points;
+    points.reserve(8);
     const double angle = random.between(0, 3), narrow = random.between(0.01, 1);
     for (int i = 0; i < 8; ++i)
       points.push_back(Eigen::AngleAxisd(angle, Vec3::UnitZ()) *
