@@ -671,7 +671,7 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
   const std::vector<Vec3> tops = tops_of(faces, level, surfaces, epsilon);
   for (std::size_t i = 0; i < std::min(request.most, tops.size()); ++i)
     out.push_back({numbered("top", i), world::Feature::Kind::Point, tops[i], Vec3::Zero()});
-  if (request.inset > 0) surfaces = upper_surfaces(faces, level, epsilon + request.inset);
+  if (request.inset) surfaces = upper_surfaces(faces, level, epsilon + *request.inset);
   std::size_t next = 0;
   for (std::size_t i = 0; i < std::min(request.most, surfaces.size()); ++i) {
     // A name that is there in two kinds is of none.
@@ -878,9 +878,9 @@ const std::vector<Option<PlaceRequest>>& place_options() {
           {.name = "inset",
            .text = "How much smaller than faces surfaces are taken all round, beyond the set's "
                    "epsilon: the radius of what is to stand there with all of its base",
-           .low = 0,
            .high = 1e9,
-           .absolute = true},
+           .absolute = true,
+           .otherwise = "none"},
           [](auto& r) -> auto& { return r.inset; }),
       option<R>(
           {.name = "force",

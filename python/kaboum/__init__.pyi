@@ -1012,7 +1012,7 @@ def add_places(
     *,
     # options of add_places
     most: int = 8,
-    inset: float = 0.0,
+    inset: float | None = None,
     force: bool = False,
     # end of options
 ) -> dict[str, Any]: ...

@@ -86,7 +86,8 @@ geom::Transform pose_at_first(const world::World& world, std::size_t object);
 /// Request for places where objects stand.
 struct PlaceRequest {
   std::size_t most = 8;  ///< points on top of an object, and surfaces
-  double inset = 0;      ///< by which surfaces are smaller all round, beyond the set's ε [length]
+  /// By which surfaces are smaller all round, beyond the set's ε; > 0 [length]
+  std::optional<double> inset = {};
   bool replace = false;  ///< points and surfaces of these names that the scene has already
 };
 
