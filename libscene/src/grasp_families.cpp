@@ -14,7 +14,6 @@
 namespace kaboum::scene {
 namespace {
 
-using geom::Transform;
 using geom::Vec3;
 
 constexpr double kRound = 2 * std::numbers::pi;

@@ -226,6 +226,7 @@ class Rotations {
       for (std::size_t k = 0; k < i; ++k)
         if (!may_hold(angles_[i], angles_[k])) return true;
     std::vector<Cell> cells;
+    cells.reserve(4);
     for (int side = 0; side < 4; ++side) cells.push_back({Eigen::Vector4d::Unit(side), 1, side});
     const std::size_t work = angles_.size() + pairs_.size();
     for (std::size_t looked = 0; !cells.empty(); looked += work) {
