@@ -27,8 +27,8 @@ Explanation explain(const plan::Model& model, Failures failures, const plan::Sol
     std::set<std::string> calls;
     for (const auto& f : failures) calls.insert(f.call);
     out.goal = plan::explain_goal(model, calls, options);
-    std::ranges::stable_partition(failures,
-                                  [&](const auto& f) { return out.goal.needed.contains(f.call); });
+    std::stable_partition(failures.begin(), failures.end(),
+                          [&](const auto& f) { return out.goal.needed.contains(f.call); });
   }
   out.failures = std::move(failures);
   return out;
