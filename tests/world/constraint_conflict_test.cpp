@@ -111,7 +111,7 @@ ToleratedConstraint met_at(const Transform& pose, Draws& draws, std::size_t kind
 TEST(Contradictions, AreNeverFoundWhereAPoseMeetsAll) {
   Draws draws(1);
   std::size_t several = 0;
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < 600; ++round) {
     const Transform pose = draws.pose();
     std::vector<ToleratedConstraint> all;
     for (std::size_t n = 2 + draws.index(4); n > 0; --n) {
@@ -121,16 +121,16 @@ TEST(Contradictions, AreNeverFoundWhereAPoseMeetsAll) {
     several += all.size() > 3 ? 1 : 0;
     EXPECT_FALSE(find_contradiction(all)) << "round " << round;
   }
-  EXPECT_GT(several, 500U);
+  EXPECT_GT(several, 100U);
   // Of points alone, which are to be away from each other as well as near.
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < 300; ++round) {
     const Transform pose = draws.pose();
     std::vector<ToleratedConstraint> all;
     for (std::size_t n = 2 + draws.index(2); n > 0; --n) all.push_back(met_at(pose, draws, 1));
     EXPECT_FALSE(find_contradiction(all)) << "round " << round << " of points";
   }
   // The rotation is given by two angles: what is said of the place is all that may contradict.
-  for (int round = 0; round < 4000; ++round) {
+  for (int round = 0; round < 600; ++round) {
     const Transform pose = draws.pose();
     std::vector<ToleratedConstraint> all;
     while (all.size() < 2) {
@@ -141,7 +141,7 @@ TEST(Contradictions, AreNeverFoundWhereAPoseMeetsAll) {
           {Relation::Angle, {To::Object, 0, 0, axis}, {To::Object, 1, 0, other}, 0, 0, 0.02});
     }
     while (all.size() < 4) {
-      ToleratedConstraint c = met_at(pose, draws);
+      ToleratedConstraint c = met_at(pose, draws, round % 2 == 0 ? 4 : 2);
       if (c.relation != Relation::Distance && c.relation != Relation::Coincident) continue;
       if (c.first.feature.kind != Kind::Point && c.second.feature.kind != Kind::Point) continue;
       all.push_back(c);
