@@ -99,7 +99,8 @@ void BallRelaxation::move(std::size_t ball) {
   step_[ball] = step;
 }
 
-/// Of what a ball alone holds or is near to, how much farther it would be without it.
+/// The cost of leaving a ball out: how much farther from all balls the points would be that it
+/// alone holds or is near to.
 double BallRelaxation::loss_without(std::size_t ball) {
   const Ball& b = balls_[ball];
   ask(ball, b.center, (1 + kNear) * b.radius);

@@ -50,7 +50,7 @@ class BallRelaxation {
   [[nodiscard]] double gap(const Ball& ball, const geom::Vec3& p) const {
     return (p - ball.center).norm() - ball.radius * (1 - spare_);
   }
-  /// Whether a ball may hold what is within `reach` of a place, or be near to it.
+  /// True if a ball may hold a point within `reach` of a place, or be as near to one as that.
   [[nodiscard]] static bool is_near(const Ball& ball, const geom::Vec3& about, double reach) {
     return (ball.center - about).norm() < ball.radius + 2 * reach;
   }

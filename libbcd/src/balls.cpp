@@ -170,8 +170,8 @@ class BallSearch {
     for (std::size_t i = 0; i < inner_.size(); i += kInnerShown) points_.push_back(inner_[i]);
   }
 
-  /// Of the balls that hold a point of the surface and have their centres inwards of it, the one
-  /// whose centre is farthest from it, and the largest one.
+  /// Two balls that hold a point of the surface and have their centres inwards of it: the one whose
+  /// centre is farthest from it, and the largest one.
   [[nodiscard]] std::pair<Ball, Ball> balls_at(const SurfacePoint& p) const {
     constexpr double kHeld = 0.98;
     constexpr int kHalvings = 9, kPlaces = 6;

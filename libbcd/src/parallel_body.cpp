@@ -34,7 +34,7 @@ struct ParallelBody::Cell {
   int side = 0;  ///< 1: outside the solid, -1: inside, 0: not known
 };
 
-/// What is known of a cube.
+/// A cube as it is known: whether the boundary may be in it, its side and its distance.
 struct ParallelBody::Look {
   bool open = false;            ///< the boundary may be in it
   int side = 0;                 ///< of the middle
@@ -80,7 +80,7 @@ ParallelBody::Look ParallelBody::look_at(const Cell& cell, double h) const {
   return out;
 }
 
-/// What of the ball round a cube may be outside the body.
+/// The part of the ball round a cube that may be outside the body, a cap; nullopt: there is none.
 std::optional<ParallelBody::Cap> ParallelBody::cap_of(const Cell& cell, const Look& look,
                                                       double h) const {
   if (look.side < 0 || !(look.upper > 0)) return Cap{cell.center, Vec3::UnitX(), -h};

@@ -1,6 +1,7 @@
 // Inverse kinematics of arms with redundant joints before a closed form: the redundant joints are
 // free parameters; docs/algorithms/inverse-kinematics.md, "Redundant joints".
 #include <kaboum/base/error.h>
+#include <kaboum/base/radical_inverse.h>
 #include <kaboum/kinematics/copies.h>
 #include <kaboum/kinematics/redundant.h>
 
@@ -17,16 +18,6 @@ namespace {
 
 constexpr std::size_t kClosed = 6;  ///< axes of the closed form
 constexpr std::array<unsigned, 6> kBases{2, 3, 5, 7, 11, 13};
-
-/// Digits of i in a base, mirrored at the point: a number of Halton's sequence, in [0, 1).
-double mirrored(std::size_t i, unsigned base) {
-  double out = 0, unit = 1;
-  for (; i > 0; i /= base) {
-    unit /= base;
-    out += unit * static_cast<double>(i % base);
-  }
-  return out;
-}
 
 /// Values of a joint, both ends included.
 struct Range {
@@ -171,11 +162,11 @@ class RedundantSearch {
   bool take_values(std::size_t i, std::vector<double>& q) const {
     for (std::size_t k = 0; k < arm_.count; ++k)
       q[k] = i == 0 ? std::clamp(reference_[k], ranges_[k].lower, ranges_[k].upper)
-                    : ranges_[k].lower + ranges_[k].width() * mirrored(i, kBases[k]);
+                    : ranges_[k].lower + ranges_[k].width() * radical_inverse(i, kBases[k]);
     if (i > 0 && slides_) {
       const std::optional<Range> within = reaching(q);
       if (!within) return false;
-      q[along_] = within->lower + within->width() * mirrored(i, kBases[along_]);
+      q[along_] = within->lower + within->width() * radical_inverse(i, kBases[along_]);
       return true;
     }
     return (centre(q) - wrist_).norm() <= ball_.radius;

@@ -1,6 +1,7 @@
 // Pushing an object that stands on another one along a straight line
 // (docs/planning/geometry.md, "Pushing"). Source: [gaschler2016] §5.2, Fig. 5.3.
 #include <kaboum/base/error.h>
+#include <kaboum/base/radical_inverse.h>
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 
@@ -26,13 +27,7 @@ constexpr double kBackOff = 0.03;
 constexpr std::size_t kDistances = 8;
 
 /// 1, 1/2, 1/4, 3/4, 1/8, …: all the way first, then van der Corput's sequence.
-double share_of(std::size_t index) {
-  if (index == 0) return 1;
-  double out = 0, digit = 0.5;
-  for (; index > 0; index /= 2, digit *= 0.5)
-    if (index % 2 == 1) out += digit;
-  return out;
-}
+double share_of(std::size_t index) { return index == 0 ? 1 : radical_inverse(index, 2); }
 
 /// @throws Error{InvalidInput} when no joint moves the link.
 void require_moving(const world::RobotModel& robot, const world::LinkFeature& front) {

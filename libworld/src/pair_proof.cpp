@@ -3,6 +3,7 @@
 
 #include "pair_proof.h"
 
+#include <kaboum/base/radical_inverse.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/sweep/motion.h>
 
@@ -26,16 +27,6 @@ std::uint32_t next_prime(std::uint32_t n) {
     for (std::uint32_t d = 2; d * d <= n; ++d) prime = prime && n % d != 0;
     if (prime) return n;
   }
-}
-
-/// The digits of i mirrored at the point.
-double radical_inverse(std::size_t i, std::uint32_t base) {
-  double out = 0, digit = 1;
-  for (; i > 0; i /= base) {
-    digit /= base;
-    out += digit * static_cast<double>(i % base);
-  }
-  return out;
 }
 
 /// An outer set lies in itself.

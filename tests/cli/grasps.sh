@@ -37,14 +37,18 @@ expect 0 '' "$S" make cell.json --robot arm=arm.urdf --effort fast --epsilon 0.0
   --primitive b1=box:0.024,0.024,0.06 --at b1=0.4,-0.25,0.0305 --primitive b2=box:0.024,0.024,0.06 --at b2=0.5,-0.25,0.0305,0,0,0.4 \
   --primitive b3=cylinder:0.011,0.06 --at b3=0.5,-0.35,0.0305
 expect 2 'cell.json: .*has no tools' "$S" grasps cell.json
-python3 - <<'END'
-import json
-d = json.load(open("cell.json"))
+# with_tool FILE: the arm of a scene has a hand, and is at home where it stretches over the table.
+with_tool() {
+  python3 - "$1" <<'END'
+import json, sys
+d = json.load(open(sys.argv[1]))
 arm = d["robots"][0]
 arm["tools"] = [{"name": "hand", "link": "hand", "position": [0, 0, 0.135]}]
 arm["home"] = {"j2": -0.5, "j3": 1.7, "j5": 1.9415926535897932}
-json.dump(d, open("cell.json", "w"), indent=1)
+json.dump(d, open(sys.argv[1], "w"), indent=1)
 END
+}
+with_tool cell.json
 cp cell.json before.json
 expect 2 "cell.json: .*no object 'shelv'; did you mean 'shelf'" "$S" grasps cell.json --object shelv
 expect 2 "cell.json: .*no tool 'hamd'; did you mean 'hand'" "$S" grasps cell.json --tool hamd
@@ -266,14 +270,7 @@ expect 0 '' "$S" make can.json --robot arm=arm.urdf --effort fast --epsilon 0.00
   --primitive can=cylinder:0.011,0.06 --at can=0.5,-0.3,0.0305 \
   --primitive w1=box:0.004,0.08,0.05 --at w1=0.462,-0.3,0.0255 --primitive w2=box:0.004,0.08,0.05 --at w2=0.538,-0.3,0.0255 \
   --primitive w3=box:0.08,0.004,0.05 --at w3=0.5,-0.338,0.0255 --primitive w4=box:0.08,0.004,0.05 --at w4=0.5,-0.262,0.0255
-python3 - <<'END'
-import json
-d = json.load(open("can.json"))
-arm = d["robots"][0]
-arm["tools"] = [{"name": "hand", "link": "hand", "position": [0, 0, 0.135]}]
-arm["home"] = {"j2": -0.5, "j3": 1.7, "j5": 1.9415926535897932}
-json.dump(d, open("can.json", "w"), indent=1)
-END
+with_tool can.json
 cat >can.kpl <<'END'
 domain can
 types: object, block, robot, conf handle, pose handle

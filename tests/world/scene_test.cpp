@@ -7,31 +7,15 @@
 #include <kaboum/world/checker.h>
 #include <kaboum/world/motion_check.h>
 
-#include "worlds.h"
+#include "refused.h"
 
 namespace kaboum::world {
 namespace {
 
+using test::expect_refused;
 using test::SceneFiles;
 
 const std::string kBox = "\"objects\": [{\"name\": \"box\", \"outer\": ";
-
-void expect_refused(const SceneFiles& files, const std::string& text,
-                    const std::vector<std::string>& words) {
-  try {
-    (void)files.world(text);
-    FAIL() << "accepted: " << text;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
-    EXPECT_TRUE(std::string(error.what()).starts_with("scene.json: line ") ||
-                std::string(error.what()).starts_with("scene.json: the JSON") ||
-                std::string(error.what()).starts_with("scene.json: not JSON"))
-        << error.what();
-    for (const std::string& word : words)
-      EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-          << "no '" << word << "' in: " << error.what();
-  }
-}
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const auto at = text.find(what);
