@@ -68,8 +68,14 @@ std::string yaml_of(const robot::RobotFile& robot, const std::vector<LinkSphere>
       last = sphere.link;
       out += indent + quoted(robot.robot.links[last].name) + ":\n";
     }
-    out += indent + "  - center: [" + text_of(sphere.center, ", ") + "]\n" + indent +
-           "    radius: " + text_of(sphere.radius) + "\n";
+    out += indent;
+    out += "  - center: [";
+    out += text_of(sphere.center, ", ");
+    out += "]\n";
+    out += indent;
+    out += "    radius: ";
+    out += text_of(sphere.radius);
+    out += "\n";
   }
   return out;
 }
