@@ -39,14 +39,14 @@ const world::Feature* find_point(const world::Object& object, const char* name) 
 }
 
 /// What of a body is at a plane, seen along its normal: `across` and `up` are the coordinates.
-Outline outline_at(const geom::ConvexBody& body, const Transform& pose, const Vec3& on,
-                   const Vec3& normal, double depth, const Vec3& across) {
-  std::vector<Vec3> points;
+geom::Polygon2 outline_at(const geom::ConvexBody& body, const Transform& pose, const Vec3& on,
+                          const Vec3& normal, double depth, const Vec3& across) {
+  std::vector<geom::Vec2> points;
   for (const Vec3& v : body.core.vertices) {
     const Vec3 p = pose * v;
-    if (normal.dot(p - on) >= -(depth + body.radius)) points.emplace_back(across.dot(p), p.z(), 0);
+    if (normal.dot(p - on) >= -(depth + body.radius)) points.emplace_back(across.dot(p), p.z());
   }
-  return Outline(std::move(points));
+  return geom::convex_hull(std::move(points));
 }
 
 /// How far contact reaches to both sides of a line, seen from above.
@@ -60,14 +60,13 @@ Reach reach_of(const world::BoundingSet& front, const Transform& front_pose, con
   const Vec3 across = Vec3::UnitZ().cross(normal);
   Reach out;
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const Outline a =
+    const geom::Polygon2 a =
         outline_at(front.body(i), front_pose, front_on, -normal, front.epsilon() + kFlat, across);
-    if (a.corners().size() < 3) continue;
+    if (a.size() < 3) continue;
     for (std::size_t j = 0; j < side.size(); ++j) {
-      const Outline b =
+      const geom::Polygon2 b =
           outline_at(side.body(j), side_pose, side_on, normal, side.epsilon() + kFlat, across);
-      const Outline both = a.common_with(b);
-      for (const Vec3& p : both.corners()) {
+      for (const geom::Vec2& p : geom::common_part(a, b)) {
         out.least = std::min(out.least, p.x() - across.dot(center));
         out.most = std::max(out.most, p.x() - across.dot(center));
       }
@@ -121,14 +120,15 @@ PushedObject::PushedObject(const world::Object& object, const Transform& at,
     radius = std::max(radius, (base_.back() - center_).norm());
   }
   if (!refusal_.empty()) return;
-  const Outline foot = foot_of(object, at.linear, bottom);
+  const geom::Polygon2 foot = foot_of(object, at.linear, bottom);
   if (!bridges_slots(foot, object, support)) {
     refusal_ = object.name + " has a base too narrow to be pushed on " + support.name;
     return;
   }
   const double turning = 2 * kOffTurn * radius;
   slack_ = std::numbers::sqrt2 * kOffLine + turning;
-  if (balanced_ && !foot.holds(center_ - at * bottom, kBalance + own + turning)) {
+  if (balanced_ &&
+      !geom::holds(foot, (center_ - at * bottom).head<2>(), kBalance + own + turning)) {
     refusal_ = object.name + " has its point 'mass' too near the edge of its base";
     return;
   }

@@ -6,6 +6,7 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/grasp_family.h>
+#include <kaboum/world/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,10 @@ std::optional<Goals> Sequence::goals_in_reach(std::size_t robot, std::size_t obj
                 "object '" + thing.name + "' of the scene has no grasps, which reaching it needs");
   if (model.tools.empty())
     throw Error(ErrorCode::InvalidInput,
-                "robot '" + model.name + "' of the scene has no tools, which reaching needs");
+                "robot '" + model.name +
+                    "' of the scene has no tools, which reaching needs; the scene "
+                    "states them as " +
+                    std::string(world::kToolExample));
   if (held_by(robot, object))
     return none(Answer::Kind::Impossible, thing.name + " is held already");
   Goals goals = goals_of_reach(robot, object);

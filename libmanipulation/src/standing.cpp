@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace kaboum::manipulation {
 namespace {
@@ -19,9 +20,12 @@ constexpr double kOnePoint = 1e-9;
 /// How far from level a support may lie. [1 - cosine]
 constexpr double kLevel = 1e-9;
 
-/// Twice the area of the triangle; above 0: p is on the left of the way from a to b.
-double turn(const geom::Vec3& a, const geom::Vec3& b, const geom::Vec3& p) {
-  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+/// Seen from above.
+geom::Polygon2 outline_of(const std::vector<geom::Vec3>& points) {
+  std::vector<geom::Vec2> seen;
+  seen.reserve(points.size());
+  for (const geom::Vec3& p : points) seen.emplace_back(p.head<2>());
+  return geom::convex_hull(std::move(seen));
 }
 
 double height_of(const geom::ConvexBody& body) {
@@ -65,73 +69,12 @@ std::vector<geom::Vec3> low_corners(const geom::ConvexBody& body, const Eigen::M
 
 }  // namespace
 
-/// Andrew's chains.
-Outline::Outline(std::vector<geom::Vec3> points) {
-  std::ranges::sort(points, [](const geom::Vec3& a, const geom::Vec3& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  const auto chain = [&](const geom::Vec3& p, std::size_t from) {
-    while (corners_.size() >= from + 2 &&
-           turn(corners_[corners_.size() - 2], corners_.back(), p) <= 0)
-      corners_.pop_back();
-    corners_.push_back(p);
-  };
-  for (const geom::Vec3& p : points) chain(p, 0);
-  const std::size_t lower = corners_.empty() ? 0 : corners_.size() - 1;
-  for (auto p = points.rbegin(); p != points.rend(); ++p) chain(*p, lower);
-  if (!corners_.empty()) corners_.pop_back();
-}
-
-bool Outline::holds(const geom::Vec3& p, double inside) const {
-  if (corners_.size() < 3) return false;
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const geom::Vec3 &a = corners_[i], &b = corners_[(i + 1) % corners_.size()];
-    if (turn(a, b, p) < inside * (b - a).head<2>().norm()) return false;
-  }
-  return true;
-}
-
-/// It is least across one of the sides.
-double Outline::width() const {
-  if (corners_.size() < 3) return 0;
-  double out = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const geom::Vec3 &a = corners_[i], &b = corners_[(i + 1) % corners_.size()];
-    double low = 0, high = 0;
-    for (const geom::Vec3& p : corners_) {
-      low = std::min(low, turn(a, b, p));
-      high = std::max(high, turn(a, b, p));
-    }
-    out = std::min(out, (high - low) / (b - a).head<2>().norm());
-  }
-  return out;
-}
-
-/// Cut by one side of the other after the other (Sutherland and Hodgman).
-Outline Outline::common_with(const Outline& other) const {
-  if (corners_.size() < 3 || other.corners_.size() < 3) return Outline({});
-  std::vector<geom::Vec3> left = corners_;
-  for (std::size_t i = 0; i < other.corners_.size(); ++i) {
-    const geom::Vec3 &a = other.corners_[i], &b = other.corners_[(i + 1) % other.corners_.size()];
-    std::vector<geom::Vec3> kept;
-    kept.reserve(left.size() + 1);
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      const geom::Vec3 &p = left[k], &q = left[(k + 1) % left.size()];
-      const double at_p = turn(a, b, p), at_q = turn(a, b, q);
-      if (at_p >= 0) kept.push_back(p);
-      if ((at_p < 0) != (at_q < 0)) kept.emplace_back(p + at_p / (at_p - at_q) * (q - p));
-    }
-    left = std::move(kept);
-  }
-  return Outline(std::move(left));
-}
-
 UpperFace::UpperFace(const geom::ConvexBody& body, double inside)
     : inside_(inside),
       height_(height_of(body) + body.radius),
       low_(geom::Vec3::Constant(std::numeric_limits<double>::infinity())),
       high_(-low_),
-      outline_(highest(body)) {
+      outline_(outline_of(highest(body))) {
   for (const geom::Vec3& v : highest(body)) {
     low_ = low_.cwiseMin(v);
     high_ = high_.cwiseMax(v);
@@ -165,19 +108,20 @@ std::vector<geom::Vec3> base_of(const world::Object& object, const Eigen::Matrix
   return base;
 }
 
-Outline foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
-                const geom::Vec3& point) {
+geom::Polygon2 foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
+                       const geom::Vec3& point) {
   std::vector<geom::Vec3> foot;
   for (std::size_t i = 0; i < object.outer.size(); ++i)
     std::ranges::copy(low_corners(object.outer.body(i), stands, point, kFlat),
                       std::back_inserter(foot));
-  return Outline(std::move(foot));
+  return outline_of(foot);
 }
 
 /// Bodies reach beyond the support by epsilon, and close slots twice as wide: a base has to bridge
 /// these. The solid's own is narrower than its set's by up to its epsilon on both sides.
-bool bridges_slots(const Outline& foot, const world::Object& object, const world::Object& support) {
-  return foot.width() - 2 * object.outer.epsilon() > kBridges * support.outer.epsilon();
+bool bridges_slots(const geom::Polygon2& foot, const world::Object& object,
+                   const world::Object& support) {
+  return geom::width_of(foot) - 2 * object.outer.epsilon() > kBridges * support.outer.epsilon();
 }
 
 const world::Feature& feature_named(const world::Object& object, const std::string& name,

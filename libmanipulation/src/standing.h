@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/geom/polygon2.h>
 #include <kaboum/world/world.h>
 
 #include <string>
@@ -10,26 +11,6 @@ namespace kaboum::manipulation {
 /// How far from one plane points of a face may be, with the sets' ε. [m]
 inline constexpr double kFlat = 1e-4;
 
-/// The convex outline of points, seen from above.
-class Outline {
- public:
-  explicit Outline(std::vector<geom::Vec3> points);
-
-  /// Whether a point is inside, and at least so far from every side. Points of which that holds
-  /// make a convex set. [length]
-  [[nodiscard]] bool holds(const geom::Vec3& p, double inside) const;
-  /// What of it lies inside the other one as well; empty: nothing that has an area.
-  [[nodiscard]] Outline common_with(const Outline& other) const;
-  /// The distance of two parallel lines with all of it between them, where that is least. 0: it has
-  /// no area. [length]
-  [[nodiscard]] double width() const;
-  /// Counterclockwise; fewer than three: no area.
-  [[nodiscard]] const std::vector<geom::Vec3>& corners() const { return corners_; }
-
- private:
-  std::vector<geom::Vec3> corners_;
-};
-
 /// What of a convex body is at its top, seen from above: in the object's frame.
 class UpperFace {
  public:
@@ -38,7 +19,9 @@ class UpperFace {
 
   [[nodiscard]] double height() const { return height_; }
   /// Whether a point is above it, seen from above.
-  [[nodiscard]] bool holds(const geom::Vec3& p) const { return outline_.holds(p, inside_); }
+  [[nodiscard]] bool holds(const geom::Vec3& p) const {
+    return geom::holds(outline_, p.head<2>(), inside_);
+  }
   /// A point of the box round it, by shares of its sides.
   [[nodiscard]] geom::Vec3 at(double x, double y) const;
   /// The diagonal of that box. [length]
@@ -48,7 +31,7 @@ class UpperFace {
   double inside_ = 0;
   double height_ = 0;
   geom::Vec3 low_, high_;
-  Outline outline_;
+  geom::Polygon2 outline_;
 };
 
 /// True of an object whose z axis is the world's.
@@ -61,10 +44,11 @@ std::vector<geom::Vec3> base_of(const world::Object& object, const Eigen::Matrix
 /// What of an object's outer set is no higher than a point of it, but for `kFlat`, and no more than
 /// that: the outline made smaller by the set's ε is inside that of the solid's points no higher
 /// than ε + `kFlat`. About that point, turned as the object stands.
-Outline foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
-                const geom::Vec3& point);
+geom::Polygon2 foot_of(const world::Object& object, const Eigen::Matrix3d& stands,
+                       const geom::Vec3& point);
 /// True of a foot wide enough to stand on an outer set, which may close slots of the solid.
-bool bridges_slots(const Outline& foot, const world::Object& object, const world::Object& support);
+bool bridges_slots(const geom::Polygon2& foot, const world::Object& object,
+                   const world::Object& support);
 
 /// @param needs  what needs it: "putting it down"
 /// @throws Error{InvalidInput} when the object has no such feature.

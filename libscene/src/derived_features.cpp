@@ -41,8 +41,8 @@ struct Hold {
   const Face* first;
   const Face* second;  ///< null: of one face
   Vec3 middle;
-  Vec3 normal;    ///< of the first face
-  Polygon where;  ///< along `axes`
+  Vec3 normal;     ///< of the first face
+  Polygon2 where;  ///< along `axes`
   Axes axes;
   double area = 0;
 };
@@ -54,9 +54,9 @@ std::vector<Hold> holds_of(const Faces& faces, const GraspRequest& request) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Face& first = all[i];
     const Axes axes(first.normal);
-    const Polygon own = flattened(first, axes);
-    const auto add = [&](const Polygon& where, double level, const Face* second) {
-      const Middle middle = middle_of(where);
+    const Polygon2 own = flattened(first, axes);
+    const auto add = [&](const Polygon2& where, double level, const Face* second) {
+      const Centroid middle = centroid_of(where);
       if (!(middle.area > kNothing * faces.size() * faces.size())) return;
       const Vec3 place = middle.place.x() * axes.u + middle.place.y() * axes.v;
       out.push_back(
@@ -332,7 +332,7 @@ class Ground {
  public:
   /// @param tip  how far round the tool's origin it needs something to hold
   Ground(const Faces& faces, const Hold& hold, double tip) : tip_(tip), axes_(hold.axes) {
-    const Middle middle = middle_of(hold.where);
+    const Centroid middle = centroid_of(hold.where);
     if (tip > 0) {
       where_ = eroded(hold.where, tip);
     } else {
@@ -342,7 +342,7 @@ class Ground {
     middle_ = middle.place;
     covers_ = faces.covers(*hold.first, axes_);
     if (hold.second != nullptr)
-      for (Polygon& cover : faces.covers(*hold.second, axes_)) covers_.push_back(std::move(cover));
+      for (Polygon2& cover : faces.covers(*hold.second, axes_)) covers_.push_back(std::move(cover));
     along_ = longest_edge(hold.where);
     across_ = Vec2(-along_.y(), along_.x());
   }
@@ -354,7 +354,7 @@ class Ground {
   /// where the tips do not fit.
   [[nodiscard]] MemberBox reach() const {
     MemberBox out;
-    if (!(middle_of(where_).area > 0)) return out;
+    if (!(centroid_of(where_).area > 0)) return out;
     for (const Vec2& direction : {along_, across_}) {
       constexpr double kFar = std::numeric_limits<double>::infinity();
       Range range{kFar, -kFar};
@@ -376,15 +376,15 @@ class Ground {
       for (const Vec2& corner : corners(box, 0))
         if (cross(edge.normalized(), corner - where_[i]) < -least) return false;
     }
-    const Polygon ground = corners(box, tip_ + least);
+    const Polygon2 ground = corners(box, tip_ + least);
     return std::ranges::none_of(
-        covers_, [&](const Polygon& cover) { return !common_part(ground, cover).empty(); });
+        covers_, [&](const Polygon2& cover) { return !common_part(ground, cover).empty(); });
   }
 
  private:
-  [[nodiscard]] Polygon corners(const MemberBox& box, double more) const {
+  [[nodiscard]] Polygon2 corners(const MemberBox& box, double more) const {
     const Range &a = box[0], &b = box[1];
-    Polygon out;
+    Polygon2 out;
     for (const auto& [x, y] :
          {std::pair(a.from - more, b.from - more), std::pair(a.to + more, b.from - more),
           std::pair(a.to + more, b.to + more), std::pair(a.from - more, b.to + more)})
@@ -394,9 +394,9 @@ class Ground {
 
   double tip_;
   Axes axes_;
-  Polygon where_;
+  Polygon2 where_;
   Vec2 middle_, along_, across_;
-  std::vector<Polygon> covers_;
+  std::vector<Polygon2> covers_;
 };
 
 /// Anywhere on faces, turned about their normal; nullopt where the tips do not fit.
@@ -553,7 +553,7 @@ std::optional<Vec3> bottom_of(const Faces& faces, const Vec3& up) {
   for (const Face& face : faces.all()) {
     if (face.normal.dot(up) > 0 || face.normal.cross(up).norm() > kParallel) continue;
     const Axes axes(face.normal);
-    const Middle middle = middle_of(flattened(face, axes));
+    const Centroid middle = centroid_of(flattened(face, axes));
     if (!(middle.area > kNothing * faces.size() * faces.size())) continue;
     const Vec3 place =
         middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
@@ -577,7 +577,7 @@ std::vector<Vec3> tops_of(const Faces& faces, const std::vector<Face>& level,
   std::vector<Top> tops;
   for (const Face& face : level) {
     const Axes axes(face.normal);
-    const Middle middle = middle_of(flattened(face, axes));
+    const Centroid middle = centroid_of(flattened(face, axes));
     const Vec3 place =
         middle.place.x() * axes.u + middle.place.y() * axes.v + face.offset * face.normal;
     if (!faces.is_covered(face, place)) tops.push_back({place, middle.area});

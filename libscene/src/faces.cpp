@@ -1,4 +1,4 @@
-// Flat faces of convex sets, and convex polygons in their planes.
+// Flat faces of convex sets, and their outlines.
 
 #include "faces.h"
 
@@ -35,20 +35,20 @@ bool Faces::is_covered(const Face& face, const Vec3& point) const {
   return false;
 }
 
-std::vector<Polygon> Faces::covers(const Face& face, const Axes& axes) const {
+std::vector<Polygon2> Faces::covers(const Face& face, const Axes& axes) const {
   const double level = face.offset + kJustOutside * size_;
-  std::vector<Polygon> out;
+  std::vector<Polygon2> out;
   for (std::size_t body = 0; body < set_.size(); ++body) {
     if (body == face.body) continue;
     const geom::Mesh surface = geom::surface_of(set_.body(body));
-    Polygon section;
+    std::vector<Vec2> section;
     for (const geom::Triangle& t : surface.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 &a = surface.vertices[t[k]], &b = surface.vertices[t[(k + 1) % 3]];
         const double at_a = face.normal.dot(a) - level, at_b = face.normal.dot(b) - level;
         if (at_a <= 0 && at_b > 0) section.push_back(axes(a + at_a / (at_a - at_b) * (b - a)));
       }
-    if (!section.empty()) out.push_back(hull_of(std::move(section)));
+    if (!section.empty()) out.push_back(convex_hull(std::move(section)));
   }
   return out;
 }
@@ -92,94 +92,10 @@ void Faces::add(const geom::ConvexBody& of, std::size_t body) {
   }
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-Polygon hull_of(Polygon points) {
-  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  Polygon hull;
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t first = hull.size();
-    for (const Vec2& p : points) {
-      while (hull.size() >= first + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    if (!hull.empty()) hull.pop_back();
-    std::ranges::reverse(points);
-  }
-  return hull;
-}
-
-Polygon flattened(const Face& face, const Axes& axes) {
-  Polygon points;
+Polygon2 flattened(const Face& face, const Axes& axes) {
+  std::vector<Vec2> points;
   for (const Vec3& corner : face.corners) points.push_back(axes(corner));
-  return hull_of(std::move(points));
-}
-
-Polygon left_of(const Polygon& polygon, const Vec2& from, const Vec2& along) {
-  Polygon kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-    const double at_p = cross(along, p - from), at_q = cross(along, q - from);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p >= 0) != (at_q >= 0)) kept.emplace_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return kept;
-}
-
-/// Sutherland and Hodgman 1974.
-Polygon common_part(Polygon a, const Polygon& b) {
-  for (std::size_t i = 0; i < b.size() && !a.empty(); ++i)
-    a = left_of(a, b[i], b[(i + 1) % b.size()] - b[i]);
-  return a;
-}
-
-Polygon eroded(const Polygon& polygon, double by) {
-  Polygon out = polygon;
-  for (std::size_t i = 0; i < polygon.size() && !out.empty(); ++i) {
-    const Vec2 along = polygon[(i + 1) % polygon.size()] - polygon[i];
-    if (!(along.norm() > 0)) continue;
-    const Vec2 inwards = Vec2(-along.y(), along.x()).normalized();
-    out = left_of(out, polygon[i] + by * inwards, along);
-  }
-  return out;
-}
-
-Middle middle_of(const Polygon& polygon) {
-  Middle out;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const double area = 0.5 * cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    out.place += area / 3 * (polygon[0] + polygon[i] + polygon[i + 1]);
-    out.area += area;
-  }
-  if (out.area > 0) out.place /= out.area;
-  return out;
-}
-
-double reach_within(const Polygon& polygon, const Vec2& from, const Vec2& along) {
-  double out = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-    const double falls = cross(edge, along);
-    if (falls < 0) out = std::min(out, cross(edge, from - polygon[i]) / -falls);
-  }
-  return std::isfinite(out) ? std::max(out, 0.0) : 0;
-}
-
-Vec2 longest_edge(const Polygon& polygon) {
-  Vec2 out = Vec2::UnitX();
-  double longest = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-    if (edge.norm() > longest * (1 + kNothing)) {
-      longest = edge.norm();
-      out = edge / longest;
-    }
-  }
-  return out;
+  return convex_hull(std::move(points));
 }
 
 }  // namespace kaboum::scene

@@ -1,16 +1,27 @@
 #pragma once
 
 #include <kaboum/collide/bounding_set.h>
+#include <kaboum/geom/polygon2.h>
 
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-/// Flat faces of convex sets, and convex polygons in their planes.
+/// Flat faces of convex sets, and their outlines.
 namespace kaboum::scene {
 
+using geom::Centroid;
+using geom::centroid_of;
+using geom::common_part;
+using geom::convex_hull;
+using geom::cross;
+using geom::eroded;
+using geom::left_of;
+using geom::longest_edge;
+using geom::Polygon2;
+using geom::reach_within;
+using geom::Vec2;
 using geom::Vec3;
-using Vec2 = Eigen::Vector2d;
 
 /// Between normals of faces that count as parallel, and from level. [rad]
 inline constexpr double kParallel = 1e-3;
@@ -46,7 +57,7 @@ class Faces {
   /// True if the point just outside of a face is in another body.
   [[nodiscard]] bool is_covered(const Face& face, const Vec3& point) const;
   /// Where other bodies are just outside of a face, in coordinates of its plane.
-  [[nodiscard]] std::vector<std::vector<Vec2>> covers(const Face& face, const Axes& axes) const;
+  [[nodiscard]] std::vector<Polygon2> covers(const Face& face, const Axes& axes) const;
 
  private:
   [[nodiscard]] bool holds(std::size_t body, const Vec3& point) const;
@@ -58,36 +69,7 @@ class Faces {
   std::vector<std::size_t> first_of_;
 };
 
-/// A convex one, counterclockwise.
-using Polygon = std::vector<Vec2>;
-
-double cross(const Vec2& a, const Vec2& b);
-
-/// The convex hull of points of a plane (monotone chain).
-Polygon hull_of(Polygon points);
-
 /// A face in a plane's coordinates.
-Polygon flattened(const Face& face, const Axes& axes);
-
-/// The part of a polygon on the left of a line.
-Polygon left_of(const Polygon& polygon, const Vec2& from, const Vec2& along);
-
-/// The common part of two polygons.
-Polygon common_part(Polygon a, const Polygon& b);
-
-/// The part of a polygon that is so far from its edges, or farther.
-Polygon eroded(const Polygon& polygon, double by);
-
-struct Middle {
-  Vec2 place = Vec2::Zero();
-  double area = 0;
-};
-Middle middle_of(const Polygon& polygon);
-
-/// How far a ray from a point within a polygon reaches.
-double reach_within(const Polygon& polygon, const Vec2& from, const Vec2& along);
-
-/// Along the longest edge.
-Vec2 longest_edge(const Polygon& polygon);
+Polygon2 flattened(const Face& face, const Axes& axes);
 
 }  // namespace kaboum::scene

@@ -48,7 +48,7 @@ Circle circle_of(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// The smallest circle round points (Welzl 1991, without recursion).
-Circle smallest_circle(const Polygon& points) {
+Circle smallest_circle(const Polygon2& points) {
   Circle out;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (out.holds(points[i])) continue;
@@ -64,7 +64,7 @@ Circle smallest_circle(const Polygon& points) {
 }
 
 /// By how much less than a circle round it a polygon reaches somewhere.
-double out_of_round(const Polygon& hull, const Circle& circle) {
+double out_of_round(const Polygon2& hull, const Circle& circle) {
   double inner = hull.size() < 3 ? 0 : circle.radius;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
@@ -115,7 +115,7 @@ class Slabs {
     double radius = 0, out_by = 0;
   };
   [[nodiscard]] Round round(std::size_t slab) const {
-    const Polygon hull = hull_of(points_[slab]);
+    const Polygon2 hull = convex_hull(points_[slab]);
     Round out;
     for (const Vec2& p : hull) out.radius = std::max(out.radius, p.norm());
     out.out_by = out_of_round(hull, {Vec2::Zero(), out.radius});
@@ -163,7 +163,7 @@ class Slabs {
   Vec3 point_, axis_;
   Axes across_;
   double low_, high_;
-  std::vector<Polygon> points_;
+  std::vector<Polygon2> points_;
   std::vector<double> radii_;
 };
 
@@ -226,7 +226,7 @@ std::vector<Vec3> axes_of(const Faces& faces) {
   }
   std::vector<std::pair<double, const Face*>> largest;
   for (const Face& face : faces.all())
-    largest.emplace_back(-middle_of(flattened(face, Axes(face.normal))).area, &face);
+    largest.emplace_back(-centroid_of(flattened(face, Axes(face.normal))).area, &face);
   std::ranges::stable_sort(largest, [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t i = 0; i < std::min(largest.size(), kMostFaces); ++i)
     out.add(largest[i].second->normal);
@@ -238,7 +238,7 @@ std::vector<Vec3> points_of_axis(const std::vector<geom::Mesh>& bodies, const Ve
                                  double size, double epsilon) {
   const Axes across(axis);
   std::vector<Vec3> out;
-  Polygon all;
+  Polygon2 all;
   const auto add = [&](const Circle& circle) {
     const Vec3 point = circle.center.x() * across.u + circle.center.y() * across.v;
     if (std::ranges::none_of(out, [&](const Vec3& other) {
@@ -246,15 +246,15 @@ std::vector<Vec3> points_of_axis(const std::vector<geom::Mesh>& bodies, const Ve
         }))
       out.push_back(point);
   };
-  std::vector<Polygon> projections;
+  std::vector<Polygon2> projections;
   for (const geom::Mesh& body : bodies) {
-    Polygon points;
+    Polygon2 points;
     points.reserve(body.vertices.size());
     for (const Vec3& v : body.vertices) points.push_back(across(v));
-    projections.push_back(hull_of(std::move(points)));
+    projections.push_back(convex_hull(std::move(points)));
     all.insert(all.end(), projections.back().begin(), projections.back().end());
   }
-  add(smallest_circle(hull_of(std::move(all))));
+  add(smallest_circle(convex_hull(std::move(all))));
   for (std::size_t i = 0; i < std::min(projections.size(), kMostBodies); ++i) {
     const Circle circle = smallest_circle(projections[i]);
     if (out_of_round(projections[i], circle) <= epsilon + kOutOfRound * circle.radius) add(circle);

@@ -34,42 +34,42 @@ std::optional<Face> level_top(const Faces& faces, std::size_t body, const Vec3& 
   for (const Vec3& v : of.core.vertices) high = std::max(high, up.dot(v));
   Face out{body, up, high + of.radius, {}};
   const Axes axes(up);
-  Polygon all;
+  Polygon2 all;
   all.reserve(of.core.vertices.size());
   for (const Vec3& v : of.core.vertices) {
     all.push_back(axes(v));
     if (up.dot(v) >= high - epsilon) out.corners.push_back(v + (out.offset - up.dot(v)) * up);
   }
-  const Polygon top = flattened(out, axes);
-  const double area = middle_of(top).area;
-  if (!(area > least_area(faces)) || area < kMostOfBody * middle_of(hull_of(all)).area ||
-      !(middle_of(eroded(top, epsilon)).area > least_area(faces)))
+  const Polygon2 top = flattened(out, axes);
+  const double area = centroid_of(top).area;
+  if (!(area > least_area(faces)) || area < kMostOfBody * centroid_of(convex_hull(all)).area ||
+      !(centroid_of(eroded(top, epsilon)).area > least_area(faces)))
     return std::nullopt;
   return out;
 }
 
-double area_of(const Face& face) { return middle_of(flattened(face, Axes(face.normal))).area; }
+double area_of(const Face& face) { return centroid_of(flattened(face, Axes(face.normal))).area; }
 
 /// The two sides of a line through an edge of a polygon.
 struct Halves {
-  Polygon inside, outside;
+  Polygon2 inside, outside;
 };
 
-Halves halves_of(const Polygon& polygon, const Polygon& by, std::size_t edge) {
+Halves halves_of(const Polygon2& polygon, const Polygon2& by, std::size_t edge) {
   const Vec2 &a = by[edge], &b = by[(edge + 1) % by.size()];
   return {left_of(polygon, a, b - a), left_of(polygon, a, a - b)};
 }
 
 /// The area of a polygon outside of others.
-double area_outside(const Polygon& polygon, const std::vector<Polygon>& of, std::size_t first,
+double area_outside(const Polygon2& polygon, const std::vector<Polygon2>& of, std::size_t first,
                     double least) {
-  const double area = middle_of(polygon).area;
+  const double area = centroid_of(polygon).area;
   if (!(area > least) || first == of.size()) return area;
-  if (!(middle_of(common_part(polygon, of[first])).area > least))
+  if (!(centroid_of(common_part(polygon, of[first])).area > least))
     return area_outside(polygon, of, first + 1, least);
   double out = 0;
-  Polygon rest = polygon;
-  for (std::size_t i = 0; i < of[first].size() && middle_of(rest).area > least; ++i) {
+  Polygon2 rest = polygon;
+  for (std::size_t i = 0; i < of[first].size() && centroid_of(rest).area > least; ++i) {
     Halves halves = halves_of(rest, of[first], i);
     out += area_outside(halves.outside, of, first + 1, least);
     if (out > least) return out;  // enough to know
@@ -79,13 +79,13 @@ double area_outside(const Polygon& polygon, const std::vector<Polygon>& of, std:
 }
 
 /// Faces of one plane, two of which are one where all of them hold what is between them.
-std::vector<Polygon> merged(std::vector<Polygon> parts, double least) {
-  const std::vector<Polygon> all = parts;
+std::vector<Polygon2> merged(std::vector<Polygon2> parts, double least) {
+  const std::vector<Polygon2> all = parts;
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = i + 1; j < parts.size();) {
-      Polygon both = parts[i];
+      Polygon2 both = parts[i];
       both.insert(both.end(), parts[j].begin(), parts[j].end());
-      both = hull_of(std::move(both));
+      both = convex_hull(std::move(both));
       if (area_outside(both, all, 0, least) > least) {
         ++j;
         continue;
@@ -100,14 +100,14 @@ std::vector<Polygon> merged(std::vector<Polygon> parts, double least) {
 /// Convex parts of polygons that nothing covers.
 class Uncovered {
  public:
-  Uncovered(std::vector<Polygon> covers, double inset, double least)
+  Uncovered(std::vector<Polygon2> covers, double inset, double least)
       : covers_(std::move(covers)), inset_(inset), least_(least) {}
 
   /// Adds the parts of a polygon that are outside of all covers, and of what was added before.
-  void add(Polygon polygon) {
-    std::vector<Polygon> open{std::move(polygon)};
+  void add(Polygon2 polygon) {
+    std::vector<Polygon2> open{std::move(polygon)};
     while (!open.empty()) {
-      Polygon part = std::move(open.back());
+      Polygon2 part = std::move(open.back());
       open.pop_back();
       if (!is_wide(part)) continue;
       const std::size_t largest = largest_cover(part);
@@ -121,7 +121,7 @@ class Uncovered {
       double most = -1;
       for (std::size_t i = 0; i < covers_[largest].size(); ++i) {
         Halves halves = halves_of(part, covers_[largest], i);
-        const double area = middle_of(halves.outside).area;
+        const double area = centroid_of(halves.outside).area;
         if (area > most) {
           most = area;
           best = std::move(halves);
@@ -133,19 +133,19 @@ class Uncovered {
     }
   }
 
-  [[nodiscard]] const std::vector<Polygon>& found() const { return found_; }
+  [[nodiscard]] const std::vector<Polygon2>& found() const { return found_; }
 
  private:
-  [[nodiscard]] bool is_wide(const Polygon& part) const {
-    return middle_of(part).area > least_ && middle_of(eroded(part, inset_)).area > least_;
+  [[nodiscard]] bool is_wide(const Polygon2& part) const {
+    return centroid_of(part).area > least_ && centroid_of(eroded(part, inset_)).area > least_;
   }
 
   /// What covers most of a polygon; the number of covers: nothing does.
-  [[nodiscard]] std::size_t largest_cover(const Polygon& part) const {
+  [[nodiscard]] std::size_t largest_cover(const Polygon2& part) const {
     std::size_t out = covers_.size();
     double most = least_;
     for (std::size_t i = 0; i < covers_.size(); ++i) {
-      const double area = middle_of(common_part(part, covers_[i])).area;
+      const double area = centroid_of(common_part(part, covers_[i])).area;
       if (!(area > most)) continue;
       most = area;
       out = i;
@@ -153,13 +153,13 @@ class Uncovered {
     return out;
   }
 
-  std::vector<Polygon> covers_;
+  std::vector<Polygon2> covers_;
   double inset_, least_;
-  std::vector<Polygon> found_;
+  std::vector<Polygon2> found_;
 };
 
 /// A polygon without corners that are almost on the line of their neighbours: a part of it.
-Polygon with_few_corners(Polygon polygon, double within) {
+Polygon2 with_few_corners(Polygon2 polygon, double within) {
   for (std::size_t i = 0; i < polygon.size() && polygon.size() > 3;) {
     const std::size_t n = polygon.size();
     const Vec2 &a = polygon[(i + n - 1) % n], &b = polygon[(i + 1) % n];
@@ -172,13 +172,13 @@ Polygon with_few_corners(Polygon polygon, double within) {
   return polygon.size() > kMostCorners ? with_few_corners(std::move(polygon), 2 * within) : polygon;
 }
 
-UpperSurface surface_of(const Face& leader, const Axes& axes, const Polygon& polygon) {
+UpperSurface surface_of(const Face& leader, const Axes& axes, const Polygon2& polygon) {
   UpperSurface out;
   const auto place = [&](const Vec2& p) -> Vec3 {
     return p.x() * axes.u + p.y() * axes.v + leader.offset * leader.normal;
   };
   for (const Vec2& corner : polygon) out.outline.push_back(place(corner));
-  const Middle middle = middle_of(polygon);
+  const Centroid middle = centroid_of(polygon);
   out.middle = place(middle.place);
   out.normal = leader.normal;
   out.area = middle.area;
@@ -215,7 +215,7 @@ std::vector<UpperSurface> upper_surfaces(const Faces& faces, std::vector<Face> l
     // The faces that are in the plane of the largest one.
     const Face leader = level.front();
     const Axes axes(leader.normal);
-    std::vector<Polygon> parts;
+    std::vector<Polygon2> parts;
     std::erase_if(level, [&](const Face& face) {
       const bool same = std::ranges::all_of(face.corners, [&](const Vec3& corner) {
         return std::abs(leader.normal.dot(corner) - leader.offset) <= kSamePlane * faces.size();
@@ -225,18 +225,18 @@ std::vector<UpperSurface> upper_surfaces(const Faces& faces, std::vector<Face> l
     });
     Uncovered uncovered(faces.covers(leader, axes), inset, least);
     parts = merged(std::move(parts), least);
-    std::ranges::stable_sort(parts, [](const Polygon& a, const Polygon& b) {
-      return middle_of(a).area > middle_of(b).area * (1 + kNothing);
+    std::ranges::stable_sort(parts, [](const Polygon2& a, const Polygon2& b) {
+      return centroid_of(a).area > centroid_of(b).area * (1 + kNothing);
     });
-    for (Polygon& part : parts) uncovered.add(std::move(part));
-    std::vector<Polygon> kept;
+    for (Polygon2& part : parts) uncovered.add(std::move(part));
+    std::vector<Polygon2> kept;
     double largest = 0;
-    for (const Polygon& part : uncovered.found()) {
+    for (const Polygon2& part : uncovered.found()) {
       kept.push_back(with_few_corners(eroded(part, inset), kStraight * faces.size()));
-      largest = std::max(largest, middle_of(kept.back()).area);
+      largest = std::max(largest, centroid_of(kept.back()).area);
     }
-    for (const Polygon& part : kept)
-      if (middle_of(part).area > std::max(least, kSmallPart * largest))
+    for (const Polygon2& part : kept)
+      if (centroid_of(part).area > std::max(least, kSmallPart * largest))
         out.push_back(surface_of(leader, axes, part));
   }
   std::ranges::stable_sort(out, [](const UpperSurface& a, const UpperSurface& b) {

@@ -43,7 +43,9 @@ std::size_t robot_named(const World& world, const std::string& name) {
 
 const ToolFrame& tool_named(const RobotModel& robot, const std::string& name) {
   if (robot.tools.empty())
-    throw Error(ErrorCode::InvalidArgument, "«tool»: robot '" + robot.name + "' has no tools");
+    throw Error(ErrorCode::InvalidArgument, "«tool»: robot '" + robot.name +
+                                                "' has no tools; the scene states them as " +
+                                                std::string(kToolExample));
   if (name.empty() && robot.tools.size() == 1) return robot.tools.front();
   std::vector<std::string> names;
   std::string all;

@@ -58,7 +58,7 @@ Chain read_chain(const Options& o) {
     const world::RobotModel& model =
         scene.world.robots[world::robot_named(scene.world, o.robot_name)];
     out = {o.scene, scene.sha256, model.kinematics, o.tip, {}};
-    if (!o.tool.empty()) {
+    if (!o.tool.empty() || (o.tip.empty() && model.tools.size() == 1)) {
       const world::ToolFrame& tool = world::tool_named(model, o.tool);
       out.tip = model.kinematics.links[tool.link].name;
       out.tool = tool.pose;

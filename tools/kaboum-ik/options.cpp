@@ -24,7 +24,9 @@ void describe(CLI::App& app, IkOptions& o) {
       ->type_name("NAME")
       ->needs(scene);
   CLI::Option* tool =
-      app.add_option("--tool", o.tool, "Tool of the scene's robot that is to have the pose")
+      app.add_option(
+             "--tool", o.tool,
+             "Tool of the scene's robot that is to have the pose [the only one, without --tip]")
           ->type_name("NAME")
           ->needs(scene);
   app.add_option("--base", o.base,

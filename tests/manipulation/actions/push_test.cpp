@@ -353,45 +353,6 @@ TEST_F(Push, ALinkThatNothingMovesPushesNothing) {
   }
 }
 
-/// The area of a convex polygon.
-double area(const std::vector<Vec3>& corners) {
-  double twice = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
-}
-
-TEST(Outlines, WhatTwoHaveInCommonIsInBoth) {
-  using manipulation::Outline;
-  Random random(5);
-  int with_area = 0;
-  for (int round = 0; round < 60; ++round) {
-    const auto drawn = [&](double shift) {
-      std::vector<Vec3> points;
-      for (int i = 0; i < 7; ++i)
-        points.emplace_back(random.between(0, 1) + shift, random.between(0, 1), 0);
-      return Outline(points);
-    };
-    const Outline a = drawn(0), b = drawn(random.between(-1.2, 1.2)), both = a.common_with(b);
-    with_area += both.corners().size() >= 3 ? 1 : 0;
-    int inside = 0;
-    constexpr int kCells = 60;
-    for (int i = 0; i < kCells * kCells; ++i) {
-      const Vec3 p((i % kCells + 0.5) / kCells, (i / kCells + 0.5) / kCells, 0);
-      const bool in_both = a.holds(p, 0) && b.holds(p, 0);
-      inside += in_both ? 1 : 0;
-      if (in_both != both.holds(p, 0)) {
-        // Only where it is a matter of rounding.
-        EXPECT_NE(both.holds(p, -1e-9), both.holds(p, 1e-9)) << p.transpose();
-      }
-    }
-    EXPECT_NEAR(area(both.corners()), static_cast<double>(inside) / (kCells * kCells), 0.03);
-  }
-  EXPECT_GT(with_area, 15);
-}
-
 TEST_F(Push, TheFarthestIsWhereTheBaseComesToTheEdge) {
   const world::Object& table = arms_.world.objects[TwoArms::kTable];
   const manipulation::PushedObject pushed(block(), block().pose, table, table.pose, 1e-3);

@@ -44,6 +44,10 @@ SceneFile read_scene(const std::string& path);
 /// @throws Error{InvalidArgument} when there is none, or there are several without a name.
 std::size_t robot_named(const World& world, const std::string& name);
 
+/// How a scene states a robot's tools: for messages.
+inline constexpr std::string_view kToolExample =
+    R"("tools": [{"name": "hand", "link": "LINK", "position": [0, 0, 0.1]}])";
+
 /// The tool of a name; of no name the only one.
 /// @throws Error{InvalidArgument} when there is none, or there are several without a name.
 const ToolFrame& tool_named(const RobotModel& robot, const std::string& name);
