@@ -41,6 +41,17 @@ if(KABOUM_WITH_PYTHON)
   set(PYTHON_EXECUTABLE ${Python3_EXECUTABLE})
   find_package(pybind11 2.10 REQUIRED CONFIG)
 endif()
+# Collision libraries that may decide a scene's contacts (libworld/engines). By pkg-config: Bullet's own
+# configuration is for all of it.
+if(KABOUM_WITH_FCL)
+  pkg_check_modules(KABOUM_FCL QUIET fcl ccd)
+endif()
+if(KABOUM_WITH_BULLET)
+  pkg_check_modules(KABOUM_BULLET QUIET bullet)
+endif()
+if(KABOUM_WITH_ODE)
+  pkg_check_modules(KABOUM_ODE QUIET ode)
+endif()
 # STEP and IGES. Not by its own configuration, which asks for what draws as well.
 set(KABOUM_OPENCASCADE_FOUND FALSE)
 if(KABOUM_WITH_OPENCASCADE)

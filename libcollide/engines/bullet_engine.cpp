@@ -5,6 +5,7 @@
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine.h"
@@ -12,15 +13,27 @@
 namespace kaboum::collide {
 namespace {
 
-btVector3 vector_of(const geom::Vec3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+/// Bullet's units in one of the model's: its GJK has constants with a unit, which bodies of less
+/// than 0.05 units are too small for (docs/algorithms/collision-engines.md).
+double scale_of(const Model& model) {
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto look = [&](const geom::Mesh& mesh) {
+    const geom::Box3 box = geom::bounding_box(mesh);
+    if (const double size = (box.max - box.min).maxCoeff(); size > 0)
+      smallest = std::min(smallest, size);
+  };
+  for (const Part& part : model.robot) look(part.mesh);
+  for (const geom::Mesh& mesh : model.scene) look(mesh);
+  return std::clamp(10 / smallest, 1e-4, 1e4);
 }
 
 /// Convex parts by GJK, triangles of the robot by GImpact, all behind a tree of boxes.
 class BulletEngine : public Engine {
  public:
   explicit BulletEngine(const Model& model)
-      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
+      : scale_(scale_of(model)),
+        dispatcher_(&configuration_),
+        world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
     for (const Part& part : model.robot) {
       links_.push_back(part.link);
@@ -60,12 +73,17 @@ class BulletEngine : public Engine {
  private:
   static constexpr int kRobot = 1, kScene = 2;
 
+  [[nodiscard]] btVector3 vector_of(const geom::Vec3& v) const {
+    return {static_cast<btScalar>(scale_ * v.x()), static_cast<btScalar>(scale_ * v.y()),
+            static_cast<btScalar>(scale_ * v.z())};
+  }
+
   btCollisionObject* add(const geom::Mesh& mesh, bool convex, double margin, int group, int mask) {
     if (convex) {
       auto shape = std::make_unique<btConvexHullShape>();
       for (const geom::Vec3& v : mesh.vertices) shape->addPoint(vector_of(v), false);
       shape->recalcLocalAabb();
-      shape->setMargin(static_cast<btScalar>(margin));
+      shape->setMargin(static_cast<btScalar>(scale_ * margin));
       shapes_.push_back(std::move(shape));
     } else {
       auto triangles = std::make_unique<btTriangleMesh>();
@@ -86,6 +104,7 @@ class BulletEngine : public Engine {
     return objects_.back().get();
   }
 
+  double scale_;
   std::vector<std::unique_ptr<btTriangleMesh>> triangles_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btCollisionObject>> objects_;

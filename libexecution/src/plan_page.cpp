@@ -7,6 +7,7 @@
 #include <kaboum/page/page.h>
 #include <kaboum/plan/plan.h>
 #include <kaboum/plan/replay.h>
+#include <kaboum/world/exact_meshes.h>
 
 #include <filesystem>
 
@@ -14,8 +15,8 @@ namespace kaboum::execution {
 namespace {
 
 /// The scene's exact meshes; without them, and a note, where one cannot be read.
-std::vector<ExactMesh> meshes_of(const PlanningTask& task, const PlanPageOptions& options,
-                                 Notes& notes) {
+std::vector<world::ExactMesh> meshes_of(const PlanningTask& task, const PlanPageOptions& options,
+                                        Notes& notes) {
   try {
     return exact_meshes(task.scene()->world, task.files().scene, options.packages);
   } catch (const Error& error) {
@@ -47,7 +48,8 @@ PlanPage plan_page(const PlanningTask& task, const plan::Model& model, plan::Pla
                                ? std::filesystem::path(task.files().domain).filename().string()
                                : model.name;
   const std::string data = recording.json(meshes_of(task, options, out.notes));
-  out.html = page::filled("plan.html", {{"title", escape_xml("Plan " + name)},
+  const std::string note = plan.not_certified.empty() ? "" : ": contacts " + plan.not_certified;
+  out.html = page::filled("plan.html", {{"title", escape_xml("Plan " + name + note)},
                                         {"graph", plan::plan_svg(model, plan, drawing)},
                                         {"data", page::in_script(data)}});
   return out;

@@ -119,12 +119,17 @@ PlanningTask::PlanningTask(const TaskFiles& files) : data_(std::make_unique<Data
   if (!d.scene && !files.margin.margins.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "«margin»: there is no scene in which things could be kept apart");
+  if (!d.scene && files.engine.library != engines::Library::Own)
+    throw Error(ErrorCode::InvalidArgument,
+                "«engine»: there is no scene whose contacts it decides");
   if (d.scene) {
     d.scene->world.margins = world::margins_of(d.scene->world, files.margin);
     manipulation::ExternalOptions options;
     options.counters = d.counters;
+    options.substitute = engines::make_substitute(d.scene->world, d.files.scene, files.engine);
     bindings = manipulation::bind_externals(d.scene->world, options);
-    if (files.answers_kept) {
+    // What is kept is certified: answers of another library neither go there nor come from there.
+    if (files.answers_kept && options.substitute == nullptr) {
       d.open_cache();
       bindings = d.cache->wrap(bindings);
     }

@@ -149,14 +149,14 @@ void Recording::end_unplanned() {
   data_->steps[last_->first]["ways"][last_->second]["unplanned"] = true;
 }
 
-std::string Recording::json(const std::vector<ExactMesh>& exact) const {
+std::string Recording::json(const std::vector<world::ExactMesh>& exact) const {
   Json out = {{"kaboum_player", 1}, {"unit", world_.unit}};
   out["robots"] = Json::array();
   for (const world::RobotModel& robot : world_.robots) out["robots"].push_back(robot_json(robot));
   auto& shapes = out["shapes"] = Json::array();
   const auto add = [&](const world::Item& item) {
     shapes.push_back(shape_json(world_, item));
-    for (const ExactMesh& mesh : exact)
+    for (const world::ExactMesh& mesh : exact)
       if (mesh.item == item) shapes.back()["exact"] = mesh_json(mesh.mesh);
   };
   for (std::size_t r = 0; r < world_.robots.size(); ++r)

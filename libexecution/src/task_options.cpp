@@ -1,5 +1,6 @@
 // The options of planning tasks and of carrying out plans: their tables.
 
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/robot/shape_options.h>
 
@@ -71,6 +72,12 @@ const std::vector<Option<TaskFiles>>& task_options() {
 const std::vector<Option<TaskFiles>>& task_margin_options() {
   static const std::vector<Option<TaskFiles>> options = options_of_part<TaskFiles>(
       world::margin_options(), [](auto& r) -> auto& { return r.margin; });
+  return options;
+}
+
+const std::vector<Option<TaskFiles>>& task_engine_options() {
+  static const std::vector<Option<TaskFiles>> options = options_of_part<TaskFiles>(
+      engines::engine_options(), [](auto& r) -> auto& { return r.engine; });
   return options;
 }
 

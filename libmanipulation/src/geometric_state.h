@@ -28,7 +28,9 @@ struct Volume;
 /// A world, and what is asked of it again and again.
 struct Geometry {
   Geometry(world::World w, const ExternalOptions& o)
-      : world(std::move(w)), options(o), checker(world, options.observer.get()) {
+      : world(std::move(w)),
+        options(o),
+        checker(world, options.observer.get(), options.substitute.get()) {
     check.scratch = &scratch;
     check.where = false;
   }

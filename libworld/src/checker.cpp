@@ -103,12 +103,22 @@ Contact contact_of(const World& world, const Item& a, const Item& b, const Posed
   return out;
 }
 
-Checker::Checker(const World& world, Observer* observer)
+Contact substituted_contact(const std::array<Item, 2>& pair) {
+  Contact out{.items = pair, .bodies = {}};
+  out.substituted = true;
+  return out;
+}
+
+Checker::Checker(const World& world, Observer* observer, Substitute* substitute)
     : world_(&world),
       observer_(observer),
+      substitute_(substitute),
       largest_margin_(world.margins.largest() * (1 + 0x1p-50)) {
   if (!(largest_margin_ >= 0 && std::isfinite(largest_margin_)))
     throw Error(ErrorCode::InvalidArgument, "a margin that is no number from 0 on");
+  if (substitute != nullptr && largest_margin_ > 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "«margin»: margins are kept by the bounded predicates only, not by «engine»");
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
     const RobotModel& robot = world.robots[r];
     const std::size_t n = robot.kinematics.variables.size();
@@ -236,7 +246,18 @@ void Checker::visit_contacts(const WorldState& state, Scratch& scratch, const Op
       });
 }
 
+std::vector<Contact> Checker::substituted(const WorldState& state, const Options& options,
+                                          bool all) const {
+  if (observer_ != nullptr) observer_->asked(state);
+  const std::vector<std::array<Item, 2>> looked_at = pairs(state, options);
+  std::vector<Contact> out;
+  for (const std::size_t k : substitute_->find_meeting(state, looked_at, all))
+    out.push_back(substituted_contact(looked_at[k]));
+  return out;
+}
+
 bool Checker::is_free(const WorldState& state, Scratch& scratch, const Options& options) const {
+  if (substitute_ != nullptr) return substituted(state, options, false).empty();
   bool meet = false;
   visit_meeting(state, scratch, options, [&](auto&&...) { return meet = true; });
   return !meet;
@@ -244,6 +265,10 @@ bool Checker::is_free(const WorldState& state, Scratch& scratch, const Options& 
 
 std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,
                                              const Options& options) const {
+  if (substitute_ != nullptr) {
+    std::vector<Contact> found = substituted(state, options, false);
+    return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
+  }
   std::optional<Contact> out;
   visit_contacts(state, scratch, options, [&](Contact contact) {
     out = std::move(contact);
@@ -254,6 +279,7 @@ std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& s
 
 std::vector<Contact> Checker::find_contacts(const WorldState& state, Scratch& scratch,
                                             const Options& options) const {
+  if (substitute_ != nullptr) return substituted(state, options, true);
   std::vector<Contact> out;
   visit_contacts(state, scratch, options, [&](Contact contact) {
     out.push_back(std::move(contact));

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "moving_pairs.h"
+#include "sampled_motion.h"
 
 namespace kaboum::world {
 namespace {
@@ -196,6 +197,8 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
                           const robot::Path& path, const MotionOptions& options) {
   detail::require_motion(checker, state, robot, path, options);
   if (Observer* observer = checker.observer()) observer->asked(state, robot, path, nullptr);
+  if (checker.substitute() != nullptr)
+    return detail::sampled_motion(checker, state, {{robot, &path}}, options);
   return Motion(checker, state, {{robot, &path}}, options).run();
 }
 
@@ -218,6 +221,8 @@ MotionAnswer check_motions(const Checker& checker, const WorldState& state,
   }
   if (Observer* observer = checker.observer())
     for (const RobotPath& p : paths) observer->asked(state, p.robot, p.path, nullptr);
+  if (checker.substitute() != nullptr)
+    return detail::sampled_motion(checker, state, robots, options);
   return Motion(checker, state, robots, options).run();
 }
 
@@ -226,6 +231,8 @@ std::vector<Item> find_obstacles(const Checker& checker, const WorldState& state
                                  const MotionOptions& options) {
   detail::require_motion(checker, state, robot, path, options);
   if (Observer* observer = checker.observer()) observer->asked(state, robot, path, &things);
+  if (checker.substitute() != nullptr)
+    return detail::sampled_obstacles(checker, state, {robot, &path}, things, options);
   return Obstacles(checker, state, robot, path, things, options).run();
 }
 

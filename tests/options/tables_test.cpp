@@ -5,6 +5,7 @@
 #include <kaboum/certify/set_options.h>
 #include <kaboum/certify/sweep_options.h>
 #include <kaboum/distance/compare_options.h>
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/keep_options.h>
@@ -115,6 +116,7 @@ TEST(OptionTables, AreSound) {
   check("shapes of robots", robot::shape_options());
   check("states", world::state_options());
   check("margins", world::margin_options());
+  check("engines", engines::engine_options());
   check("motions", world::motion_options());
   check("pairs of links", world::pair_options());
   check("scenes", scene::scene_options());

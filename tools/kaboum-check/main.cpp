@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "common/check_report.h"
+#include "engine.h"
 #include "inside.h"
 #include "options.h"
 
@@ -301,8 +302,14 @@ int check(const tools::CheckOptions& o) {
                                         : robot::Path{model.home};
   }
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
-  const int code = paths.empty() ? check_states(o, scene, robot, values, report)
-                                 : check_paths(o, scene, paths, report);
+  const auto tell = [&](const std::string& line) { say(o, line); };
+  const bool own = o.engine.library == engines::Library::Own;
+  if (!own) report["engine"] = tools::engine_json(o);
+  const int code = own ? paths.empty() ? check_states(o, scene, robot, values, report)
+                                       : check_paths(o, scene, paths, report)
+                   : paths.empty()
+                       ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
+                       : tools::check_paths_by_engine(o, scene, paths, tell, report);
   if (!notes.empty()) report["notes"] = notes;
   if (!o.margin.margins.empty()) report["margins"] = words_of(o.margin);
   tools::write_report(o.common, "kaboum-check", report);
@@ -337,6 +344,7 @@ int main(int argc, char** argv) {
   tools::describe(app, options);
   return tools::run(app, argc, argv, [&] {
     require_meaning(options);
+    tools::require_engine_meaning(options);
     return check(options);
   });
 }

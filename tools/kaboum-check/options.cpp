@@ -2,6 +2,7 @@
 
 #include "options.h"
 
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
 #include <kaboum/world/margins.h>
@@ -49,14 +50,20 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->type_name("FILE");
   add_request_options(app, world::motion_options(), o.motion, o.stated);
   add_request_options(app, motion::keep_options(), o.keep, o.stated);
+  add_request_options(app, engines::engine_options(), o.engine, o.stated);
+  app.add_flag("--compare", o.compare,
+               "With --engine: ask own predicates, too, and say which pairs the two differ about, "
+               "and how long each takes (not with --path)");
   add_common_options(app, o.common);
   app.footer(
       "Free is certain. Contacts are colliding where inner sets meet, which is certain, else "
       "within epsilon: the solids are at most that far apart "
       "(docs/algorithms/bounded-predicates.md). Waypoints and configurations are counted from 1.\n"
+      "What --engine fcl, bullet or ode says is never certified: exit code 0 is then its word "
+      "alone, and of a motion that of its samples (docs/algorithms/collision-engines.md).\n"
       "Exit codes: 0 free, inside, and kept; 1 not free, not certainly inside, or not kept; 2 "
       "usage; "
-      "3 bad input; 4 output failed; 6 internal error; "
+      "3 bad input; 4 output failed; 5 the engine is not built; 6 internal error; "
       "7 undecided (--max-intervals; whether something is inside, or kept).");
 }
 

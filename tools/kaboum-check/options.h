@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/engines/engine_world.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/robot/path_file.h>
 #include <kaboum/world/margins.h>
@@ -27,7 +28,8 @@ struct CheckOptions {
   motion::KeepRequest keep;
   world::MarginRequest margin;
   std::set<std::string> stated;  ///< names of the options of these that were stated
-  bool distance = false;
+  engines::EngineRequest engine;
+  bool distance = false, compare = false;
   CommonOptions common;
 };
 

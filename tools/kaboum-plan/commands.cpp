@@ -3,6 +3,7 @@
 #include "commands.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
 #include <kaboum/plan/plan.h>
@@ -59,6 +60,14 @@ Json geometry_json(const manipulation::GeometryCounters& c) {
           {"volume_test_s", c.volume_test_seconds}};
 }
 
+Json engine_json(const PlanOptions& o) {
+  return {{"name", engines::name_of(o.task.engine.library)},
+          {"title", engines::title_of(o.task.engine.library)},
+          {"shapes", value_of(engines::engine_options(), "engine-shapes", o.task.engine)},
+          {"step", o.task.engine.step},
+          {"certified", false}};
+}
+
 /// What is said of an outcome where there is no plan, and its exit code.
 struct Verdict {
   std::string sentence;
@@ -101,6 +110,7 @@ std::string drawing_format(const PlanOptions& o) {
 }  // namespace
 
 int solve(const PlanOptions& o) {
+  require_engine_meaning(o);
   const auto start = std::chrono::steady_clock::now();
   const execution::PlanningTask task = read_task(o, !o.no_cache);
   const plan::Model model = task.load();
@@ -117,6 +127,7 @@ int solve(const PlanOptions& o) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict said = verdict(solution);
+  const std::string engine = engines::words_of(o.task.engine);
   Json report = {{"command", "solve"},
                  {"domain", o.task.domain},
                  {"problem", o.task.problem},
@@ -129,6 +140,7 @@ int solve(const PlanOptions& o) {
                  {"scene", task.files().scene},
                  {"statistics", statistics_json(solution.statistics)}};
   if (!o.task.margin.margins.empty()) report["margins"] = words_of(o.task.margin);
+  if (!engine.empty()) report["engine"] = engine_json(o);
   task.keep_answers();
   if (task.scene() != nullptr) {
     report["geometry"] = geometry_json(task.counters());
@@ -146,8 +158,9 @@ int solve(const PlanOptions& o) {
   if (solution.outcome == plan::Outcome::Solved) {
     size = plan::measure(model, solution.plan);
     report["plan"] = size_json(size);
-    const plan::Plan& graph = solution.plan;
-    text = plan::write_plan(model, o.tree ? plan::expand_tree(graph) : graph);
+    plan::Plan graph = o.tree ? plan::expand_tree(solution.plan) : solution.plan;
+    graph.not_certified = engine;
+    text = plan::write_plan(model, graph);
   }
   report["resources"] = {{"user_seconds_searching", solved - loaded}, {"wall_seconds", wall}};
   write_together(
@@ -159,37 +172,40 @@ int solve(const PlanOptions& o) {
                                 : "solved under " + std::to_string(n) +
                                       (n == 1 ? " assumption: " : " assumptions: ")) +
                             std::to_string(size.nodes) + " nodes, " + std::to_string(size.leaves) +
-                            " leaves, longest path " + std::to_string(size.longest) + " actions");
+                            " leaves, longest path " + std::to_string(size.longest) + " actions" +
+                            (engine.empty() ? "" : ", contacts " + engine));
     return kDone;
   }
-  std::cerr << "kaboum-plan: " << said.sentence << '\n';
+  std::cerr << "kaboum-plan: " << said.sentence << (engine.empty() ? "" : ", contacts " + engine)
+            << '\n';
   return said.code;
 }
 
 int check(const PlanOptions& o) {
+  require_engine_meaning(o);
+  const std::string engine = engines::words_of(o.task.engine);
   const execution::PlanningTask task = read_task(o);
   const plan::Model model = task.load();
-  const plan::Plan p = read_plan_file(model, o.plan);
+  const plan::Plan p = read_plan_file(model, o);
   const plan::CheckResult r = [&] {
     Progress progress(o.common.quiet);
     return plan::check(model, p, plan::kMostStates, [&](std::uint64_t states) {
       if (states % 1024 == 0) progress.show(std::to_string(states) + " states replayed");
     });
   }();
-  write_report(o.common, "kaboum-plan",
-               {{"command", "check"},
-                {"valid", r.valid},
-                {"violation", r.violation},
-                {"states_replayed", r.states},
-                {"ends_replayed", r.leaves},
-                {"plan", size_json(plan::measure(model, p))}});
+  Json report = {{"command", "check"},        {"valid", r.valid},
+                 {"violation", r.violation},  {"states_replayed", r.states},
+                 {"ends_replayed", r.leaves}, {"plan", size_json(plan::measure(model, p))}};
+  if (!engine.empty()) report["engine"] = engine_json(o);
+  write_report(o.common, "kaboum-plan", report);
+  const std::string by = engine.empty() ? "" : ", contacts " + engine;
   if (!r.valid) {
-    std::cout << "invalid: " << r.violation << '\n';
+    std::cout << "invalid: " << r.violation << by << '\n';
     return kNo;
   }
   if (!o.common.quiet)
     std::cout << "valid: every end meets the goal; " << r.states << " states replayed, " << r.leaves
-              << (r.leaves == 1 ? " distinct end\n" : " distinct ends\n");
+              << (r.leaves == 1 ? " distinct end" : " distinct ends") << by << '\n';
   return kDone;
 }
 
@@ -198,7 +214,7 @@ int show(const PlanOptions& o) {
   const std::string format = drawing_format(o);
   const execution::PlanningTask task = read_task(o);
   const plan::Model model = task.load();
-  plan::Plan p = read_plan_file(model, o.plan);
+  plan::Plan p = read_plan_file(model, o);
   if (o.tree) p = plan::expand_tree(p);
   io::write_file(o.output, format == "dot"   ? plan::plan_dot(model, p)
                            : format == "svg" ? plan::plan_svg(model, p)

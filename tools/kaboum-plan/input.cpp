@@ -2,6 +2,8 @@
 
 #include "input.h"
 
+#include <kaboum/base/error.h>
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/outcomes.h>
 
@@ -21,10 +23,22 @@ std::map<std::string, std::string> read_outcomes(const std::string& file) {
   return plan::parse_outcomes({bytes.begin(), bytes.end()}, file);
 }
 
-plan::Plan read_plan_file(const plan::Model& model, const std::string& file) {
+void require_engine_meaning(const PlanOptions& o) {
+  if (o.task.engine.library != engines::Library::Own) return;
+  for (const auto& option : engines::engine_options())
+    if (option.name != "engine" && o.stated.contains(option.name))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--" + option.name + " needs --engine with a library of others");
+}
+
+plan::Plan read_plan_file(const plan::Model& model, const PlanOptions& o) {
+  const std::string& file = o.plan;
   const std::vector<char> bytes = io::read_file(file);
-  return plan::read_plan(model, std::string(bytes.begin(), bytes.end()),
-                         file == "-" ? "stdin" : file);
+  plan::Plan out =
+      plan::read_plan(model, std::string(bytes.begin(), bytes.end()), file == "-" ? "stdin" : file);
+  if (!out.not_certified.empty())
+    log(o.common.quiet, "the plan was found with contacts " + out.not_certified);
+  return out;
 }
 
 }  // namespace kaboum::tools

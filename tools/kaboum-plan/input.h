@@ -18,7 +18,11 @@ execution::PlanningTask read_task(const PlanOptions& options, bool answers_kept 
 /// A file of outcomes. @throws Error{InvalidInput} as plan::parse_outcomes.
 std::map<std::string, std::string> read_outcomes(const std::string& file);
 
+/// The plan of --plan; says where nothing of it is certified.
 /// @throws Error{InvalidInput} as plan::read_plan.
-plan::Plan read_plan_file(const plan::Model& model, const std::string& file);
+plan::Plan read_plan_file(const plan::Model& model, const PlanOptions& options);
+
+/// @throws Error{InvalidArgument} for options of --engine without it.
+void require_engine_meaning(const PlanOptions& options);
 
 }  // namespace kaboum::tools

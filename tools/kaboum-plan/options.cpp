@@ -42,6 +42,7 @@ CLI::App* add_solve_command(CLI::App& app, PlanOptions& o) {
   add_problem(*s, o);
   add_scene(*s, o);
   add_request_options(*s, execution::task_margin_options(), o.task, o.stated);
+  add_request_options(*s, execution::task_engine_options(), o.task, o.stated);
   add_request_options(*s, plan::solve_options(), o.search, o.stated);
   s->add_option("-o,--output", o.output, "The plan (JSON); - is stdout")
       ->capture_default_str()
@@ -67,6 +68,7 @@ CLI::App* add_check_command(CLI::App& app, PlanOptions& o) {
   add_problem(*c, o);
   add_scene(*c, o);
   add_request_options(*c, execution::task_margin_options(), o.task, o.stated);
+  add_request_options(*c, execution::task_engine_options(), o.task, o.stated);
   c->add_option("--plan", o.plan, "The plan to check, or -")->required()->type_name("FILE");
   add_common_options(*c, o.common);
   return c;

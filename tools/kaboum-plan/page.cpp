@@ -19,7 +19,7 @@ int write_page(const PlanOptions& o) {
   require_apart({{"--html", o.html}}, inputs);
   const plan::Model model = task.load();
   const execution::PlanPage page = execution::plan_page(
-      task, model, read_plan_file(model, o.plan), {.tree = o.tree, .packages = o.page.packages});
+      task, model, read_plan_file(model, o), {.tree = o.tree, .packages = o.page.packages});
   for (const std::string& note : page.notes) log(o.common.quiet, note);
   io::write_file(o.html, page.html);
   return kDone;

@@ -108,7 +108,7 @@ int run_plan(const PlanOptions& o) {
   if (task.scene() == nullptr)
     throw Error(ErrorCode::InvalidArgument, "--scene is required: a plan is carried out in it");
   const plan::Model model = task.load();
-  const plan::Plan plan = read_plan_file(model, o.plan);
+  const plan::Plan plan = read_plan_file(model, o);
   const execution::PlanRunReport done = [&] {
     Progress progress(o.common.quiet);
     request.simulation.progress = [&](const std::string& stage) { progress.show(stage); };

@@ -152,6 +152,7 @@ PlanSize measure(const Model& model, const Plan& plan) {
 Plan expand_tree(const Plan& plan, std::size_t limit, const PlanProgress& progress) {
   bottom_up(plan);  // refuses cycles
   Plan tree;
+  tree.not_certified = plan.not_certified;
   std::vector<std::pair<Index, Index>> todo;  // node of the plan, its copy
   const auto copy = [&](Index n) -> Index {
     if (n == kNone) return kNone;

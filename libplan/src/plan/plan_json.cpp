@@ -54,6 +54,7 @@ class Reader {
         fail("'choice', one for all calls, is of an older version: plan again");
       if (json.contains("choices")) plan.choices = choices(member(json, "choices"));
     }
+    if (json.contains("not_certified")) plan.not_certified = text(json, "not_certified");
     const Json& nodes = member(json, "nodes");
     if (!nodes.is_array()) fail("'nodes' is not a list");
     for (const Json& n : nodes) {
@@ -249,6 +250,7 @@ std::string write_plan(const Model& model, const Plan& plan) {
     json["attempts"] = plan.attempts;
     if (!plan.choices.empty()) json["choices"] = plan.choices;
   }
+  if (!plan.not_certified.empty()) json["not_certified"] = plan.not_certified;
   json["root"] = link(plan.root);
   json["nodes"] = std::move(nodes);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -37,6 +37,7 @@ std::string plan_text(const Model& model, const Plan& plan, const PlanProgress& 
     std::string label;
   };
   std::vector<Item> stack = {{plan.root, 0, ""}};
+  if (!plan.not_certified.empty()) out << "(contacts " << plan.not_certified << ")\n";
   std::size_t length = 0;  // of the indentation
   while (!stack.empty()) {
     if (progress) progress();
@@ -80,6 +81,8 @@ std::string plan_dot(const Model& model, const Plan& plan, const PlanProgress& p
     return n == kNone ? std::string("goal") : "n" + std::to_string(n);
   };
   out << name(plan.root) << ";\n";
+  if (!plan.not_certified.empty())
+    out << "  label=\"contacts " << escape_dot(plan.not_certified) << "\"; labelloc=t;\n";
   for (Index i = 0; i < plan.nodes.size(); ++i) {
     if (progress) progress();
     const Plan::Node& n = plan.nodes[i];

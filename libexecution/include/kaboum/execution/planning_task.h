@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/engines/engine_world.h>
 #include <kaboum/manipulation/answer_cache.h>
 #include <kaboum/manipulation/externals.h>
 #include <kaboum/plan/failed_calls.h>
@@ -22,7 +23,10 @@ struct TaskFiles {
   std::vector<std::string> plugins = {}, processes = {};  ///< with functions of a user's own
   double most_seconds = 10;                               ///< for an answer of these. > 0 [s]
   world::MarginRequest margin = {};                       ///< that is kept in the scene
-  bool answers_kept = false;  ///< answers of the scene's functions are taken from the cache
+  /// Who decides contacts in the scene. Of a library of others nothing is certified.
+  engines::EngineRequest engine = {};
+  /// Answers of the scene's functions are taken from the cache: never those of other libraries.
+  bool answers_kept = false;
 };
 
 /// A planning task that was read from files, with the external functions of a scene, of programs

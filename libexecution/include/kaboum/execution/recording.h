@@ -2,6 +2,7 @@
 
 #include <kaboum/execution/exact_cell.h>
 #include <kaboum/execution/simulation.h>
+#include <kaboum/world/exact_meshes.h>
 
 #include <map>
 #include <memory>
@@ -38,7 +39,7 @@ class Recording {
 
   /// The page's data. Bounding sets are written without their margins.
   /// @param exact  of the scene; may be empty.
-  [[nodiscard]] std::string json(const std::vector<ExactMesh>& exact) const;
+  [[nodiscard]] std::string json(const std::vector<world::ExactMesh>& exact) const;
 
  private:
   struct Data;

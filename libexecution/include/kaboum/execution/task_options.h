@@ -12,6 +12,9 @@ const std::vector<Option<TaskFiles>>& task_options();
 /// What a task may keep apart where a plan is found or checked, besides: margin.
 const std::vector<Option<TaskFiles>>& task_margin_options();
 
+/// Who decides contacts where a plan is found or checked: the options of engines.
+const std::vector<Option<TaskFiles>>& task_engine_options();
+
 /// The options of carrying out a plan.
 const std::vector<Option<PlanRunRequest>>& run_options();
 

@@ -29,6 +29,9 @@ struct ExternalOptions {
   std::shared_ptr<GeometryCounters> counters = {};  ///< counted in, if there are some
   /// Is told what the bounded predicates are asked; may be none.
   std::shared_ptr<world::Observer> observer = {};
+  /// Decides contacts of configurations and motions in their stead; may be none. Volumes and
+  /// regions stay theirs. Nothing is certified then that a payload says to be free.
+  std::shared_ptr<world::Substitute> substitute = {};
   double upright = 0.26;  ///< most that what is kept upright leans, at any instant. > 0 [rad]
   /// Most that volumes are enlarged by on account of what moves between the ends of their pieces.
   /// Where bodies of the scene's sets have a radius, four times that if it is more. > 0 [length]

@@ -54,6 +54,8 @@ struct Plan {
   std::uint64_t seed = 0;  ///< of its calls
   unsigned attempts = 0;   ///< the most that one of them took; 0: no function reads the state
   Choices choices;         ///< of its calls
+  /// Who answered external functions without certifying it, in words; empty: nobody.
+  std::string not_certified = {};
 
   [[nodiscard]] bool operator==(const Plan& other) const;
 };

@@ -33,6 +33,8 @@ struct Contact {
   double epsilon = 0;
   double margin = 0;          ///< that the two are to be kept from each other [length]
   Vec3 place = Vec3::Zero();  ///< a point of it, rounded, in the world [length]
+  /// True if a substitute found it (Checker): only the items are known.
+  bool substituted = false;
   /// How deep the sets are in each other, where Checker::measure_depth was asked. `upper` bounds
   /// the depth of the solids, too.
   std::optional<collide::Penetration> depth = {};
@@ -70,6 +72,23 @@ class Observer {
                      const std::vector<Item>* things) = 0;
 };
 
+/// Decides in a checker's place which things collide: a collision library of others
+/// (kaboum::engines). Nothing that is so decided is certified. Threads may share it.
+class Substitute {
+ public:
+  Substitute() = default;
+  virtual ~Substitute() = default;
+  Substitute(const Substitute&) = delete;
+  Substitute& operator=(const Substitute&) = delete;
+  /// Numbers of those of the pairs that collide, ascending: of all, or at most of one.
+  /// @pre the state fits the world, and no item of the pairs is absent.
+  [[nodiscard]] virtual std::vector<std::size_t> find_meeting(
+      const WorldState& state, const std::vector<std::array<Item, 2>>& pairs, bool all) = 0;
+  /// Motions are looked at at instants: in between no point of what moves goes farther than this,
+  /// which proves nothing of the time between. > 0 [length]
+  [[nodiscard]] virtual double step() const = 0;
+};
+
 /// Collision of all that is in a world, by the bounded predicates of libcollide
 /// (docs/algorithms/bounded-predicates.md). Looked at are robots' links against objects, other
 /// robots and themselves, except allowed pairs and contacts, and carried objects like links. Pairs
@@ -78,7 +97,12 @@ class Checker {
  public:
   /// Refers to the world, which must not change (its margins neither), and to the observer, if
   /// there is one: threads may share the checker as far as they may share that.
-  explicit Checker(const World& world, Observer* observer = nullptr);
+  /// @param substitute  decides contacts of states and motions instead, and nothing is certified of
+  ///   them: "free" is what it says, at the instants that it is asked about. Distances, depths,
+  ///   places and regions stay those of the bounding sets. May be null.
+  /// @throws Error{InvalidArgument} for a substitute where margins are to be kept: it knows none.
+  explicit Checker(const World& world, Observer* observer = nullptr,
+                   Substitute* substitute = nullptr);
 
   struct Options {
     bool resting = false;  ///< pairs of objects that rest, too
@@ -140,6 +164,7 @@ class Checker {
 
   [[nodiscard]] const World& world() const { return *world_; }
   [[nodiscard]] Observer* observer() const { return observer_; }
+  [[nodiscard]] Substitute* substitute() const { return substitute_; }
 
   /// The pairs that are looked at in states with these attachments, in their order.
   [[nodiscard]] std::vector<std::array<Item, 2>> pairs(const WorldState& state,
@@ -182,8 +207,13 @@ class Checker {
   void visit_contacts(const WorldState& state, Scratch& scratch, const Options& options,
                       const Found& found) const;
 
+  /// What the substitute finds. @param all  else at most one
+  [[nodiscard]] std::vector<Contact> substituted(const WorldState& state, const Options& options,
+                                                 bool all) const;
+
   const World* world_;
   Observer* observer_;
+  Substitute* substitute_;
   std::shared_ptr<const char> identity_ = std::make_shared<char>();  ///< of this and its copies
   std::vector<Item> items_;
   std::map<Item, std::vector<Vec3>> hulls_;
@@ -204,5 +234,7 @@ class Checker {
 /// @param margin  that the two are to be kept from each other
 Contact contact_of(const World& world, const Item& a, const Item& b, const collide::PosedSet& at_a,
                    const collide::PosedSet& at_b, const collide::BodyPair& bodies, double margin);
+/// What a substitute found of a pair.
+Contact substituted_contact(const std::array<Item, 2>& pair);
 
 }  // namespace kaboum::world

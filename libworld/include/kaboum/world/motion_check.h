@@ -23,7 +23,7 @@ struct MotionOptions {
 
 struct MotionAnswer {
   enum class Outcome {
-    Free,       ///< at every instant of the path, for certain
+    Free,       ///< at every instant of the path, for certain; of a substitute: at its samples
     Contact,    ///< outer sets meet, or come nearer than the resolution
     Undecided,  ///< most_intervals reached
   };
@@ -38,6 +38,8 @@ struct MotionAnswer {
   double contact_share = 0;
   bool meets = false;  ///< outer sets meet then; false: they are nearer than the resolution
   std::size_t intervals = 0, queries = 0;
+  /// Instants that a substitute was asked about (Checker); 0: all were decided.
+  std::size_t samples = 0;
 };
 
 /// A robot and the waypoints that it goes along, a value per variable at each.
@@ -53,6 +55,8 @@ struct RobotPath {
 ///
 /// Looked at are pairs with a link of this robot or with what it carries. Others may touch, as
 /// another robot and an object, without being seen: Checker::find_contacts tells that of a state.
+///
+/// A checker with a substitute asks it at samples (Substitute::step), and certifies nothing.
 ///
 /// @param path  a value per variable at each waypoint; the state's own values are not looked at.
 /// @throws as Checker::find_contact; Error{InvalidArgument} for a path that is empty or does not
