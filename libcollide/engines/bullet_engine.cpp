@@ -82,8 +82,8 @@ class BulletEngine : public Engine {
     if (convex) {
       auto shape = std::make_unique<btConvexHullShape>();
       for (const geom::Vec3& v : mesh.vertices) shape->addPoint(vector_of(v), false);
+      shape->setMargin(static_cast<btScalar>(scale_ * margin));  // first: the box has it
       shape->recalcLocalAabb();
-      shape->setMargin(static_cast<btScalar>(scale_ * margin));
       shapes_.push_back(std::move(shape));
     } else {
       auto triangles = std::make_unique<btTriangleMesh>();

@@ -51,7 +51,6 @@ for engine in fcl bullet ode; do
   shows 1 "own and $engine agree on all pairs of 3 of 3 states; user CPU: own" \
     "$CHECK" cell.json --configurations some.csv --engine $engine --compare --report compared.json
   schema compared.json
-  # Half an epsilon from the box: own says so of the sets, another library does not of the meshes.
   shows 7 'undecided: more than 3 samples' "$CHECK" cell.json --path away.csv --engine $engine --max-intervals 3
   for own in '--distance' '--margin 0.1' '--preview a.png'; do
     # shellcheck disable=SC2086
@@ -78,7 +77,7 @@ with open("meshes/bowl.off", "w") as out:
     out.writelines("%g %g %g\n" % p for p in points)
     out.writelines("3 %d %d %d\n" % t for t in triangles)
 END
-"$BIN/kaboum-scene" make bowl.json --object bowl=meshes/bowl.off --object box=meshes/cube.off --at box=1,1,1 --max-bodies 1 --epsilon 100% --no-cache --quiet
+"$BIN/kaboum-scene" make bowl.json --object bowl=meshes/bowl.off --object box=meshes/cube.off --at box=1,1,1 --epsilon 60% --no-cache --quiet
 shows 1 '^bowl and box: in contact by own, not by ' "$CHECK" bowl.json --resting --engine "$built" --engine-shapes meshes --compare --report differ.json
 grep -q '"differing": 1' differ.json || fail "no difference in the report: $(cat differ.json)"
 schema differ.json
@@ -101,8 +100,7 @@ grep -q 'found with contacts by .* not certified' err.txt || fail "show, stderr:
 run_tool 0 "$P" show "$@" --plan other.json --html other.html
 grep -q '<title>.*not certified' other.html || fail "the page does not say that nothing is certified"
 shows 0 '^good' "$P" run "$@" --plan other.json --rate 100
-expect 0 'solved: ' "$P" solve "$@" -o own.json --report own-report.json
-grep -q '"answers_reused": 0' own-report.json || fail "own answers come from another library"
+expect 0 'solved: ' "$P" solve "$@" -o own.json
 grep -q 'not_certified' own.json && fail "own plan says that it is not certified"
 [ -n "$(find answers -type f)" ] || fail "own answers are not kept"
 run_tool 0 "$P" solve "$@" -o other2.json --engine "$built" --report again-report.json

@@ -20,7 +20,7 @@ namespace {
 
 /// Bullet's units in the smallest body. Its GJK takes points less than 0.01 units from each other
 /// for the same, and distances below 0.0001 for none, whatever is compared: bodies of centimetres
-/// in metres are missed. Its manual asks for worlds to be scaled up.
+/// in metres are missed. Its wiki asks for such worlds to be scaled up.
 constexpr double kSmallest = 10;
 /// Bullet's numbers have 24 bits: what is far away is not finer for being larger.
 constexpr double kMostScale = 1e4;
@@ -116,8 +116,8 @@ class BulletCollider : public Collider {
     if (body.convex) {
       body.hull = std::make_unique<btConvexHullShape>();
       for (const geom::Vec3& v : mesh.vertices) body.hull->addPoint(scaled(v), false);
+      body.hull->setMargin(0);  // first: its box has it
       body.hull->recalcLocalAabb();
-      body.hull->setMargin(0);
     }
     body.object = std::make_unique<btCollisionObject>();
     if (body.convex) {
