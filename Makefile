@@ -5,7 +5,8 @@ help:
 	@echo "make demo    simplify a bracket, check the result, draw it (into demo-output/)"
 	@echo "make build   build everything (into build/release/)"
 	@echo "make test    build everything and run the test suite"
-	@echo "make reproduce  the thesis's figures beside ours, on the models of KABOUM_MESHES (into reproduction/)"
+	@echo "make reproduce  the thesis's tables and figures beside ours, on the models of KABOUM_MESHES (into reproduction/), kept in docs/;"
+	@echo "             make reproduce QUICK=1: a part of it (into reproduction-quick/), which is not kept"
 	@echo "make clean   remove build/ and demo-output/"
 
 demo:
@@ -18,7 +19,11 @@ test:
 	@scripts/test
 
 reproduce:
-	@scripts/reproduce-thesis
+ifdef QUICK
+	@scripts/reproduce-thesis --quick --out reproduction-quick
+else
+	@scripts/reproduce-thesis --peers --keep
+endif
 
 clean:
 	rm -rf build demo-output

@@ -2,7 +2,7 @@
 // CGAL's Garland–Heckbert edge collapse and meshoptimizer. One thread.
 //
 //   simplifiers [--methods planes,distance-fast,distance,cgal,meshopt] [--ratios 0.05]
-//               [--no-distances] [--repeat N] [--csv FILE] [--json FILE]
+//               [--no-distances] [--repeat N] [--csv FILE] [--json FILE] [--out FOLDER]
 //               MESH... [--subdivided MESH]...
 //
 // Every run has a process of its own, whose user CPU time and peak memory are therefore its own.
@@ -11,6 +11,7 @@
 // mesh), `seconds_all` includes making the method's own mesh and taking the result out.
 // Distances to the prepared input are in percent of the diagonal: maxima certified upper bounds
 // (gap 1 %), means from samples. --subdivided cuts every triangle into four first (common.h).
+// --out: results go to FOLDER/MODEL-METHOD.off (of the last ratio), where they can be judged by others.
 // CGAL's part is GPL: this program is never installed.
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -63,7 +64,7 @@ struct Options {
   std::vector<double> ratios;
   bool distances = true;
   int repeat = 1;
-  std::string csv, json;
+  std::string csv, json, out;
 };
 
 struct Result {
@@ -191,7 +192,8 @@ void measure_into(Json& row, const geom::Mesh& original, const geom::Mesh& resul
   row["to_original_mean"] = percent * distance::sample_distances(result, *a, 100000, 1).mean.value;
 }
 
-Json run(const Input& input, const std::string& method, double ratio, bool distances) {
+Json run(const Options& o, const Input& input, const std::string& method, double ratio,
+         bool distances) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   geom::PrepareOptions how;
   how.drop_sheets = true;
@@ -223,11 +225,17 @@ Json run(const Input& input, const std::string& method, double ratio, bool dista
            {"peak_megabytes", peak_megabytes()},
            {"peak_megabytes_read", megabytes}};
   if (distances) measure_into(row, p.solid.mesh(), result.mesh);
+  if (!o.out.empty())
+    io::write_file(
+        std::filesystem::path(o.out) /
+            (std::filesystem::path(input.file).stem().string() + "-" + method + ".off"),
+        io::serialise_mesh(result.mesh, io::Format::Off));
   return row;
 }
 
 /// run() in a process of its own.
-Json run_apart(const Input& input, const std::string& method, double ratio, bool distances) {
+Json run_apart(const Options& o, const Input& input, const std::string& method, double ratio,
+               bool distances) {
   int ends[2];
   if (pipe(ends) != 0) throw Error(ErrorCode::Internal, "no pipe");
   const pid_t child = fork();
@@ -238,7 +246,7 @@ Json run_apart(const Input& input, const std::string& method, double ratio, bool
     setrlimit(RLIMIT_CPU, &limit);
     Json row;
     try {
-      row = run(input, method, ratio, distances);
+      row = run(o, input, method, ratio, distances);
     } catch (const std::exception& e) {
       row = {{"error", e.what()}};
     }
@@ -285,6 +293,8 @@ Options parse(const std::vector<std::string>& args) {
       o.csv = value();
     } else if (args[i] == "--json") {
       o.json = value();
+    } else if (args[i] == "--out") {
+      o.out = value();
     } else if (args[i].starts_with("--")) {
       throw Error(ErrorCode::InvalidArgument, "unknown option " + args[i]);
     } else {
@@ -321,7 +331,7 @@ std::vector<Json> compare(const Options& o, const Input& input, double ratio) {
   for (int i = 0; i < o.repeat; ++i) {
     for (std::size_t m = 0; m < o.methods.size(); ++m) {
       if (best[m].contains("error")) continue;
-      const Json row = run_apart(input, o.methods[m], ratio, o.distances && i == 0);
+      const Json row = run_apart(o, input, o.methods[m], ratio, o.distances && i == 0);
       if (i == 0 || row.contains("error")) best[m] = row;
       if (row.contains("error")) continue;
       for (const char* key : {"seconds", "seconds_all"})

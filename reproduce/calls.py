@@ -31,12 +31,14 @@ class Calls:
         self.folder.mkdir(parents=True, exist_ok=True)
         self.failures = context.runner.failures
 
-    def __call__(self, name, program, arguments, inputs, results, codes=(0,)):
-        """@return the exit code; None when the program failed, which is noted. Then, and where a code of `codes` means
+    def __call__(self, name, program, arguments, inputs, results, codes=(0,), limit=None):
+        """@param limit  CPU seconds of each process of the call, instead of those of all calls
+        @return the exit code; None when the program failed, which is noted. Then, and where a code of `codes` means
         so, results are missing, never those of an earlier call."""
         key = hashlib.sha256(json.dumps(
-            [sha256(program), [str(a) for a in arguments], [hash_of(p) for p in inputs]]).encode()).hexdigest()
+            [sha256(program), [str(a) for a in arguments], [hash_of(p) for p in inputs], limit]).encode()).hexdigest()
         record = self.folder / f"{name}.json"
+        assert record.name not in results, f"{name}: its result would overwrite its record"
         try:
             kept = json.loads(record.read_text())
             if kept["key"] == key and kept["files"] == self._hashes(results):
@@ -52,15 +54,15 @@ class Calls:
                            PATH=f"{self.programs}{os.pathsep}{os.environ.get('PATH', '')}")
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
         start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        limit = (self.limit, self.limit + 5)
+        seconds = limit or self.limit
         done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, capture_output=True,
                               text=True, check=False,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5)))
         print(f" {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
         user = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         if done.returncode not in codes:
             self.failures[Step(name)] = (
-                f"stopped (CPU limit {self.limit} s, or out of memory)"
+                f"stopped (CPU limit {seconds} s, or out of memory)"
                 if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else
                 (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1])
             for partial in results:

@@ -51,16 +51,33 @@ class Document:
         self._blocks.append(("paragraph", text))
 
     def table(self, header, rows):
-        """Rows of texts; columns whose cells are all numbers are set flush right."""
+        """Rows of texts; columns whose cells are all numbers are set flush right. A table without rows is none."""
+        if not rows:
+            return
         numeric = [all(_is_number(row[i]) for row in rows) for i in range(len(header))]
         self._blocks.append(("table", header, rows, numeric))
 
     def picture(self, path, caption):
         self._blocks.append(("picture", path, caption))
 
-    def markdown(self, folder):
-        """Pictures are linked relative to `folder`."""
-        out = [f"# {self.title}"]
+    def add(self, other):
+        """All that another document has, but its title."""
+        self._blocks += other._blocks
+
+    def tables(self):
+        """Of each table the headings above it, from the first level on, its header and its rows; headings whose place in the
+        document another one has taken are none."""
+        above, out = {}, []
+        for kind, *block in self._blocks:
+            if kind == "heading":
+                above = {level: text for level, text in above.items() if level < block[1]} | {block[1]: block[0]}
+            elif kind == "table":
+                out.append({"under": [text for _, text in sorted(above.items())], "header": block[0], "rows": block[1]})
+        return out
+
+    def markdown(self, folder=None):
+        """Pictures are linked relative to `folder`; None: left out."""
+        out = [f"# {self.title}"] if self.title else []
         for kind, *block in self._blocks:
             if kind == "heading":
                 out.append("#" * block[1] + " " + block[0])
@@ -71,7 +88,7 @@ class Document:
                 rule = ["---:" if right else "---" for right in numeric]
                 lines = [[cell.replace("|", "\\|") for cell in line] for line in (header, rule, *rows)]
                 out.append("\n".join("| " + " | ".join(line) + " |" for line in lines))
-            else:
+            elif folder is not None:
                 out.append(f"![{block[1]}]({os.path.relpath(block[0], folder)})")
         return "\n\n".join(out) + "\n"
 

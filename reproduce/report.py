@@ -5,10 +5,18 @@ the document; SECTIONS lists them. Every section is called twice: first to colle
 for, then, with the results there, to be written.
 """
 
+import resource
 import subprocess
+import sys
+import time
+import traceback
 
+import author
+import executions
 import gains
-import peer
+import illustrations
+import keep
+import peers
 import plots
 import ring
 import sampling
@@ -26,8 +34,10 @@ SERIES = (40000, 20000, 10000, 5000, 2500, 1250, 625, 312, 156)
 class Context:
     """What a section may ask for."""
 
-    def __init__(self, models, runner, folder, quick, peer_program=None):
-        self.models, self.runner, self.folder, self.quick, self.peer = models, runner, folder, quick, peer_program
+    def __init__(self, models, runner, folder, quick, others=None):
+        """@param others  programs of others, by their names: boundingmesh, bounding-convex-decomposition, python (which has the packages of
+        requirements.txt)"""
+        self.models, self.runner, self.folder, self.quick, self.others = models, runner, folder, quick, others or {}
         self.collecting = True
         self.wanted = []
 
@@ -308,35 +318,72 @@ def resources_section(context, document):
 
 # In the order of the report. Those that a quick run leaves out cost much and say least.
 SECTIONS = {
-    "models": models_section, "proposition-1": proposition_1_section, "table-4-2": table_4_2_section, "same-share": same_share_section,
-    "table-b-1": table_b_1_section, "gains": gains.section, "author": peer.section, "figures": figures_section,
-    "pictures": pictures_section, "sets": sets.section, "ring": ring.section, "sweeps": sweeps.section, "sampling": sampling.section,
-    "scenarios": scenarios.section, "resources": resources_section}
+    "models": models_section, "table-4-1": illustrations.table_4_1_section, "figure-4-1": illustrations.figure_4_1_section,
+    "figure-4-4": illustrations.figure_4_4_section, "proposition-1": proposition_1_section, "printed": gains.printed_section,
+    "table-4-2": table_4_2_section, "same-share": same_share_section, "table-b-1": table_b_1_section, "gains": gains.section,
+    "author": author.section, "author-sets": author.sets_section, "figures": figures_section, "pictures": pictures_section,
+    "sets": sets.section, "ring": ring.section, "sweeps": sweeps.section, "collisions": sweeps.collisions_section,
+    "sampling": sampling.section, "figure-5-3": illustrations.figure_5_3_section, "circular-rearrange": scenarios.circular_section,
+    "stacked": scenarios.stacked_section, "assembly": scenarios.assembly_section, "exact-meshes": scenarios.exact_section,
+    "whole-searches": scenarios.whole_searches_section, "remove": scenarios.remove_section, "executions": executions.section,
+    "simplifiers": peers.simplifiers_section, "wraps": peers.wraps_section, "coacd": peers.coacd_section, "motions": peers.motions_section,
+    "resources": resources_section}
 NOT_QUICK = {"same-share", "table-b-1"}
 
 
-def make(models, runner, folder, quick, wanted=None, peer_program=None):
-    """Runs what is needed and writes report.md, index.html, the tables and figures into `folder`; `wanted`: names of SECTIONS, all
-    where it is None."""
-    context = Context(models, runner, folder, quick, peer_program)
-    sections = [section for name, section in SECTIONS.items() if (name in wanted if wanted else not (quick and name in NOT_QUICK))]
-    for section in sections:
+def _spent():
+    """CPU and wall seconds, of finished children."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime, time.monotonic()
+
+
+def _written(context, section, name):
+    """The section's own document; what goes wrong in it is a failure of its own, and the others go on."""
+    document = Document("")
+    try:
+        section(context, document)
+    except Exception as error:  # pylint: disable=broad-except
+        traceback.print_exc(file=sys.stderr)
+        context.runner.failures[f"section {name}"] = f"{type(error).__name__}: {error}"
+    return document
+
+
+def make(models, runner, folder, quick, wanted=None, others=None):
+    """Runs what is needed and writes report.md, index.html, results.json, the tables and figures into `folder`; `wanted`: names of SECTIONS,
+    all where it is None. @return what is kept of the sections (keep.py)"""
+    context = Context(models, runner, folder, quick, others)
+    sections = {name: section for name, section in SECTIONS.items() if (name in wanted if wanted else not (quick and name in NOT_QUICK))}
+    for section in sections.values():
         section(context, Document(""))
     context.collecting = False
     runner.run_all(sorted(dict.fromkeys(context.wanted), key=lambda run: run.model.vertices()))
 
+    before = keep.read(folder)
+    kind, made, start = "quick" if quick else "whole", {}, time.monotonic()
+    names = ", ".join(model.name for model in models)
     document = Document("Figures of the thesis, reproduced" + (" (quick)" if quick else ""))
     document.paragraph(
         "Bounding meshes after A. Gaschler, Efficient Geometric Predicates for Integrated Task and Motion "
         "Planning: the figures that the thesis prints beside those of this build of KABouM. Written by "
         "scripts/reproduce-thesis.")
-    for section in sections:
-        section(context, document)
+    for number, (name, section) in enumerate(sections.items()):
+        left = list(sections)[number + 1:]
+        print(f"[section {number + 1} of {len(sections)}, {(time.monotonic() - start) / 60:.0f} min] {name}" +
+              (f"; left: {', '.join(left)}" if left else ""), file=sys.stderr, flush=True)
+        earlier = _spent()
+        part = _written(context, section, name)
+        document.add(part)
+        if f"section {name}" not in runner.failures and part.tables():
+            made[name] = keep.made(part, runner.programs, [b - a for a, b in zip(earlier, _spent())], names)
+            keep.write(folder / "results.json", keep.merged(before, {kind: made}))
     if runner.failures:
         document.heading("Runs without a result")
-        document.table(["run", "reason"], [[run.title(), why] for run, why in runner.failures.items()])
+        document.table(["run", "reason"], [[run if isinstance(run, str) else run.title(), why] for run, why in runner.failures.items()])
+    results = {kind: made}
+    keep.told(document, keep.read(keep.KEPT), results)
     rows = [{key: value for key, value in row.items() if key != "mesh"} for row in runner.results.values()]
     if rows:
         written(folder / "results.csv", rows[0].keys(), [row.values() for row in rows])
     (folder / "report.md").write_text(document.markdown(folder), encoding="utf-8")
     (folder / "index.html").write_text(document.html(), encoding="utf-8")
+    return results

@@ -7,8 +7,8 @@ from document import figure
 from sweeps import slope
 
 SEGMENTS, THIN, HEIGHT = 720, 0.002, 0.1  # of the mesh; radius 1
-COUNTS = (4, 8, 16, 32)
-QUICK_COUNTS = (4, 8)
+COUNTS = (4, 8, 12, 16, 20, 24, 32, 48)
+QUICK_COUNTS = (4, 8, 16, 24, 32)
 VERTICES = 8  # of a body, as in the thesis
 
 
@@ -47,7 +47,8 @@ def section(context, document):
         report = call.report(f"{name}-report.json")
         reach = report["reach"]["upper"]
         half = math.pi / report["bodies"]
-        lines.append([str(n), str(report["bodies"]), str(report["vertices"]), figure(reach), figure((1 - THIN) * (1 - math.cos(half))),
+        inwards = (1 - THIN) * (1 - math.cos(math.pi / n))  # of as many segments as are allowed
+        lines.append([str(n), str(report["bodies"]), str(report["vertices"]), figure(reach), figure(inwards), f"{reach / inwards:.2f}",
                       figure(1 / math.cos(half) - 1), figure(1 - math.cos(math.pi / (2 * n)))])
         points.append((report["bodies"], reach))
         if n == 8:
@@ -58,8 +59,10 @@ def section(context, document):
         f"A ring of radius 1, {THIN} thin, {HEIGHT} high, of {SEGMENTS} segments, covered by at most n bodies with {VERTICES} vertices each. The "
         "farthest point of the union from the ring is certified. Equal segments reach 1 − cos(π/n) inwards, in the middle of a chord, and "
         "1/cos(π/n) − 1 outwards, at the corners of trapezoids whose outer sides touch the ring. The thesis prints 1 − cos(π/2n), which is that of a segment of half the angle.")
-    document.table(["n", "bodies", "vertices", "distance", "equal segments, inwards", "outwards", "as printed"], lines)
+    document.table(["n", "bodies", "vertices", "distance", "equal segments, inwards", "distance ÷ equal segments", "outwards", "as printed"], lines)
     if len(points) > 1:
-        document.paragraph(f"The distance goes with the number of bodies to the power {slope(points):.2f}; −2 is quadratic.")
+        rises = [f"{b} bodies are farther away than {a}" for (a, x), (b, y) in zip(points, points[1:]) if y > x]
+        document.paragraph(f"The distance goes with the number of bodies to the power {slope(points):.2f}; −2 is quadratic. "
+                           + (f"**Not monotone: {'; '.join(rises)}.**" if rises else "More bodies are nearer throughout."))
     if shown and shown.is_file():
         document.picture(shown, "Figure 4.8: a thin ring and eight bodies; right: taken apart")
