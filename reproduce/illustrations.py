@@ -46,7 +46,7 @@ def figure_4_1_section(context, document):
         return
     model, call = models[0], Calls(context, "volumes")
     whole = f"{model.name}.off"
-    if call("prepared", call.programs / "bmesh-decimate", [model.path, "-o", whole, "--drop-sheets", "--holes", "close", "--precision", "double", "--vertices", 10 ** 9],
+    if call("prepared", call.programs / "bmesh-decimate", [model.path, "-o", whole, "--drop-sheets", "--holes", "fill", "--precision", "double", "--vertices", 10 ** 9],
             [model.path], [whole], (0, 1)) is None:
         return
     points, _ = meshes.read_off(call.folder / whole)
@@ -117,7 +117,7 @@ def figure_5_3_section(context, document):
         return
     script = call.folder / "derive"
     script.write_text(f'#!/bin/sh\nset -e\ncp {folder}/cell.json {folder}/grasps.json\n'
-                      f'exec "{call.programs / "kaboum-scene"}" grasps {folder}/grasps.json --form families --opening 0.08 --object o1 --quiet --preview grasps.html\n',
+                      f'exec "{call.programs / "kaboum-scene"}" grasps {folder}/grasps.json --robot robot1 --form families --opening 0.08 --object o1 --quiet --preview grasps.html\n',
                       encoding="utf-8")
     script.chmod(0o755)
     if call("families", script, [], [call.programs / "kaboum-scene", call.folder / folder / "cell.json"], [f"{folder}/grasps.json", "grasps.html"]) is None:

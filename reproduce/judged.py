@@ -2,7 +2,8 @@
 
 from document import figure
 
-GAP, SECONDS = "10%", 300  # of distances between solids
+GAP, SECONDS = 0.1, 120  # of distances between solids: relative, CPU time
+STOPPED = (-24, -9)  # by that limit
 
 
 def percent_of(report, key, side):
@@ -23,27 +24,40 @@ def surfaces(call, name, original, here, more=()):
     return row
 
 
+BAD_INPUT = 3  # bodies that are not convex, exactly: hulls of others, rounded. They are taken as one mesh then
+
+
 def verdict(call, name, original, here, is_set):
     """Whether the original is inside, by bound-verify."""
-    result = f"{name}-verdict-report.json"
-    command = ["cover", original, here] if is_set else ["mesh", "--outer", original, here]
-    if call(f"{name}-verdict", call.programs / "bound-verify", [*command, "--quiet", "--report", result], [original, call.folder / here], [result],
-            (0, 1, 7)) is None:
-        return "not decided"
-    return {"verified": "encloses", "refuted": "sticks out"}.get(call.report(result)["verdict"], "undecided")
+    commands = [["cover", original, here]] * is_set + [["mesh", "--outer", original, here]]
+    for number, command in enumerate(commands):
+        step = f"{name}-verdict" + "-as-mesh" * number
+        result = f"{step}-report.json"
+        code = call(step, call.programs / "bound-verify", [*command, "--quiet", "--report", result],
+                    [original, call.folder / here], [result], (0, 1, 7, *[BAD_INPUT] * (number + 1 < len(commands))))
+        if code in (0, 1, 7):
+            return {"verified": "encloses", "refuted": "sticks out"}.get(call.report(result)["verdict"], "undecided")
+    return "not decided"
 
 
 def solids(call, name, original, here, is_set):
-    """(verdict, how far the original sticks out of what bounds it, how far that reaches beyond the original) in percent, both certified
-    upper bounds of the farthest point, 0 where bound-verify has decided so; None where measuring failed. Between solids a distance
-    within a tenth of itself does: looking for where two surfaces are nearly the same takes long."""
+    """(verdict, how far the original sticks out of what bounds it, how far that reaches beyond the original) in percent, both certified upper
+    bounds of the farthest point of the solids; None where measuring failed or took too long. Where bound-verify has decided that the original is
+    inside, it sticks out by 0, and a mesh reaches beyond it by no more than its surface does: measuring what is nearly 0 takes long."""
     said = verdict(call, name, original, here, is_set)
-    result = f"{name}-solid-report.json"
-    kind = ["--b-as", "set"] if is_set else []
-    if call(f"{name}-solid", call.programs / "hausdorff-eval",
-            [original, here, "--solid", "--gap", GAP, "--samples", 1000, "--threads", "1", "--quiet", *kind, "--report", result],
-            [original, call.folder / here], [result], (0, 7), limit=SECONDS) is None:
-        return said, None, None
+    if said == "encloses" and not is_set:
+        found = surfaces(call, name, original, here)
+        return said, 0, None if found is None else found["a2o_max"]
+    for number, kind in enumerate([["--b-as", "set"]] * is_set + [["--b-as", "mesh"]]):
+        step = f"{name}-solid" + "-as-mesh" * number
+        result = f"{step}-report.json"
+        code = call(step, call.programs / "hausdorff-eval",
+                    [original, here, "--solid", "--gap", GAP, "--samples", 1000, "--threads", "1", "--quiet", *kind, "--report", result],
+                    [original, call.folder / here], [result], (0, 7, *STOPPED, *[BAD_INPUT] * (kind[1] == "set")), limit=SECONDS)
+        if code != BAD_INPUT:
+            break
+    if code not in (0, 7):
+        return said, 0 if said == "encloses" else None, None
     report = call.report(result)
     return said, 0 if said == "encloses" else percent_of(report, "max_upper", "a_to_b"), percent_of(report, "max_upper", "b_to_a")
 

@@ -126,13 +126,15 @@ def cell(found, key):
     values = [one[key] for one in found]
     if varies(found):
         return f"{figure(statistics.fmean(values))} ± {figure(statistics.stdev(values))}"
+    if key not in TIMES and values[0] == int(values[0]):
+        return f"{values[0]:,.0f}"
     if key not in TIMES or len(values) == 1:
         return figure(values[0])
     return f"{figure(statistics.median(values))} ({figure(min(values))}–{figure(max(values))})"
 
 
 def worst_first(keys, pairs):
-    """The keys, those first where ours are largest for what the other has; `pairs`: (key -> printed text or None, runs)."""
+    """The keys, those first where one of ours is largest for what the other has; `pairs`: (key -> printed text or None, runs)."""
     def ratio(key):
         logs = []
         for printed, found in pairs:
@@ -140,7 +142,7 @@ def worst_first(keys, pairs):
             mean = statistics.fmean(one[key] for one in found) if found else 0
             if said > 0 and mean > 0:
                 logs.append(math.log(mean / said))
-        return -sum(logs) / len(logs) if logs else math.inf
+        return -max(logs) if logs else math.inf
     return sorted(keys, key=ratio)
 
 

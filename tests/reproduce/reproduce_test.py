@@ -4,9 +4,11 @@
 """
 
 import contextlib
+import copy
 import csv
 import dataclasses
 import io
+import json
 import os
 import pathlib
 import re
@@ -19,9 +21,14 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "reproduce"))
 sys.dont_write_bytecode = True
 
+import author  # noqa: E402
+import executions  # noqa: E402
 import gains  # noqa: E402
+import illustrations  # noqa: E402
+import keep  # noqa: E402
 import lines  # noqa: E402
 import main  # noqa: E402
+import meshes  # noqa: E402
 import models  # noqa: E402
 import report  # noqa: E402
 import scenarios  # noqa: E402
@@ -33,6 +40,9 @@ from runs import Run, Runner  # noqa: E402
 
 PROGRAMS = pathlib.Path(sys.argv.pop(1)).resolve()
 BRACKET = models.own(ROOT)[0]
+# Sections that take long, and say of the programs what other tests do.
+SLOW = {"ring", "collisions", "sampling", "circular-rearrange", "stacked", "assembly", "exact-meshes", "whole-searches", "remove", "executions", "simplifiers",
+        "wraps", "motions", "figure-5-3"}
 
 
 class Thesis(unittest.TestCase):
@@ -156,12 +166,14 @@ class Report(unittest.TestCase):
             self.addCleanup(os.environ.__setitem__, "KABOUM_MESHES", meshes)
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            arguments = ["--quick", "--out", name, "--programs", str(PROGRAMS)]
+            sections = [s for s in report.SECTIONS if s not in SLOW | report.NOT_QUICK]
+            arguments = ["--quick", "--out", name, "--programs", str(PROGRAMS), "--sections", ",".join(sections)]
             said = io.StringIO()
             with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(said):
                 self.assertEqual(main.main(arguments), 0)
                 self.assertEqual(main.main(arguments), 0)
             self.assertIn(" 0 runs done", said.getvalue())
+            self.check_results(folder)
             page = (folder / "index.html").read_text()
             self.assertIn("Swept volumes", page)
             self.assertIn("Left out: the robots", page)
@@ -193,6 +205,43 @@ class Report(unittest.TestCase):
                 else:
                     # Vertices without a float32 position may be contracted away beyond the wish.
                     self.assertTrue(615 <= int(row["vertices"]) <= 625, row["vertices"])
+
+    def check_results(self, folder):
+        """What main wrote is compared: with itself, and with what was changed in it."""
+        kept = keep.read(folder)
+        self.assertEqual(kept["whole"] if "whole" in kept else {}, {})
+        sections = kept["quick"]
+        self.assertLessEqual({"models", "proposition-1", "gains", "sets", "table-4-1", "figure-4-1", "figure-4-4"}, set(sections))
+        for section in sections.values():
+            self.assertLessEqual({"date", "commit", "version", "machine", "text", "tables"}, set(section))
+        truth = [row[1::2] for row in sections["table-4-1"]["tables"][0]["rows"]]
+        self.assertEqual([row[0] for row in truth], ["true", "true", "false", "false"])  # allowed: between 0 and ε either
+        self.assertEqual((truth[0][1], truth[3][1]), ("inside", "outside"))
+        volumes = sections["figure-4-1"]["tables"][0]["rows"]
+        self.assertTrue(all(row[-1] == "encloses" for row in volumes), volumes)
+        self.assertEqual(volumes[0][0], "sphere")
+        with tempfile.TemporaryDirectory() as name:
+            other = pathlib.Path(name)
+
+            def compare(change):
+                results = copy.deepcopy(kept)
+                change(results["quick"])
+                (other / "results.json").write_text(json.dumps(results))
+                with contextlib.redirect_stdout(io.StringIO()) as said:
+                    return main.main(["--compare", str(other), "--out", str(folder)]), said.getvalue()
+            self.assertEqual(compare(lambda sections: None)[0], 0)
+            self.assertEqual(compare(lambda sections: [s.update(date="1999-01-01", seconds={"cpu": 9, "wall": 9}) for s in sections.values()])[0], 0)
+            at = sections["gains"]["tables"][0]["header"].index("Hausdorff")
+
+            def farther(sections):
+                sections["gains"]["tables"][0]["rows"][0][at] = "99.0"
+            code, said = compare(farther)
+            self.assertEqual(code, 1)
+            self.assertIn("99.0", said)
+            self.assertIn("1 differences", said)
+            self.assertEqual(compare(lambda sections: sections.pop("gains"))[0], 1)
+            with contextlib.redirect_stderr(io.StringIO()):
+                self.assertEqual(main.main(["--compare", str(other / "none"), "--out", str(folder)]), 3)
 
     def test_parts(self):
         points = [f"v {i} 0 0\n" for i in range(7)]
@@ -259,27 +308,89 @@ class Report(unittest.TestCase):
             self.assertEqual(list(runner.failures.values()), ["exit code 3"])
 
     def test_the_two_gains_and_another_program(self):
-        """Against the bracket in the place of a robot, and a program that hands its input on."""
+        """Against the bracket in the place of a robot, and programs that hand their input on, the second one as VRML with a corner moved."""
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
             folder = pathlib.Path(folder)
-            program = folder / "boundingmesh"
+            program, other = folder / "boundingmesh", folder / "decomposition"
             program.write_text("#!/bin/sh\nshift 6\nexec cp \"$1\" \"$2\"\n")
-            program.chmod(0o755)
+            points = [(x, y, z) for x in (-9, 9) for y in (-9, 9) for z in (-9, 9)]
+            body = (", ".join(" ".join(map(str, p)) for p in points), "0, 1, 3, 2, -1, 4, 6, 7, 5, -1, 0, 4, 5, 1, -1, 2, 3, 7, 6, -1, 0, 2, 6, 4, -1, 1, 5, 7, 3, -1")
+            other.write_text("#!/bin/sh\ncat > \"$6\" <<end\ngeometry IndexedFaceSet {{ coord Coordinate {{ point [ {} ] }} coordIndex [ {} ] }}\nend\n".format(*body))
+            for script in (program, other):
+                script.chmod(0o755)
             model = dataclasses.replace(BRACKET, thesis="KUKA", robot=True)
             runner = Runner(PROGRAMS, folder / "runs")
-            with mock.patch.object(gains, "COUNTS", (300,)), mock.patch.object(lines, "TABLE_COUNTS", (300,)):
-                report.make([model], runner, folder, False, ["gains", "author"], program)
+            with mock.patch.object(gains, "COUNTS", (300,)), mock.patch.object(author, "COUNTS", (400, 300)), mock.patch.object(author, "SETS", ((1, 1),)):
+                report.make([model], runner, folder, False, ["gains", "author", "author-sets"], {"boundingmesh": program, "bounding-convex-decomposition": other})
             self.assertEqual(runner.failures, {})
             text = (folder / "report.md").read_text()
             gained = {name: float(mean) for name, mean in re.findall(r"^\| ([a-z, ']+) \| 2 \| [0-9.]+× \| ([0-9.]+)× \|", text, re.M)}
             self.assertEqual(len(gained), 5, text)
             for change in ("optimiser, on the thesis's cost", "cost, without optimiser", "both"):
                 self.assertLess(gained[change], 1, text)
-            with open(folder / "bounding-mesh.csv", newline="", encoding="utf-8") as file:
-                rows = list(csv.DictReader(file))
-            self.assertEqual([row["by"] for row in rows], ["boundingmesh", "kaboum"] * 2)
-            self.assertTrue(all(float(row["hausdorff_percent"]) < 1e-4 for row in rows if row["by"] == "boundingmesh"), rows)
-            self.assertTrue(all(float(row["hausdorff_percent"]) > 1e-3 for row in rows if row["by"] == "kaboum"), rows)
+            kept = keep.read(folder)["whole"]
+            rows = kept["author"]["tables"][0]["rows"]
+            self.assertEqual([row[1] for row in rows], ["boundingmesh, QEM_Classic", "planes", "boundingmesh, MinConstant", "planes-adapted", "distance"] * 2)
+            self.assertTrue(all((row[2], row[-2]) == ("0", "encloses") for row in rows), rows)
+            self.assertTrue(all(float(row[7]) < 1e-4 for row in rows if row[1].startswith("boundingmesh")), rows)
+            self.assertTrue(all(float(row[7]) > 1e-3 for row in rows if not row[1].startswith("boundingmesh")), rows)
+            sets_rows = kept["author-sets"]["tables"][0]["rows"]
+            self.assertEqual([(row[1], row[4], row[6]) for row in sets_rows], [("the author's", "1", "encloses"), ("ours", "1", "encloses")])
+            self.assertLess(float(sets_rows[1][3]), float(sets_rows[0][3]))  # a hull is nearer than that box
+
+    def test_pictures_of_an_execution(self):
+        with tempfile.TemporaryDirectory() as name, contextlib.redirect_stderr(io.StringIO()):
+            folder = pathlib.Path(name)
+            runner = Runner(PROGRAMS, folder / "runs")
+            with mock.patch.object(executions, "FIGURES", (("6.4", "stacked", 2, ("--search", "bfs"), "two blocks"),)):
+                report.make([], runner, folder, False, ["executions"])
+            self.assertEqual(runner.failures, {})
+            rows = keep.read(folder)["whole"]["executions"]["tables"][0]["rows"]
+            self.assertEqual(rows[0][5:], ["0", "0", "holds"])
+            page = (folder / "executions/stacked-2/plan.html")
+            data = executions.data_of(page)
+            states, actions = executions.steps_to_goal(data)
+            self.assertEqual((len(states), str(len(actions))), (len(actions) + 1, rows[0][2]))
+            first, last = (executions.scene_at(data, data["states"][s]) for s in (states[0], states[-1]))
+            self.assertEqual(first[1], last[1])
+            moved = [abs(a[2] - b[2]) for a, b in zip(first[0], last[0])]
+            self.assertGreater(max(moved), 0.03)  # a block is higher
+            self.assertTrue((folder / "executions/stacked-2/figure-6-4.png").is_file())
+
+    def test_what_is_worse(self):
+        def kept(rows, header=("n", "by", "Hausdorff", "factor", "CPU time", "verdict")):
+            return {"t": {"tables": [{"under": ["T"], "header": list(header), "rows": rows}]}}
+        before = kept([["10", "ours", "1.00", "3.0×", "1.0 s", "holds"], ["20", "ours", "0.50", "4.0×", "2.0 s", "holds"]])
+        self.assertEqual(keep.changes(before, before), [])
+
+        def verdicts(rows):
+            return [(change[1], change[2], change[-1]) for change in keep.changes(before, kept(rows))]
+        slower = [["10", "ours", "1.00", "3.0×", "9.0 s", "holds"], ["20", "ours", "0.50", "4.0×", "0.1 s", "holds"]]
+        self.assertEqual(verdicts(slower), [])
+        worse = [["10", "ours", "1.10", "3.0×", "1.0 s", "holds"], ["20", "ours", "0.505", "2.0×", "2.0 s", "does NOT hold"]]
+        self.assertEqual(verdicts(worse), [("T / 10 · ours", "Hausdorff", "worse"), ("T / 20 · ours", "Hausdorff", "changed"), ("T / 20 · ours", "factor", "worse"),
+                                           ("T / 20 · ours", "verdict", "worse")])
+        better = [["10", "ours", "0.90", "6.0×", "1.0 s", "holds"]]
+        self.assertEqual([v for _, _, v in verdicts(better)], ["better", "better", "gone", "gone", "gone", "gone", "gone"][:7])
+        self.assertEqual(keep.merged({"whole": {"a": 1}}, {"quick": {"a": 2}}), {"whole": {"a": 1}, "quick": {"a": 2}})
+        self.assertTrue(keep.same_figures({"whole": {"a": before["t"]}}, {"whole": {}}))
+
+    def test_what_varies(self):
+        runs = [{"total_time_s": s, "collision_checks": 7} for s in (1.0, 3.0, 2.0)]
+        self.assertEqual((scenarios.cell(runs, "total_time_s"), scenarios.cell(runs, "collision_checks")), ("2.000 (1.000–3.000)", "7"))
+        runs[0]["collision_checks"] = 10
+        self.assertTrue(scenarios.cell(runs, "total_time_s").startswith("2.000 ± 1.0"))
+        pairs = [({"a": "1 ± 0.1", "b": "10", "c": None}, [{"a": 2, "b": 100, "c": 5}])]
+        self.assertEqual(scenarios.worst_first(["a", "c", "b"], pairs), ["b", "a", "c"])
+
+    def test_borders_and_quadrics(self):
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (5, 5, 5)]
+        solid = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+        self.assertEqual(meshes.without_border(points, solid), (points[:4], solid))
+        self.assertEqual(meshes.without_border(points, [*solid, [0, 1, 4]])[1], [t for t in solid if not {0, 1, 4} & set(t)])
+        for _, least, total, adapted in illustrations.quadrics():
+            self.assertLessEqual(least, total)
+            self.assertLess(adapted, total)
 
     def test_holes_are_closed(self):
         points = [f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1))]
