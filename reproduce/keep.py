@@ -20,6 +20,7 @@ WORSE = 0.02  # a figure that changes by more of itself is named
 SPENT = re.compile(r"\btimes?\b|\[µ?m?s\]|µs|\bms\b|CPU|MB|per second|/s\b|seconds|wall", re.I)
 MORE_IS_BETTER = re.compile(r"factor|fewer|within limits|inside|nearer|found|free|faster|diagonal here|its diagonal", re.I)
 NAMING = ("n", "by", "share", "the thesis's vertices")  # columns whose cells say what a row is of
+VERDICTS = ("verdict", "Proposition 1", "inside?", "collides?", "")  # columns whose cells are results, though texts
 GOOD = ("verified", "holds", "encloses", "covers", "yes")
 NUMBER = re.compile(r"^[<≤]?\s*(-?\d[\d,]*(?:\.\d+)?)(?:\s*(?:×|%|s\b|mm|$)|\s*[±,(–])")
 
@@ -101,7 +102,7 @@ def _cells(section):
         under, seen = " / ".join(table["under"][-2:]), {}
         for row in table["rows"]:
             name = " · ".join([row[0], *(cell for column, cell in zip(table["header"][1:], row[1:]) if column in NAMING or
-                                         _is_text(cell) and not SPENT.search(cell) and len(cell) < 40 and not cell.startswith(GOOD))])
+                                         _is_text(cell) and column not in VERDICTS and not SPENT.search(cell) and len(cell) < 40)])
             seen[name] = seen.get(name, 0) + 1
             where = under + " / " + name + (f" ({seen[name]})" if seen[name] > 1 else "")
             if SPENT.search(row[0]):
@@ -131,7 +132,9 @@ def _verdict(key, was, now):
     a, b = number(was), number(now)
     if a is None or b is None:
         good = [text.startswith(GOOD) for text in (was, now)]
-        return "worse" if good == [True, False] else "better" if good == [False, True] else "changed"
+        if key[1] in VERDICTS and good[0] != good[1]:
+            return "worse" if good[0] else "better"
+        return "changed"
     if math.isclose(a, b, rel_tol=WORSE, abs_tol=1e-12):
         return "changed"
     more = b > a
