@@ -29,7 +29,7 @@ class Calls:
         self.programs, self.limit = context.runner.programs, context.runner.limit
         self.folder = context.folder / folder
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.failures = context.runner.failures
+        self.failures, self.spent = context.runner.failures, context.runner.spent
 
     def __call__(self, name, program, arguments, inputs, results, codes=(0,), limit=None):
         """@param limit  CPU seconds of each process of the call, instead of those of all calls
@@ -42,6 +42,7 @@ class Calls:
         try:
             kept = json.loads(record.read_text())
             if kept["key"] == key and kept["files"] == self._hashes(results):
+                self._spend(kept)
                 return kept["code"]
         except (OSError, ValueError, KeyError, TypeError):
             pass
@@ -68,8 +69,15 @@ class Calls:
             for partial in results:
                 (self.folder / partial).unlink(missing_ok=True)
             return None
-        write_json(record, {"key": key, "code": done.returncode, "user_seconds": user, "files": self._hashes(results)})
+        made = {"key": key, "code": done.returncode, "user_seconds": user, "wall_seconds": time.monotonic() - start, "files": self._hashes(results)}
+        write_json(record, made)
+        self._spend(made)
         return done.returncode
+
+    def _spend(self, made):
+        """Notes what a call takes, whenever it was made."""
+        self.spent[0] += made["user_seconds"]
+        self.spent[1] += made.get("wall_seconds", 0)
 
     def _hashes(self, results):
         """Of the results that are there."""

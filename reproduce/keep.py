@@ -56,7 +56,7 @@ def version(programs):
 
 
 def made(document, programs, seconds, models):
-    """What is kept of a section that was written just now. @param seconds  CPU time and wall time of this call"""
+    """What is kept of a section that was written just now. @param seconds  user CPU and wall time of its programs"""
     return {"date": datetime.date.today().isoformat(), "commit": commit(), "version": version(programs), "machine": machine(),
             "models": models, "seconds": {"cpu": round(seconds[0]), "wall": round(seconds[1])},
             "text": document.markdown(), "tables": document.tables()}
@@ -178,9 +178,10 @@ def page(results, before):
     for name, kept in results["quick"].items():
         chosen.setdefault(name, ("quick", kept))
     rows = [[name, kind, kept["date"], kept["version"].split()[-1], kept["commit"] or "—", f"{kept['machine']['cpu']}, {kept['machine']['cores']} cores",
-             kept.get("models", ""), f"{kept['seconds']['cpu']:,}", f"{kept['seconds']['wall']:,}"] for name, (kind, kept) in chosen.items()]
+             kept.get("models", ""), *(f"{kept['seconds'][key]:,}" if kept["seconds"][key] else "—" for key in ("cpu", "wall"))] for name, (kind, kept) in chosen.items()]
     document.heading("What was run when")
-    document.paragraph("Seconds are those of the last call alone: what an earlier one had run is kept, and costs nothing.")
+    document.paragraph("User CPU and wall seconds of a section's programs when they were run; decimations of `bmesh-decimate` with their measuring are shared by sections, and not "
+                       "among them.")
     document.table(["section", "run", "date", "version", "commit", "machine", "models", "CPU [s]", "wall [s]"], rows)
     told(document, before, results)
     return "\n".join([document.markdown(), *(f"<!-- {name}, {kind} -->\n\n" + kept["text"] for name, (kind, kept) in chosen.items())])

@@ -5,7 +5,6 @@ the document; SECTIONS lists them. Every section is called twice: first to colle
 for, then, with the results there, to be written.
 """
 
-import resource
 import subprocess
 import sys
 import time
@@ -331,12 +330,6 @@ SECTIONS = {
 NOT_QUICK = {"same-share", "table-b-1"}
 
 
-def _spent():
-    """CPU and wall seconds, of finished children."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime, time.monotonic()
-
-
 def _written(context, section, name):
     """The section's own document; what goes wrong in it is a failure of its own, and the others go on."""
     document = Document("")
@@ -370,11 +363,11 @@ def make(models, runner, folder, quick, wanted=None, others=None):
         left = list(sections)[number + 1:]
         print(f"[section {number + 1} of {len(sections)}, {(time.monotonic() - start) / 60:.0f} min] {name}" +
               (f"; left: {', '.join(left)}" if left else ""), file=sys.stderr, flush=True)
-        earlier = _spent()
+        runner.spent[:] = 0, 0
         part = _written(context, section, name)
         document.add(part)
         if f"section {name}" not in runner.failures and part.tables():
-            made[name] = keep.made(part, runner.programs, [b - a for a, b in zip(earlier, _spent())], names)
+            made[name] = keep.made(part, runner.programs, runner.spent, names)
             keep.write(folder / "results.json", keep.merged(before, {kind: made}))
     if runner.failures:
         document.heading("Runs without a result")

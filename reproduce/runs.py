@@ -76,6 +76,7 @@ class Runner:
     def __init__(self, programs, folder, jobs=1, limit=600):
         self.programs, self.folder, self.jobs, self.limit = pathlib.Path(programs), folder, jobs, limit
         self.results, self.failures = {}, {}
+        self.spent = [0, 0]  # user and wall seconds of the calls of a section (calls.py), those that were kept among them
         self.executed = 0
         self._lock = threading.Lock()
 
