@@ -120,8 +120,7 @@ def section(context, document):
         document.paragraph("Left out: kaboum-plan is not built.")
         return
     document.paragraph("Each scenario is planned, the plan is checked, and every branch of it is carried out in simulation at 1 kHz among the exact meshes. "
-                       "Pictures: states that the plan goes through; plan.html beside them plays all of it. Figure 6.6 shows the parts alone, which are "
-                       "those of Figure 6.7 here. Robots, parts and scenes are the project's own.")
+                       "Pictures: states that the plan goes through; plan.html beside them plays all of it. Robots, parts and scenes are the project's own.")
     call, rows, pictures = Calls(context, "executions"), [], []
     for figure, name, n, options, text in FIGURES:
         if context.quick and figure not in QUICK:
@@ -142,6 +141,12 @@ def section(context, document):
         pictures.append((figure, name, n, text, data, states, actions))
     document.table(["figure", "scenario", "actions of the branch shown", "branches carried out", "samples judged", "in contact", "beyond limits", ""], rows)
     for figure, name, n, text, data, states, actions in pictures:
+        if name == "bimanual-assembly":
+            folder = call.folder / f"{name}-{n}"
+            parts, path = [folder / f"{part}.off" for part in ("bearing", "pipe", "tree")], folder / "figure-6-6.png"
+            subprocess.run([context.runner.programs / "mesh-picture", *parts, "-o", path, "--titles", "bearing,pipe,tree", "--width", "1200", "--height", "420"],
+                           check=True)
+            document.picture(path, "Figure 6.6: the parts of BIMANUAL ASSEMBLY")
         _draw(context, call, document, (figure, name, n, text), data, states, actions)
 
 

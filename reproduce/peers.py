@@ -24,7 +24,8 @@ FAILED = "peers-left-out.json"
 
 
 def environment(out):
-    """The interpreter of a virtual environment in `out` that has what can be installed of requirements.txt; what cannot is in FAILED."""
+    """The interpreter of a virtual environment in `out` that has what can be installed of requirements.txt; what cannot is in FAILED, and is not
+    tried again until that file is removed. None: there can be no environment."""
     folder = out / "environment"
     python = folder / "bin/python"
     wanted = [line.split("#")[0].strip() for line in REQUIREMENTS.read_text(encoding="utf-8").splitlines()]
@@ -37,8 +38,10 @@ def environment(out):
             return None
     listed = subprocess.run([python, "-m", "pip", "freeze"], capture_output=True, text=True, check=False).stdout.split()
     failed = {}
+    if (out / FAILED).is_file():
+        failed = {name: why for name, why in json.loads((out / FAILED).read_text(encoding="utf-8")).items() if name in wanted and name not in listed}
     for name in wanted:
-        if name in listed:
+        if name in listed or name in failed:
             continue
         print(f"installing {name} into {folder} ...", file=sys.stderr, flush=True)
         done = subprocess.run([python, "-m", "pip", "install", "-q", name], capture_output=True, text=True, check=False)
