@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "body_bound.h"
 #include "decomposer.h"
 #include "options.h"
 #include "pre_step.h"
@@ -26,24 +27,65 @@ class Allowance {
     return static_cast<double>(std::max(left_, all_ / kLeastWorkShare));
   }
   [[nodiscard]] bool plenty() const { return left_ > all_ / 2; }
+  [[nodiscard]] bool spent() const { return left_ == 0; }
   void spend(std::uint64_t work) { left_ -= std::min(left_, work); }
 
  private:
   std::uint64_t all_, left_;
 };
 
+CoverCandidate run(const Mesh& closed, const CoverOptions& options, double work,
+                   Allowance& allowance) {
+  Decomposer decomposer(closed, options, work);
+  CoverCandidate result = decomposer.run();
+  allowance.spend(decomposer.work_done());
+  return result;
+}
+
+/// Numbers of bodies below `most` that no larger number is farther than: powers of two, and three
+/// times these; the largest first.
+std::vector<std::size_t> rungs_below(std::size_t most) {
+  std::vector<std::size_t> out;
+  for (std::size_t power = 1; power < most; power *= 2) {
+    out.push_back(power);
+    if (power > 1 && power + power / 2 < most) out.push_back(power + power / 2);
+  }
+  std::sort(out.rbegin(), out.rend());
+  return out;
+}
+
+/// The nearest within the limits. Of bodies alone: among what is found for their number, and, by
+/// the very same search, for every smaller rung that is not proved to be farther.
+CoverCandidate nearest(const Mesh& closed, const CoverOptions& options, Allowance& allowance) {
+  const double work = allowance.left();
+  CoverCandidate best = run(closed, options, work, allowance);
+  if (options.max_total_vertices || best.stop != Stop::Done || best.statistics.out_of_work ||
+      *options.max_bodies == 1)
+    return best;
+  const SolidField solid(closed, kMeasuringGrid, 0, false);
+  const std::size_t too_few =
+      too_few_bodies(closed, solid, best.excess_upper, *options.max_bodies - 1);
+  allowance.spend(solid.work().done());
+  CoverOptions fewer = options;
+  fewer.progress = nullptr;  // it has been told
+  for (const std::size_t rung : rungs_below(*options.max_bodies)) {
+    if (rung <= too_few || allowance.spent()) break;
+    fewer.max_bodies = rung;
+    CoverCandidate other = run(closed, fewer, work, allowance);
+    if (other.stop == Stop::Done && other.excess_upper < best.excess_upper) best = std::move(other);
+  }
+  return best;
+}
+
 /// Where epsilon asks for more than the limits allow: the nearest that keep to these, as if no
 /// epsilon had been given.
 CoverCandidate search(const Mesh& closed, const CoverOptions& options, Allowance& allowance) {
-  Decomposer first(closed, options, allowance.left());
-  CoverCandidate result = first.run();
-  allowance.spend(first.work_done());
-  if (!options.epsilon || result.stop != Stop::TooManyBodies) return result;
+  if (!options.epsilon) return nearest(closed, options, allowance);
+  CoverCandidate result = run(closed, options, allowance.left(), allowance);
+  if (result.stop != Stop::TooManyBodies) return result;
   CoverOptions limited = options;
   limited.epsilon.reset();
-  Decomposer second(closed, limited, allowance.left());
-  result = second.run();
-  allowance.spend(second.work_done());
+  result = nearest(closed, limited, allowance);
   if (result.excess_upper > *options.epsilon) result.stop = Stop::TooManyBodies;
   return result;
 }
