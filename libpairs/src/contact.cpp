@@ -1,0 +1,311 @@
+// Two meshes in one configuration: how far apart, or how deep in each other.
+
+#include "contact.h"
+
+#include <kaboum/geom/closest_point.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <queue>
+
+#include "numbers.h"
+
+namespace kaboum::pairs::detail {
+namespace {
+
+constexpr std::size_t kMostPierced = 3'000;   ///< pairs of triangles that are looked at
+
+using Corners = std::array<Vec3, 3>;
+
+/// Smallest distance of two segments, rounded: [ericson2005] §5.1.9, all ends besides.
+double between_segments(const Vec3& p, const Vec3& p2, const Vec3& q, const Vec3& q2) {
+  const Vec3 u = p2 - p, v = q2 - q, w = p - q;
+  const double a = u.dot(u), e = v.dot(v), b = u.dot(v), c = u.dot(w), f = v.dot(w);
+  const auto near = [&](double s, double t) { return (p + s * u - q - t * v).squaredNorm(); };
+  const auto clamp = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  double best = kInfinite;
+  for (const double s : {0.0, 1.0}) best = std::min(best, near(s, e > 0 ? clamp((s * b + f) / e) : 0));
+  for (const double t : {0.0, 1.0}) best = std::min(best, near(a > 0 ? clamp((t * b - c) / a) : 0, t));
+  const double determinant = a * e - b * b;
+  if (determinant > 0) {
+    const double s = (b * f - c * e) / determinant, t = (a * f - b * c) / determinant;
+    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) best = std::min(best, near(s, t));
+  }
+  return std::sqrt(best);
+}
+
+/// How far an edge may be moved against a triangle that it goes through without leaving it: the
+/// distance of its ends from the plane and of the edge from the triangle's. 0: it does not.
+double margin(const Vec3& from, const Vec3& to, const Corners& t) {
+  Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double length = n.norm();
+  if (!(length > 0)) return 0;
+  n /= length;
+  const double start = n.dot(from - t[0]), end = n.dot(to - t[0]);
+  if (!(start * end < 0)) return 0;
+  const Vec3 at = from + start / (start - end) * (to - from);
+  for (int i = 0; i < 3; ++i)
+    if ((t[(i + 1) % 3] - t[i]).cross(at - t[i]).dot(n) <= 0) return 0;
+  double out = std::min(std::abs(start), std::abs(end));
+  for (int i = 0; i < 3; ++i)
+    out = std::min(out, between_segments(from, to, t[i], t[(i + 1) % 3]));
+  return out;
+}
+
+double margin(const Corners& s, const Corners& t) {
+  double out = 0;
+  for (int i = 0; i < 3; ++i) {
+    out = std::max(out, margin(s[i], s[(i + 1) % 3], t));
+    out = std::max(out, margin(t[i], t[(i + 1) % 3], s));
+  }
+  return out;
+}
+
+double square_to_box(const Vec3& p, const geom::Box3& box) {
+  return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
+}
+
+}  // namespace
+
+Surface::Surface(Mesh mesh)
+    : mesh_(std::move(mesh)),
+      tree_(mesh_),
+      bvh_(std::make_shared<geom::Bvh>(mesh_)),
+      winding_(mesh_, bvh_) {
+  // Equal corners are one; what they connect is a part.
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  std::vector<std::uint32_t> same(mesh_.vertices.size()), up(mesh_.vertices.size());
+  std::iota(up.begin(), up.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (up[v] != v) v = up[v] = up[up[v]];
+    return v;
+  };
+  for (std::uint32_t v = 0; v < same.size(); ++v) {
+    const Vec3& p = mesh_.vertices[v];
+    same[v] = first.emplace(std::array{p.x(), p.y(), p.z()}, v).first->second;
+  }
+  std::vector<char> used(up.size(), 0);
+  for (const geom::Triangle& t : mesh_.triangles)
+    for (const std::uint32_t v : t) {
+      used[v] = 1;
+      up[root(same[v])] = root(same[t[0]]);
+    }
+  for (std::uint32_t v = 0; v < used.size(); ++v)
+    if (used[v] != 0) corners_.push_back(v);
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  for (const geom::Triangle& t : mesh_.triangles) {
+    const auto [at, is_new] =
+        numbers.emplace(root(same[t[0]]), static_cast<std::uint32_t>(parts_.size()));
+    if (is_new) parts_.push_back(t[0]);
+    part_of_.push_back(at->second);
+  }
+  // Closed is a part with each directed edge as often as its reverse.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, std::uint32_t>> edges;
+  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t x = same[mesh_.triangles[i][k]],
+                          y = same[mesh_.triangles[i][(k + 1) % 3]];
+      if (x == y) continue;
+      auto& [sum, part] = edges[{std::min(x, y), std::max(x, y)}];
+      sum += x < y ? 1 : -1;
+      part = part_of_[i];
+    }
+  closed_.assign(parts_.size(), 1);
+  for (const auto& [ends, edge] : edges)
+    if (edge.first != 0) closed_[edge.second] = 0;
+}
+
+bool Surface::winds_about(const Vec3& point) const {
+  std::map<std::uint32_t, int> numbers;
+  winding_.crossings(point, [&](std::uint32_t triangle, int sign) {
+    const std::uint32_t part = part_of_[triangle];
+    if (closed_[part] != 0) numbers[part] += sign;
+  });
+  return std::ranges::any_of(numbers, [](const auto& part) { return part.second != 0; });
+}
+
+double Surface::distance(const Vec3& point, double most) const {
+  double best = most * most;
+  bvh_->traverse([&](const geom::Box3& box) { return square_to_box(point, box) < best; },
+                 [&](std::uint32_t i) {
+                   const geom::Triangle& t = mesh_.triangles[i];
+                   const Vec3 near = geom::closest_point(point, mesh_.vertices[t[0]],
+                                                         mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+                   best = std::min(best, (near - point).squaredNorm());
+                 });
+  return std::sqrt(best);
+}
+
+Contact::Nearest Contact::nearest(const BoxMotion& box, double gap) const {
+  struct Open {
+    double lower;
+    std::uint32_t a, b;
+    Vec3 direction;
+    bool operator<(const Open& o) const {
+      return lower != o.lower ? lower > o.lower : std::pair(a, b) > std::pair(o.a, o.b);
+    }
+  };
+  const HullTree &ta = a_->tree(), &tb = b_->tree();
+  Nearest out{0, kInfinite, {}, {}};
+  double closed = kInfinite;  // least lower bound of what was left
+  std::priority_queue<Open> open;
+  const auto look = [&](std::uint32_t i, std::uint32_t j, const Vec3& hint) {
+    const Gap g = gaps_.at_middle(ta[i], tb[j], box, hint, out.upper);
+    const bool leaf = ta[i].leaf() && tb[j].leaf();
+    if (leaf && g.upper < out.upper) {
+      out.upper = g.upper;
+      out.on_a = g.on_a;
+      out.on_b = g.on_b;
+    }
+    if (leaf || g.lower > out.upper)
+      closed = std::min(closed, g.lower);
+    else
+      open.push({g.lower, i, j, g.direction});
+  };
+  look(0, 0, Vec3::Zero());
+  const double touching = 0x1p-38 * gaps_.reach();
+  std::size_t steps = 0;
+  while (!open.empty() && open.top().lower < out.upper - gap && ++steps < 200'000) {
+    const Open at = open.top();
+    open.pop();
+    const bool cut_a = !ta[at.a].leaf() && (tb[at.b].leaf() || ta[at.a].reach > tb[at.b].reach);
+    if (cut_a) {
+      look(ta[at.a].left, at.b, at.direction);
+      look(ta[at.a].right, at.b, at.direction);
+    } else {
+      look(at.a, tb[at.b].left, at.direction);
+      look(at.a, tb[at.b].right, at.direction);
+    }
+    if (out.upper <= std::max(gap, touching)) break;
+  }
+  if (!open.empty()) closed = std::min(closed, open.top().lower);
+  out.lower = std::clamp(closed, 0.0, out.upper);
+  return out;
+}
+
+template <typename Look>
+void Contact::visit_meeting(const BoxMotion& box, std::size_t most, const Look& look) const {
+  const HullTree &ta = a_->tree(), &tb = b_->tree();
+  struct Open {
+    std::uint32_t a, b;
+    Vec3 direction;
+  };
+  std::size_t looked = 0;
+  std::vector<Open> open{{0, 0, Vec3::Zero()}};
+  while (!open.empty() && looked < most) {
+    const Open top = open.back();
+    open.pop_back();
+    const Cluster &a = ta[top.a], &b = tb[top.b];
+    const Gap g = gaps_.at_middle(a, b, box, top.direction, 0);
+    if (g.lower > 0) continue;
+    if (a.leaf() && b.leaf()) {
+      ++looked;
+      look(a.triangle, b.triangle);
+    } else if (!a.leaf() && (b.leaf() || a.reach > b.reach)) {
+      open.push_back({a.left, top.b, g.direction});
+      open.push_back({a.right, top.b, g.direction});
+    } else {
+      open.push_back({top.a, b.left, g.direction});
+      open.push_back({top.a, b.right, g.direction});
+    }
+  }
+}
+
+double Contact::pierced(const BoxMotion& box) const {
+  const Transform& at = box.placed().b;
+  const auto corners = [](const Mesh& mesh, std::uint32_t t) {
+    const geom::Triangle& v = mesh.triangles[t];
+    return Corners{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
+  };
+  double best = 0;
+  visit_meeting(box, kMostPierced, [&](std::uint32_t i, std::uint32_t j) {
+    Corners of_b = corners(b_->mesh(), j);
+    for (Vec3& p : of_b) p = at * p;
+    best = std::max(best, margin(corners(a_->mesh(), i), of_b));
+  });
+  return best;
+}
+
+double Contact::farthest_meeting(const BoxMotion& box, const Vec3& in_a, const Vec3& in_b) const {
+  double most = 0;
+  visit_meeting(box, 100'000, [&](std::uint32_t i, std::uint32_t j) {
+    for (const std::uint32_t v : a_->mesh().triangles[i])
+      most = std::max(most, (a_->mesh().vertices[v] - in_a).norm());
+    for (const std::uint32_t v : b_->mesh().triangles[j])
+      most = std::max(most, (b_->mesh().vertices[v] - in_b).norm());
+  });
+  return most;
+}
+
+double Contact::inside(const BoxMotion& box, std::size_t most_corners) const {
+  const Transform& at = box.placed().b;
+  const Transform back{at.linear.transpose(), -(at.linear.transpose() * at.translation)};
+  double best = 0;
+  const auto look = [&](const Surface& in, const Surface& of, const Transform& to) {
+    const Cluster& root = in.tree()[0];
+    std::vector<Vec3> found;
+    for (const std::uint32_t v : of.corners()) {
+      const Vec3 p = to * of.mesh().vertices[v];
+      if ((p - root.center).norm() <= root.reach) found.push_back(p);
+    }
+    // Spread over all of them where these are too many.
+    const std::size_t step = found.size() / most_corners + 1;
+    for (std::size_t i = 0; i < found.size(); i += step) {
+      const double distance = in.distance(found[i], root.reach * 2);
+      if (distance > best && in.winds_about(found[i])) best = distance;
+    }
+  };
+  look(*a_, *b_, at);
+  look(*b_, *a_, back);
+  return best;
+}
+
+double Contact::depth_below(const BoxMotion& box, std::size_t most_corners) const {
+  const double off = 4 * gaps_.error() + 0x1p-36 * gaps_.reach();
+  return std::max({0.0, pierced(box) - off, inside(box, most_corners) - off});
+}
+
+double Contact::depth_above(const BoxMotion& box) const {
+  std::vector<Vec3> directions;
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = -2; z <= 2; ++z)
+        if (x != 0 || y != 0 || z != 0) directions.emplace_back(x, y, z);
+  const Cluster &a = a_->tree()[0], &b = b_->tree()[0];
+  double best = kInfinite;
+  Vec3 at = Vec3::UnitX();
+  const auto look = [&](const Vec3& d) {
+    const double here = gaps_.overlap(a, b, box.placed(), d);
+    if (here >= best) return false;
+    best = here;
+    at = d.normalized();
+    return true;
+  };
+  for (const Vec3& d : directions) look(d);
+  // Down from the best one, in smaller and smaller steps.
+  for (double step = 0.3; step > 1e-3;) {
+    bool better = false;
+    const Vec3 from = at;
+    for (const Vec3& d : directions) better = look(from + step * d.normalized()) || better;
+    if (!better) step /= 2;
+  }
+  return std::max(0.0, best);
+}
+
+bool Contact::holds_part(const BoxMotion& box) const {
+  const Transform& at = box.placed().b;
+  const Transform back{at.linear.transpose(), -(at.linear.transpose() * at.translation)};
+  // Hulls that are apart hold nothing of each other.
+  if (gaps_.at_middle(a_->tree()[0], b_->tree()[0], box, Vec3::Zero(), 0).lower > 0) return false;
+  const auto holds = [](const Surface& in, const Surface& of, const Transform& to) {
+    return std::ranges::any_of(of.parts(), [&](std::uint32_t v) {
+      return in.winds_about(to * of.mesh().vertices[v]);
+    });
+  };
+  return holds(*a_, *b_, at) || holds(*b_, *a_, back);
+}
+
+}  // namespace kaboum::pairs::detail

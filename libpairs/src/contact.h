@@ -1,0 +1,86 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/winding.h>
+#include <kaboum/pairs/decide.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gap.h"
+
+namespace kaboum::pairs::detail {
+
+/// A link's surface, ready to be asked.
+class Surface {
+ public:
+  explicit Surface(Mesh mesh);
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] const HullTree& tree() const { return tree_; }
+  /// A vertex of each connected part.
+  [[nodiscard]] const std::vector<std::uint32_t>& parts() const { return parts_; }
+  /// Vertices of triangles.
+  [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
+  /// Whether a closed part winds about the point.
+  [[nodiscard]] bool winds_about(const Vec3& point) const;
+  /// The distance of a point from the triangles, rounded; searched below `most`.
+  [[nodiscard]] double distance(const Vec3& point, double most) const;
+
+ private:
+  Mesh mesh_;
+  HullTree tree_;
+  std::shared_ptr<const geom::Bvh> bvh_;
+  geom::WindingNumber winding_;
+  std::vector<std::uint32_t> part_of_;  ///< each triangle's
+  std::vector<char> closed_;            ///< each part
+  std::vector<std::uint32_t> parts_, corners_;
+};
+
+/// Two surfaces in one configuration.
+class Contact {
+ public:
+  Contact(const Surface& a, const Surface& b, const Chain& chain)
+      : a_(&a), b_(&b), gaps_(a.tree(), b.tree(), chain) {}
+
+  [[nodiscard]] const Gaps& gaps() const { return gaps_; }
+
+  /// The distance of the surfaces, by their triangles; 0 where some meet.
+  struct Nearest {
+    double lower = 0, upper = 0;
+    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  ///< in the frame of a
+  };
+  /// @param box   of which only the middle is looked at
+  /// @param gap   between lower and upper that will do [length]
+  [[nodiscard]] Nearest nearest(const BoxMotion& box, double gap) const;
+
+  /// How deep the solids are certainly in each other: no translation by less parts them. 0: not
+  /// known to meet. Rounding is taken off.
+  /// @param most_corners  of each that are looked for in the other solid
+  [[nodiscard]] double depth_below(const BoxMotion& box, std::size_t most_corners = 1'500) const;
+  /// The length of a translation that parts them.
+  [[nodiscard]] double depth_above(const BoxMotion& box) const;
+  /// Largest distance of a corner from a point, of triangles whose hulls meet. @param point  in the
+  /// frames of a and b
+  [[nodiscard]] double farthest_meeting(const BoxMotion& box, const Vec3& in_a,
+                                        const Vec3& in_b) const;
+  /// Whether a part of one surface begins inside the other solid; a proof together with one that
+  /// the surfaces do not meet, and that they are so far apart here that rounding does not matter.
+  [[nodiscard]] bool holds_part(const BoxMotion& box) const;
+
+ private:
+  /// Calls look(triangle of a, triangle of b) for pairs that are not clearly apart, as many as
+  /// `most` at least.
+  template <typename Look>
+  void visit_meeting(const BoxMotion& box, std::size_t most, const Look& look) const;
+  [[nodiscard]] double pierced(const BoxMotion& box) const;
+  [[nodiscard]] double inside(const BoxMotion& box, std::size_t most_corners) const;
+
+  const Surface *a_, *b_;
+  Gaps gaps_;
+};
+
+}  // namespace kaboum::pairs::detail

@@ -1,0 +1,209 @@
+// All pairs of a robot's links, each searched in rounds until it is decided.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
+#include <kaboum/pairs/decide.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "search.h"
+
+namespace kaboum::pairs {
+namespace {
+
+using detail::Search;
+using detail::Shapes;
+using detail::Surface;
+using geom::Mesh;
+using geom::Vec3;
+
+Shapes shapes_of(const Mesh& outer, const std::optional<Mesh>& inner) {
+  Shapes out;
+  out.outer = std::make_unique<Surface>(outer);
+  if (inner) out.inner_or_none = std::make_unique<Surface>(*inner);
+  return out;
+}
+
+/// Triangles that have a corner farther than a distance from a point.
+Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
+  Mesh out{mesh.vertices, {}};
+  for (const geom::Triangle& t : mesh.triangles)
+    if (std::ranges::any_of(t, [&](std::uint32_t v) {
+          return (mesh.vertices[v] - point).norm() > distance;
+        }))
+      out.triangles.push_back(t);
+  return out;
+}
+
+/// A value per variable of the robot.
+std::vector<double> configuration(const robot::Robot& robot, const Search& search) {
+  std::vector<double> q;
+  for (const robot::Variable& variable : robot.variables) {
+    double value = 0;
+    if (variable.lower) value = std::max(value, *variable.lower);
+    if (variable.upper) value = std::min(value, *variable.upper);
+    q.push_back(value);
+  }
+  const std::vector<std::uint32_t>& variables = search.chain().variables();
+  for (std::size_t v = 0; v < variables.size() && v < search.values().size(); ++v)
+    q[variables[v]] = search.values()[v];
+  return q;
+}
+
+/// The parts of adjacent links that are not at their joint.
+std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const LinkSurface& a,
+                                       const LinkSurface& b, const Search& whole,
+                                       const DecideOptions& options,
+                                       const std::function<bool()>& stop) {
+  const std::optional<Search::Joint> joint = whole.joint();
+  if (!joint || stop()) return std::nullopt;
+  AwayFromJoint out;
+  out.beyond = joint->beyond * 1.05;
+  const auto cut = [&](const LinkSurface& surface, const Vec3& point) {
+    std::optional<Mesh> inner;
+    if (surface.inner) inner = away_from(*surface.inner, point, out.beyond);
+    return std::pair(away_from(surface.outer, point, out.beyond), std::move(inner));
+  };
+  const auto [outer_a, inner_a] = cut(a, joint->in_a);
+  const auto [outer_b, inner_b] = cut(b, joint->in_b);
+  const auto is_empty = [](const Mesh& outer, const std::optional<Mesh>& inner) {
+    return outer.empty() || (inner && inner->empty());
+  };
+  if (is_empty(outer_a, inner_a) || is_empty(outer_b, inner_b)) {
+    if (!outer_a.empty() && !outer_b.empty()) return std::nullopt;
+    out.verdict = Verdict::Never;
+    return out;
+  }
+  const Shapes of_a = shapes_of(outer_a, inner_a), of_b = shapes_of(outer_b, inner_b);
+  Search search(robot, a.link, b.link, of_a, of_b, options.samples);
+  search.look_for_contacts(stop);
+  search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
+  out.verdict = search.verdict();
+  out.nearest = search.nearest();
+  out.q = configuration(robot, search);
+  return out;
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Never:
+      return "never";
+    case Verdict::Always:
+      return "always";
+    case Verdict::CanTouch:
+      return "can touch";
+    default:
+      return "open";
+  }
+}
+
+std::string text_of(const std::vector<double>& q) {
+  std::string out;
+  for (const double value : q) {
+    std::array<char, 32> text{};
+    const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);
+    if (!out.empty()) out += ',';
+    out.append(text.data(), end.ptr);
+  }
+  return out;
+}
+
+std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
+                                      const std::vector<LinkSurface>& given,
+                                      const DecideOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  std::vector<const LinkSurface*> surfaces;
+  for (const LinkSurface& surface : given) {
+    if (surface.link >= robot.links.size())
+      throw Error(ErrorCode::InvalidArgument, "a surface of a link that the robot does not have");
+    if (!surface.outer.empty() && !(surface.inner && surface.inner->empty()))
+      surfaces.push_back(&surface);
+  }
+  std::ranges::sort(surfaces, {}, [](const LinkSurface* s) { return s->link; });
+  for (std::size_t i = 1; i < surfaces.size(); ++i)
+    if (surfaces[i - 1]->link == surfaces[i]->link)
+      throw Error(ErrorCode::InvalidArgument,
+                  "two surfaces of link '" + robot.links[surfaces[i]->link].name + "'");
+
+  std::vector<Shapes> shapes(surfaces.size());
+  parallel_for(
+      std::size_t{0}, surfaces.size(),
+      [&](std::size_t i) { shapes[i] = shapes_of(surfaces[i]->outer, surfaces[i]->inner); },
+      {.alone = true});
+  Shaped shaped(robot.links.size(), 0);
+  for (std::size_t l = 0; l < shaped.size(); ++l)
+    shaped[l] = robot.links[l].collision.empty() ? 0 : 1;
+  for (const LinkSurface* s : surfaces) shaped[s->link] = 1;
+
+  struct Pair {
+    std::size_t a, b;
+    std::unique_ptr<Search> search;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t a = 0; a < surfaces.size(); ++a)
+    for (std::size_t b = a + 1; b < surfaces.size(); ++b)
+      pairs.push_back({a, b, nullptr});
+
+  std::atomic<std::size_t> decided = 0;
+  const auto stop = [&] {
+    if (options.progress) options.progress(decided, pairs.size());
+    return std::chrono::duration<double>(Clock::now() - begin).count() > options.most_seconds;
+  };
+  std::vector<std::size_t> left(pairs.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  const auto round = [&](const auto& work) {
+    parallel_for(
+        std::size_t{0}, left.size(),
+        [&](std::size_t i) {
+          Pair& pair = pairs[left[i]];
+          work(pair);
+          if (pair.search->decided()) ++decided;
+        },
+        {.alone = true});
+    std::erase_if(left, [&](std::size_t i) { return pairs[i].search->decided(); });
+  };
+  round([&](Pair& pair) {
+    pair.search = std::make_unique<Search>(robot, surfaces[pair.a]->link, surfaces[pair.b]->link,
+                                           shapes[pair.a], shapes[pair.b], options.samples);
+    pair.search->look_for_contacts(stop);
+  });
+  // More and more boxes, so that what is easy is decided before the time is up.
+  for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
+    const bool last = boxes >= options.most_boxes;
+    round([&](Pair& pair) {
+      const std::size_t most = std::min(boxes, options.most_boxes);
+      if (pair.search->boxes() / 2 < most) pair.search->go_on(most - pair.search->boxes() / 2, stop);
+    });
+    if (last || stop()) break;
+  }
+
+  std::vector<DecidedPair> out(pairs.size());
+  parallel_for(
+      std::size_t{0}, pairs.size(),
+      [&](std::size_t i) {
+        const auto& [a, b, search] = pairs[i];
+        DecidedPair& pair = out[i];
+        pair.a = surfaces[a]->link;
+        pair.b = surfaces[b]->link;
+        pair.relation = relation_of(robot, shaped, pair.a, pair.b);
+        pair.verdict = search->verdict();
+        pair.nearest = search->nearest();
+        pair.depth = search->depth();
+        pair.boxes = search->boxes();
+        pair.q = configuration(robot, *search);
+        if (pair.relation == Relation::Adjacent && pair.verdict != Verdict::Never)
+          pair.away = look_away(robot, *surfaces[a], *surfaces[b], *search, options, stop);
+      },
+      {.alone = true});
+  return out;
+}
+
+}  // namespace kaboum::pairs

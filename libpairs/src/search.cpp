@@ -1,0 +1,330 @@
+// Branch and bound over the joints between two links. docs/algorithms/pairs.md.
+
+#include "search.h"
+
+#include <kaboum/base/radical_inverse.h>
+#include <kaboum/base/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "numbers.h"
+
+namespace kaboum::pairs::detail {
+namespace {
+
+constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
+                                                23, 29, 31, 37, 41, 43, 47, 53};
+constexpr std::size_t kClimbs = 10;        ///< from the best places
+constexpr std::size_t kMostItems = 6'000;  ///< of a box; then clusters are not cut any more
+
+}  // namespace
+
+Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, const Shapes& of_a,
+               const Shapes& of_b, std::size_t samples)
+    : chain_(robot, a, b),
+      outer_(*of_a.outer, *of_b.outer, chain_),
+      inner_(of_a.inner(), of_b.inner(), chain_),
+      samples_(samples),
+      tree_a_(&of_a.outer->tree()),
+      tree_b_(&of_b.outer->tree()),
+      motion_(chain_) {
+  if (!chain_.limits() || chain_.joints().size() > BoxMotion::Linear::kMost) {
+    exhausted_ = true;  // joints without limits that do not turn
+    return;
+  }
+  const auto& [low, high] = *chain_.limits();
+  for (std::size_t v = 0; v < low.size(); ++v) {
+    middle_.push_back(0.5 * low[v] + 0.5 * high[v]);
+    half_.push_back(std::max(high[v] - middle_[v], middle_[v] - low[v]) * (1 + 0x1p-40));
+  }
+  best_values_ = middle_;
+}
+
+Bracket Search::nearest() const {
+  if (verdict_ == Verdict::CanTouch || verdict_ == Verdict::Always) return {0, 0};
+  double lower = begun_ ? proved_ : 0;
+  if (!open_.empty()) lower = std::min(lower, open_.top().lower);
+  return {std::clamp(lower, 0.0, nearest_), nearest_};
+}
+
+Contact::Nearest Search::measure(const std::vector<double>& values, double gap) {
+  const std::vector<double> still(values.size(), 0);
+  motion_.set(values, still);
+  const Contact::Nearest out = inner_.nearest(motion_, gap);
+  if (out.upper < nearest_) {
+    nearest_ = out.upper;
+    best_values_ = values;
+  }
+  return out;
+}
+
+bool Search::climb(std::vector<double> values) {
+  const double touching = 1e-11 * inner_.gaps().reach();
+  const auto& [low, high] = *chain_.limits();
+  Contact::Nearest at = measure(values, 0);
+  for (int step = 0; step < 60 && at.upper > touching; ++step) {
+    // Derivative of the distance: all joints move b.
+    motion_.set(values, std::vector<double>(values.size(), 0));
+    const Vec3 along = (at.on_b - at.on_a) / at.upper;
+    std::vector<double> gradient(values.size(), 0);
+    for (std::size_t k = 0; k < chain_.joints().size(); ++k) {
+      const Chain::Joint& joint = chain_.joints()[k];
+      const Vec3& axis = motion_.placed().axes[k];
+      gradient[joint.variable] +=
+          joint.multiplier *
+          along.dot(joint.revolute ? axis.cross(at.on_b - motion_.placed().origins[k]).eval() : axis);
+    }
+    double square = 0;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      const bool blocked = gradient[v] > 0 ? values[v] <= low[v] : values[v] >= high[v];
+      if (blocked) gradient[v] = 0;
+      square += gradient[v] * gradient[v];
+    }
+    if (!(square > 0)) break;
+    // Beyond the touch, so that what touches is inside.
+    double scale = 1.05 * at.upper / square;
+    for (std::size_t v = 0; v < values.size(); ++v)
+      if (std::abs(gradient[v]) * scale > 0.25 * half_[v])
+        scale = 0.25 * half_[v] / std::abs(gradient[v]);
+    bool better = false;
+    for (int half = 0; half < 8 && !better; ++half, scale *= 0.4) {
+      std::vector<double> next = values;
+      for (std::size_t v = 0; v < values.size(); ++v)
+        next[v] = std::clamp(values[v] - scale * gradient[v], low[v], high[v]);
+      const Contact::Nearest there = measure(next, 0);
+      if (there.upper >= at.upper * (1 - 1e-4)) continue;
+      values = std::move(next);
+      at = there;
+      better = true;
+    }
+    if (!better) break;
+  }
+  if (at.upper > touching) return false;
+  show_contact(std::move(values));
+  return true;
+}
+
+void Search::show_contact(std::vector<double> values) {
+  const auto& [low, high] = *chain_.limits();
+  const std::vector<double> still(values.size(), 0);
+  const auto depth_at = [&](const std::vector<double>& v, std::size_t corners) {
+    motion_.set(v, still);
+    return inner_.depth_below(motion_, corners);
+  };
+  double deepest = depth_at(values, 150), overlap = outer_.depth_above(motion_);
+  Random random(1);
+  double width = 0.05;
+  for (int step = 0; step < 150 && !values.empty(); ++step) {
+    std::vector<double> next = values;
+    for (std::size_t v = 0; v < next.size(); ++v)
+      next[v] = std::clamp(next[v] + random.between(-1, 1) * width * half_[v], low[v], high[v]);
+    // Where the hulls overlap more, the solids mostly do; that is cheap to see.
+    motion_.set(next, still);
+    const double over = outer_.depth_above(motion_);
+    const double there = over > overlap ? depth_at(next, 150) : 0;
+    if (there > deepest) {
+      deepest = there;
+      overlap = over;
+      values = std::move(next);
+      width = std::min(0.3, width * 1.5);
+    } else {
+      width = std::max(0.002, width * 0.93);
+    }
+  }
+  const double lower = depth_at(values, 1'500);
+  if (!(lower > 0)) {
+    // They touch up to rounding.
+    nearest_ = 0;
+    best_values_ = std::move(values);
+    return;
+  }
+  depth_ = {lower, std::max(lower, outer_.depth_above(motion_))};
+  nearest_ = 0;
+  best_values_ = std::move(values);
+  verdict_ = Verdict::CanTouch;
+}
+
+void Search::look_for_contacts(const std::function<bool()>& stop) {
+  if (decided()) return;
+  const auto& [low, high] = *chain_.limits();
+  const std::size_t samples = middle_.empty() ? 1 : samples_;
+  std::vector<std::pair<double, std::vector<double>>> near;
+  const double touching = 1e-11 * inner_.gaps().reach();
+  bool always = true;
+  for (std::size_t i = 0; i < samples && !stop(); ++i) {
+    std::vector<double> values = middle_;
+    for (std::size_t v = 0; v < values.size() && i > 0; ++v)
+      values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
+    const Contact::Nearest at = measure(values, 0.3 * std::min(nearest_, 1e3));
+    if (at.upper <= touching) {
+      if (depth_.lower == 0) show_contact(values);
+    } else {
+      always = false;
+      near.emplace_back(at.upper, std::move(values));
+    }
+    if (!always && verdict_ == Verdict::CanTouch) return;
+    if (always && i >= 40) break;
+  }
+  if (always && verdict_ == Verdict::CanTouch) {
+    std::size_t left = 3'000;
+    if (meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
+    return;
+  }
+  std::ranges::stable_sort(near, {}, [](const auto& place) { return place.first; });
+  for (std::size_t i = 0; i < near.size() && i < kClimbs && !stop(); ++i)
+    if (climb(near[i].second) && verdict_ == Verdict::CanTouch) return;
+}
+
+bool Search::meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
+                         const std::function<bool()>& stop) {
+  if (left == 0 || stop()) return false;
+  --left;
+  motion_.set(middle, half);
+  const double deep = inner_.depth_below(motion_, 300);
+  if (!(deep > 0)) return false;
+  const Cluster &a = (*tree_a_)[0], &b = (*tree_b_)[0];
+  const Vec3 center = motion_.placed().b * b.center;
+  if (motion_.bound(a.center, a.reach, center, b.reach).first < deep) return true;
+  if (middle.empty()) return true;
+  const std::size_t v = widest(motion_, {0, 0, Vec3::UnitZ()});
+  if (half[v] < 1e-4) return false;
+  half[v] *= 0.5 * (1 + 0x1p-40);
+  std::vector<double> first = middle;
+  first[v] -= half[v];
+  middle[v] += half[v];
+  return meet_always(first, half, left, stop) && meet_always(middle, half, left, stop);
+}
+
+std::size_t Search::widest(const BoxMotion& motion, const Item& worst) const {
+  const Cluster &a = (*tree_a_)[worst.a], &b = (*tree_b_)[worst.b];
+  const Vec3 center = motion.placed().b * b.center;
+  const BoxMotion::Bound bound = motion.bound(a.center, a.reach, center, b.reach);
+  std::vector<double> score(middle_.size(), 0);
+  const bool by_first = bound.second > bound.first;
+  const BoxMotion::Split split = by_first ? bound.first_split : bound.second_split;
+  for (const bool of_b : {false, true}) {
+    BoxMotion::Linear linear;
+    motion.linear(worst.direction, split, of_b, linear);
+    if (!by_first)
+      for (std::size_t v = 0; v < linear.count; ++v)
+        score[linear.variables[v]] +=
+            std::abs(linear.coefficients[v].dot(of_b ? center : a.center) - linear.constants[v]);
+    const std::size_t from = of_b ? split : 0,
+                      to = of_b ? chain_.joints().size() : split;
+    for (std::size_t k = from; k < to; ++k) {
+      const Chain::Joint& joint = chain_.joints()[k];
+      const double half = motion.half_of(k);
+      if (half == 0) continue;
+      if (by_first)
+        score[joint.variable] +=
+            joint.revolute
+                ? half * (motion.placed()
+                              .axes[k]
+                              .cross((of_b ? center : a.center) - motion.placed().origins[k])
+                              .norm() +
+                          (of_b ? b : a).reach)
+                : half;
+      else if (joint.revolute && motion.turns() > 0)
+        score[joint.variable] += 2 * bound.second * half / motion.turns();
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(score) - score.begin());
+}
+
+void Search::look_at(std::vector<double> middle, std::vector<double> half, const Items& items) {
+  ++looked_;
+  motion_.set(middle, half);
+  const Gaps& gaps = outer_.gaps();
+  Items left, stack(items.rbegin(), items.rend());
+  double worst = kInfinite;
+  Item worst_item{};
+  while (!stack.empty()) {
+    Item item = stack.back();
+    stack.pop_back();
+    const Cluster &a = (*tree_a_)[item.a], &b = (*tree_b_)[item.b];
+    const double lower = gaps.lower(a, b, motion_, item.direction, 0);
+    if (lower > 0) {
+      proved_ = std::min(proved_, lower);
+      continue;
+    }
+    const Vec3 center = motion_.placed().b * b.center;
+    const double moves = motion_.bound(a.center, a.reach, center, b.reach).first;
+    const bool cut_a = !a.leaf() && (b.leaf() || a.reach > b.reach);
+    const double size = cut_a ? a.reach : b.leaf() ? 0 : b.reach;
+    if (size > 0.7 * moves && left.size() + stack.size() < kMostItems) {
+      if (cut_a) {
+        stack.push_back({a.right, item.b, item.direction});
+        stack.push_back({a.left, item.b, item.direction});
+      } else {
+        stack.push_back({item.a, b.right, item.direction});
+        stack.push_back({item.a, b.left, item.direction});
+      }
+      continue;
+    }
+    left.push_back(item);
+    if (lower < worst) {
+      worst = lower;
+      worst_item = item;
+    }
+  }
+  if (left.empty()) return;
+  if (middle.empty()) {
+    exhausted_ = true;
+    proved_ = 0;
+    return;
+  }
+  const std::size_t v = widest(motion_, worst_item);
+  if (half[v] < 1e-10) {
+    exhausted_ = true;  // rounding decides here
+    proved_ = 0;
+    return;
+  }
+  open_.push({worst, order_++, std::move(middle), std::move(half),
+              std::make_shared<const Items>(std::move(left)), v});
+}
+
+void Search::end_proof() {
+  // No surfaces meet anywhere; so what one solid holds of the other it holds everywhere.
+  motion_.set(middle_, std::vector<double>(middle_.size(), 0));
+  verdict_ = outer_.holds_part(motion_) ? Verdict::Always : Verdict::Never;
+}
+
+void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
+  if (decided()) return;
+  if (!begun_) {
+    begun_ = true;
+    look_at(middle_, half_, {{0, 0, Vec3::Zero()}});
+  }
+  for (std::size_t i = 0; i < boxes && !open_.empty() && !exhausted_; ++i) {
+    if (stop()) return;
+    if (looked_ >= next_climb_) {
+      next_climb_ = looked_ + std::clamp<std::size_t>(looked_ / 2, 32, 2'000);
+      if (climb(open_.top().middle) && verdict_ == Verdict::CanTouch) return;
+    }
+    const Box box = open_.top();
+    open_.pop();
+    std::vector<double> half = box.half, first = box.middle, second = box.middle;
+    half[box.widest] *= 0.5 * (1 + 0x1p-40);
+    first[box.widest] -= half[box.widest];
+    second[box.widest] += half[box.widest];
+    look_at(std::move(first), half, *box.items);
+    look_at(std::move(second), half, *box.items);
+  }
+  if (open_.empty() && !exhausted_) end_proof();
+}
+
+std::optional<Search::Joint> Search::joint() const {
+  if (chain_.joints().size() != 1 || !chain_.joints().front().revolute) return std::nullopt;
+  motion_.set(middle_, std::vector<double>(middle_.size(), 0));
+  Joint out{};
+  out.in_a = motion_.placed().origins.front();
+  const Transform& at = motion_.placed().b;
+  out.in_b = at.linear.transpose() * (out.in_a - at.translation);
+  out.beyond = outer_.farthest_meeting(motion_, out.in_a, out.in_b);
+  return out;
+}
+
+}  // namespace kaboum::pairs::detail

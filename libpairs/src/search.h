@@ -1,0 +1,99 @@
+#pragma once
+
+#include <kaboum/pairs/decide.h>
+
+#include <cstdint>
+#include <memory>
+#include <queue>
+#include <vector>
+
+#include "contact.h"
+
+namespace kaboum::pairs::detail {
+
+/// The shapes of one link, ready to be asked.
+struct Shapes {
+  std::unique_ptr<Surface> outer, inner_or_none;
+  [[nodiscard]] const Surface& inner() const { return inner_or_none ? *inner_or_none : *outer; }
+};
+
+/// What two links do over all values of the joints between them: contacts are looked for; boxes of
+/// values are halved, that of the least lower bound first, until the links are proved apart in all.
+class Search {
+ public:
+  Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, const Shapes& of_a,
+         const Shapes& of_b, std::size_t samples);
+
+  /// Looks at places all over the limits, and goes on to others from those where the links are
+  /// near.
+  void look_for_contacts(const std::function<bool()>& stop);
+  /// Goes on with the proof for so many boxes.
+  void go_on(std::size_t boxes, const std::function<bool()>& stop);
+
+  [[nodiscard]] bool decided() const { return verdict_ != Verdict::Open || exhausted_; }
+  [[nodiscard]] std::size_t boxes() const { return looked_; }
+  [[nodiscard]] Verdict verdict() const { return verdict_; }
+  [[nodiscard]] Bracket nearest() const;
+  [[nodiscard]] Bracket depth() const { return depth_; }
+  /// Of the best configuration, a value per variable of the chain.
+  [[nodiscard]] const std::vector<double>& values() const { return best_values_; }
+  [[nodiscard]] const Chain& chain() const { return chain_; }
+  /// Distance from a point on the joint's axis, the only joint's of the chain, beyond which nothing
+  /// was found to meet in the middle of the limits; and the point in both frames.
+  struct Joint {
+    double beyond;
+    Vec3 in_a, in_b;
+  };
+  [[nodiscard]] std::optional<Joint> joint() const;
+
+ private:
+  /// Clusters of both that are not proved apart in a box.
+  struct Item {
+    std::uint32_t a, b;
+    Vec3 direction;
+  };
+  using Items = std::vector<Item>;
+  struct Box {
+    double lower;
+    std::uint64_t order;
+    std::vector<double> middle, half;
+    std::shared_ptr<const Items> items;
+    std::size_t widest;  ///< the variable to halve
+    bool operator<(const Box& o) const {
+      return lower != o.lower ? lower > o.lower : order > o.order;
+    }
+  };
+
+  /// Looks at a box. Nothing is left of it, or it waits to be halved.
+  void look_at(std::vector<double> middle, std::vector<double> half, const Items& items);
+  std::size_t widest(const BoxMotion& motion, const Item& worst) const;
+  /// Goes from values to others in which the links are nearer, until they touch or no more comes of
+  /// it. @return whether they touch
+  bool climb(std::vector<double> values);
+  /// Keeps the values if the links are nearest there so far.
+  Contact::Nearest measure(const std::vector<double>& values, double gap);
+  /// From values that touch, to such that do so deeply.
+  void show_contact(std::vector<double> values);
+  /// Whether the links meet in all of the box: deeper than they move.
+  bool meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
+                   const std::function<bool()>& stop);
+  void end_proof();
+
+  Chain chain_;
+  Contact outer_, inner_;
+  std::size_t samples_;
+  const HullTree *tree_a_, *tree_b_;
+  mutable BoxMotion motion_;
+  std::vector<double> middle_, half_;  ///< of the limits
+  std::priority_queue<Box> open_;
+  bool begun_ = false, exhausted_ = false;
+  std::uint64_t order_ = 0;
+  std::size_t looked_ = 0, next_climb_ = 32;
+  double proved_ = std::numeric_limits<double>::infinity();  ///< least bound of boxes that are done
+  double nearest_ = std::numeric_limits<double>::infinity();
+  std::vector<double> best_values_, apart_values_;  ///< apart: hulls do not meet, if not empty
+  Bracket depth_{0, 0};
+  Verdict verdict_ = Verdict::Open;
+};
+
+}  // namespace kaboum::pairs::detail

@@ -1,0 +1,111 @@
+// What kaboum-pairs prints, reports and writes.
+
+#include "results.h"
+
+#include <kaboum/base/xml_text.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace kaboum::tools {
+namespace {
+
+using pairs::DecidedPair;
+using pairs::Relation;
+using pairs::Verdict;
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+Json bracket_json(const pairs::Bracket& bracket) {
+  Json out = {{"at_least", bracket.lower}};
+  out["at_most"] = std::isfinite(bracket.upper) ? Json(bracket.upper) : Json(nullptr);
+  return out;
+}
+
+Json configuration_json(const robot::Robot& robot, const std::vector<double>& q) {
+  Json out = Json::object();
+  for (std::size_t v = 0; v < q.size(); ++v) out[robot.variables[v].name] = q[v];
+  return out;
+}
+
+std::string distance_words(const pairs::Bracket& nearest) {
+  return std::isfinite(nearest.upper)
+             ? "smallest distance " + number(nearest.lower) + " to " + number(nearest.upper)
+             : "smallest distance at least " + number(nearest.lower);
+}
+
+}  // namespace
+
+Json pairs_json(const robot::Robot& robot, const std::vector<DecidedPair>& pairs) {
+  Json out = Json::array();
+  for (const DecidedPair& pair : pairs) {
+    Json j = {{"links", {robot.links[pair.a].name, robot.links[pair.b].name}},
+              {"relation", pairs::name_of(pair.relation)},
+              {"verdict", pairs::name_of(pair.verdict)},
+              {"distance", bracket_json(pair.nearest)}};
+    if (pair.depth.lower > 0) j["depth"] = bracket_json(pair.depth);
+    if (!pair.q.empty()) j["configuration"] = configuration_json(robot, pair.q);
+    j["boxes"] = pair.boxes;
+    if (pair.away) {
+      j["away_from_joint"] = {{"beyond", pair.away->beyond},
+                              {"verdict", pairs::name_of(pair.away->verdict)},
+                              {"distance", bracket_json(pair.away->nearest)}};
+      if (!pair.away->q.empty())
+        j["away_from_joint"]["configuration"] = configuration_json(robot, pair.away->q);
+    }
+    out.push_back(std::move(j));
+  }
+  return out;
+}
+
+std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
+  std::string out = robot.links[pair.a].name + " " + robot.links[pair.b].name + ": ";
+  if (pair.relation != Relation::Moving) {
+    out += pairs::name_of(pair.relation);
+    out += "; ";
+  }
+  out += pairs::name_of(pair.verdict);
+  if (pair.depth.lower > 0) {
+    out += ", " + number(pair.depth.lower) + " to " + number(pair.depth.upper) + " deep";
+    if (!pair.q.empty()) out += " at " + pairs::text_of(pair.q);
+  } else if (pair.verdict != Verdict::Always) {
+    out += ", " + distance_words(pair.nearest);
+  }
+  if (pair.away) {
+    out += "; farther than " + number(pair.away->beyond) + " from the joint: ";
+    out += pairs::name_of(pair.away->verdict);
+  }
+  return out;
+}
+
+std::string summary_of(const std::vector<DecidedPair>& pairs, double seconds) {
+  const auto count = [&](Verdict verdict) {
+    return std::to_string(std::ranges::count(pairs, verdict, &DecidedPair::verdict));
+  };
+  return std::to_string(pairs.size()) + " pairs: " + count(Verdict::Never) + " never touch, " +
+         count(Verdict::Always) + " always do, " + count(Verdict::CanTouch) + " can, " +
+         count(Verdict::Open) + " open (" + number(seconds) + " s)";
+}
+
+std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& pairs) {
+  std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + escape_xml(robot.name) + "\">\n";
+  for (const DecidedPair& pair : pairs) {
+    // As MoveIt's assistant calls them.
+    const char* reason = pair.relation == Relation::Adjacent ? "Adjacent"
+                         : pair.verdict == Verdict::Never    ? "Never"
+                         : pair.relation == Relation::Fixed  ? "Default"
+                                                             : nullptr;
+    if (reason == nullptr) continue;
+    out += "  <disable_collisions link1=\"" + escape_xml(robot.links[pair.a].name) + "\" link2=\"" +
+           escape_xml(robot.links[pair.b].name) + "\" reason=\"" + reason + "\"/>\n";
+  }
+  return out + "</robot>\n";
+}
+
+}  // namespace kaboum::tools
