@@ -47,12 +47,22 @@ class ParallelBody {
 
   [[nodiscard]] double distance() const { return distance_; }
 
- private:
-  /// Points x with |x − center| ≤ h and normal · (x − center) ≥ height, h being the same for all.
+  /// Points x with |x − center| ≤ cap_reach() and normal · (x − center) ≥ height.
   struct Cap {
     geom::Vec3 center, normal;
     double height;
   };
+  [[nodiscard]] double cap_reach() const { return h_; }
+
+  /// Calls visit(cap) for caps whose centres lie in boxes for which descend(box) is true. All that
+  /// is beyond the distance, and near the boundary, is in a cap: a connected set that has a point
+  /// nearer than that, and meets no cap, lies in the body.
+  template <class Descend, class Visit>
+  void visit_caps(const Descend& descend, const Visit& visit) const {
+    tree_.traverse(descend, [&](std::uint32_t i) { visit(caps_[i]); });
+  }
+
+ private:
   struct Cell;
   struct Look;
 

@@ -13,6 +13,8 @@ inline constexpr std::string_view kDecisions = "decisions 3";
 inline constexpr std::string_view kSets = "planes 30";
 /// Sets of spheres, beside it.
 inline constexpr std::string_view kBalls = "parallel bodies 2";
+/// Sets of capsules and boxes, beside it.
+inline constexpr std::string_view kSimple = "capsules and boxes 1";
 /// Bytes of their containers.
 inline constexpr std::string_view kContainers = "coloured";
 /// Polytopes of links' bodies, and the bytes of their containers.

@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/bcd/balls.h>
 #include <kaboum/bcd/inner.h>
+#include <kaboum/bcd/simple_bodies.h>
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/certify/mesh.h>
 #include <kaboum/geom/width.h>
@@ -34,8 +35,9 @@ constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
 constexpr double kSumUp = 1 + 0x1p-50;
 
-/// Reason why spheres cannot be what is asked for, to stand behind "spheres"; null: they can.
-const char* flaw_of_spheres(const SetRequest& r) {
+/// Reason why bodies of a kind that is not polytopes cannot be what is asked for, to stand behind
+/// its name; null: they can.
+const char* flaw_of_kind(const SetRequest& r) {
   if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
   if (r.min_thickness > 0) return "cannot be thickened";
   if (r.max_total_vertices) return "have no vertices to be counted";
@@ -69,15 +71,32 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
 }
 
 /// @throws Error{InvalidArgument} on what only polytopes can be asked
+void require_possible(const SetRequest& r) {
+  if (const char* flaw = flaw_of_kind(r))
+    throw Error(ErrorCode::InvalidArgument, std::string(name_of(r.body_kind)) + " " + flaw);
+}
+
 bcd::BallOptions balls_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
-  if (const char* flaw = flaw_of_spheres(r))
-    throw Error(ErrorCode::InvalidArgument, std::string("spheres ") + flaw);
+  require_possible(r);
   bcd::BallOptions out;
   static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
   out.max_bodies = r.max_bodies;
   out.effort = r.effort;
   out.nearest = r.nearest && !r.max_bodies;
   out.most = r.most_spheres;
+  return out;
+}
+
+bcd::SimpleBodyOptions simple_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  require_possible(r);
+  using Kind = SetRequest::BodyKind;
+  bcd::SimpleBodyOptions out;
+  static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
+  out.kinds.balls = r.body_kind == Kind::Mixed;
+  out.kinds.capsules = r.body_kind != Kind::Boxes;
+  out.kinds.boxes = r.body_kind != Kind::Capsules;
+  out.max_bodies = r.max_bodies;
+  out.effort = r.effort;
   return out;
 }
 
@@ -144,6 +163,8 @@ class Search {
       : solid_(solid) {
     if (request.body_kind == SetRequest::BodyKind::Spheres)
       balls_ = balls_of(request, diagonal, hooks);
+    else if (request.body_kind != SetRequest::BodyKind::Polytopes)
+      simple_ = simple_of(request, diagonal, hooks);
     else if (request.direction == SetRequest::Direction::Outer)
       cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks)};
     else
@@ -158,6 +179,11 @@ class Search {
         for (const geom::ConvexBody& body : found.bodies)
           balls_->start.push_back({body.core.vertices[0], body.radius});
       }
+      return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
+              found.statistics};
+    }
+    if (simple_) {
+      bcd::CoverCandidate found = bcd::find_simple_bodies(solid_, *simple_);
       return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
               found.statistics};
     }
@@ -182,8 +208,9 @@ class Search {
 
   /// Chooses other means after a refutation. @return which, in words; empty: there are none left.
   std::string other_means(const Refutation& found) {
-    if (balls_) {
-      balls_->held.insert(balls_->held.end(), found.left_out.begin(), found.left_out.end());
+    if (balls_ || simple_) {
+      std::vector<geom::Vec3>& held = balls_ ? balls_->held : simple_->held;
+      held.insert(held.end(), found.left_out.begin(), found.left_out.end());
       tried_ = ++held_ < kHeld && !found.left_out.empty() ? 0 : kSafety.size();
       return "to hold the places found";
     }
@@ -215,6 +242,7 @@ class Search {
 
   const geom::SolidMesh& solid_;
   std::optional<bcd::BallOptions> balls_;
+  std::optional<bcd::SimpleBodyOptions> simple_;
   std::optional<bcd::CoverOptions> cover_;
   std::optional<bcd::InnerOptions> inner_;
   std::size_t tried_ = 0;  // allowances for rounding
@@ -354,10 +382,10 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          search.other_means(found));
   }
-  if (request.body_kind == SetRequest::BodyKind::Spheres)
+  if (request.body_kind != SetRequest::BodyKind::Polytopes)
     throw Error(ErrorCode::LimitReached,
-                "no spheres were found that pass the exact check (" + wrong +
-                    "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
+                "no " + std::string(plural_of(request.body_kind)) +
+                    " were found that pass the exact check (" + wrong + "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
 }

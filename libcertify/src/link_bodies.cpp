@@ -14,6 +14,7 @@
 
 #include "issuer.h"
 #include "link_shapes.h"
+#include "request.h"
 #include "work_shares.h"
 
 namespace kaboum::certify {
@@ -88,12 +89,12 @@ RobotHooks watched(const RobotHooks& hooks, bool& ended) {
   return out;
 }
 
-/// Spheres for a mesh that none were found for: within a few times epsilon.
+/// Spheres, capsules or boxes for a mesh that none were found for: within a few times epsilon.
 /// @return whether there are some; then `out` has them, and says so
-bool hold_by_larger_spheres(const RobotRequest& request, const SetCache* cache,
-                            const RobotHooks& hooks, const bool& ended, CertifiedLinkMesh& out) {
+bool hold_by_larger_ones(const RobotRequest& request, const SetCache* cache,
+                         const RobotHooks& hooks, const bool& ended, CertifiedLinkMesh& out) {
   const std::optional<Length> wanted = out.epsilon ? out.epsilon : request.set.epsilon;
-  if (request.set.body_kind != SetRequest::BodyKind::Spheres || !wanted) return false;
+  if (request.set.body_kind == SetRequest::BodyKind::Polytopes || !wanted) return false;
   for (const double times : {2.0, 4.0, 8.0}) {
     Length larger = *wanted;
     larger.value *= times;
@@ -104,7 +105,8 @@ bool hold_by_larger_spheres(const RobotRequest& request, const SetCache* cache,
       continue;
     }
     out.held = true;
-    out.flaw += ". It has spheres within " + larger.text() + " instead";
+    out.flaw += std::string(". It has ") + plural_of(request.set.body_kind) + " within " +
+                larger.text() + " instead";
     return true;
   }
   return false;
@@ -125,7 +127,7 @@ CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::option
     if (!first) first = std::current_exception();
   }
   CertifiedLinkMesh out{mesh, epsilon, {}, flaw, false};
-  if (hold_by_larger_spheres(request, cache, hooks, ended, out)) return out;
+  if (hold_by_larger_ones(request, cache, hooks, ended, out)) return out;
   if (!request.set.wrap) return out;
   RobotRequest loose = request;
   loose.set = loosest(loose.set);
@@ -153,9 +155,18 @@ double placing_error(const Geometry& g, double size) {
 
 namespace {
 
-/// Spheres for a box or a cylinder, in the frame of its link. Its polytope's corners are placed
-/// within placing_error. What the polytope is farther than the shape is taken off epsilon.
-CertifiedSet spheres_of(const Geometry& g, const robot::RobotFile& robot, const std::string& link,
+/// Whether a shape is a body of the kind itself.
+bool is_of_kind(const Geometry& g, SetRequest::BodyKind kind) {
+  using Kind = SetRequest::BodyKind;
+  if (kind == Kind::Polytopes) return true;  // a polytope round it stands for it
+  if (g.shape == Geometry::Shape::Sphere) return kind != Kind::Boxes;
+  return g.shape == Geometry::Shape::Box && (kind == Kind::Boxes || kind == Kind::Mixed);
+}
+
+/// Bodies of the kind for a box, a cylinder or a sphere that is none, in the frame of its link. Its
+/// polytope's corners are placed within placing_error. What the polytope is farther than the shape
+/// is taken off epsilon.
+CertifiedSet bodies_for(const Geometry& g, const robot::RobotFile& robot, const std::string& link,
                         const RobotRequest& request) {
   SetRequest asked = request.set;
   if (const auto own = request.epsilons.find(link); own != request.epsilons.end())
@@ -177,14 +188,14 @@ CertifiedSet spheres_of(const Geometry& g, const robot::RobotFile& robot, const 
   std::optional<CertifiedSet> set = certify_set(*geom::convex_hull(points), robot.sha256, asked);
   if (!set)
     throw TooCoarse(robot.path.string() + ": link '" + link +
-                    "': float32 cannot hold spheres as near to its " + robot::describe(g));
+                    "': float32 cannot hold bodies as near to its " + robot::describe(g));
   return *std::move(set);
 }
 
 /// Appends the bodies of one shape in the frame of its link, points within the bodies' radii:
 /// those of `set` for a mesh, else a bounding polytope; none for a point.
 /// @param set  of the mesh in its own frame and unit; unused for other shapes.
-/// @param kind  of Spheres, a sphere stands for itself
+/// @param kind  of all but polytopes, a sphere stands for itself
 void place_shape(const Geometry& g, const geom::ConvexSet* set, SetRequest::BodyKind kind,
                  const std::string& link, std::uint32_t index,
                  std::vector<robot::LinkBody>& bodies) {
@@ -193,7 +204,7 @@ void place_shape(const Geometry& g, const geom::ConvexSet* set, SetRequest::Body
     return link + "/" + std::to_string(std::count_if(bodies.begin(), bodies.end(), same));
   };
   if (robot::is_point(g)) return;
-  if (g.shape == Geometry::Shape::Sphere && kind == SetRequest::BodyKind::Spheres) {
+  if (g.shape == Geometry::Shape::Sphere && kind != SetRequest::BodyKind::Polytopes) {
     const double radius = g.size.x();
     bodies.push_back(
         {name(), index, {g.origin.translation}, radius + placing_error(g, 2 * radius)});
@@ -292,15 +303,13 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
     out.distances.push_back(0);
     if (shape.mesh && !out.meshes[*shape.mesh].held) continue;
     const Geometry& g = request.shapes.shapes_of(link)[shape.index];
-    if (request.set.body_kind == SetRequest::BodyKind::Spheres && !robot::is_point(g) &&
-        (g.shape == Geometry::Shape::Box || g.shape == Geometry::Shape::Cylinder)) {
-      const CertifiedSet set = spheres_of(g, robot, link.name, request);
+    if (g.shape != Geometry::Shape::Mesh && !is_of_kind(g, request.set.body_kind) &&
+        !robot::is_point(g)) {
+      const CertifiedSet set = bodies_for(g, robot, link.name, request);
       const double error = placing_error(g, 2 * g.size.norm());
       for (const geom::ConvexBody& body : set.artefact().bodies)
-        bodies.push_back({link.name + "/" + std::to_string(bodies.size()),
-                          shape.link,
-                          {body.core.vertices[0]},
-                          body.radius + error});
+        bodies.push_back({link.name + "/" + std::to_string(bodies.size()), shape.link,
+                          body.core.vertices, body.radius + error});
       out.distances.back() =
           distance_of(robot, out, shape) + error + set.artefact().provenance.epsilon.value_or(0);
       continue;

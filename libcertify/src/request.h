@@ -9,5 +9,8 @@ namespace kaboum::certify {
 geom::Provenance origin_of(const SetRequest& request, const std::string& sha256);
 
 const char* name_of(SetRequest::Direction direction);
+const char* name_of(SetRequest::BodyKind kind);
+/// What a set of the kind is made of, in words.
+const char* plural_of(SetRequest::BodyKind kind);
 
 }  // namespace kaboum::certify

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "link_shapes.h"
+#include "request.h"
 
 namespace kaboum::certify {
 namespace {
@@ -28,7 +29,7 @@ class Trials {
          const SetCache* cache, const RobotHooks& hooks)
       : robot_(robot), request_(std::move(request)), budget_(budget), cache_(cache) {
     hooks_.progress = hooks.progress;
-    if (has_spheres()) request_.partial = false;  // larger ones would be no answer
+    if (are_simple()) request_.partial = false;  // larger ones would be no answer
   }
 
   Trial at(const Length& epsilon) {
@@ -48,24 +49,25 @@ class Trials {
            t.vertices <= budget_.vertices.value_or(t.vertices);
   }
 
-  /// Whether the bodies within epsilon are; where a mesh has no spheres, they are not.
+  /// Whether the bodies within epsilon are; where a mesh has no bodies of the kind, they are not.
   bool fits_at(const Length& epsilon) {
     try {
       return fits(at(epsilon));
     } catch (const Error& error) {
-      if (!has_spheres() || !is_of_mesh(error)) throw;
+      if (!are_simple() || !is_of_mesh(error)) throw;
       return false;
     }
   }
 
-  [[nodiscard]] bool has_spheres() const {
-    return request_.set.body_kind == SetRequest::BodyKind::Spheres;
+  [[nodiscard]] bool are_simple() const {
+    return request_.set.body_kind != SetRequest::BodyKind::Polytopes;
   }
 
   /// The fewest that there are, in words.
   [[nodiscard]] std::string fewest(const Trial& t) const {
-    if (has_spheres())
-      return ": one for each of its shapes are " + std::to_string(t.bodies) + " spheres";
+    if (are_simple())
+      return ": one for each of its shapes are " + std::to_string(t.bodies) + " " +
+             plural_of(request_.set.body_kind);
     return ": one convex body for each part of its shapes are " + std::to_string(t.bodies) +
            " bodies with " + std::to_string(t.vertices) + " vertices";
   }

@@ -23,6 +23,13 @@ namespace fs = std::filesystem;
 // An entry's content is the certificate in one line, and the container.
 constexpr std::string_view kFormat = "KABOUM-SET 3";
 
+/// The version of a kind of bodies, as a line.
+std::string word_of(SetRequest::BodyKind kind) {
+  if (kind == SetRequest::BodyKind::Polytopes) return {};
+  const bool balls = kind == SetRequest::BodyKind::Spheres;
+  return std::string(balls ? cache_words::kBalls : cache_words::kSimple) + '\n';
+}
+
 /// @throws Error saying why the entry is not that of the key.
 CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
   const auto fail = [](const char* why) -> void { throw Error(ErrorCode::InvalidInput, why); };
@@ -41,7 +48,7 @@ CertifiedSet read_entry(std::string_view rest, const SetCache::Key& key) {
       certificate.distance_upper != set.provenance.epsilon)
     fail("it claims another wrap, or another distance than its container");
   if (set.provenance != expected || certificate.bodies != set.bodies.size() ||
-      geom::margin_of(set) != 0.0)
+      (!key.has_radii && geom::margin_of(set) != 0.0))
     fail("its container is that of another input or of other options");
   return Issuer::issue(std::move(set), std::move(certificate), std::move(container));
 }
@@ -79,12 +86,12 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + quads + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
       (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") +
-      (r.body_kind == SetRequest::BodyKind::Spheres ? std::string(cache_words::kBalls) + '\n'
-                                                    : std::string()) +
+      word_of(r.body_kind) +
       (r.nearest ? "nearest\n" : "") + KABOUM_VERSION + '\n' + std::string(cache_words::kSets) +
       '\n' + std::string(cache_words::kContainers) + '\n' + std::string(cache_words::kDecisions);
   return {kaboum::sha256(text), origin_of(r, sha256),
-          r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed};
+          r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed,
+          r.body_kind != SetRequest::BodyKind::Polytopes};
 }
 
 std::optional<CertifiedSet> SetCache::find(const Key& key, std::string& flaw) const {

@@ -21,8 +21,11 @@ using Direction = SetRequest::Direction;
 constexpr Names<Direction, 2> kDirections{
     {{"outer", Direction::Outer}, {"inner", Direction::Inner}}};
 using BodyKind = SetRequest::BodyKind;
-constexpr Names<BodyKind, 2> kBodyKinds{
-    {{"polytopes", BodyKind::Polytopes}, {"spheres", BodyKind::Spheres}}};
+constexpr Names<BodyKind, 5> kBodyKinds{{{"polytopes", BodyKind::Polytopes},
+                                         {"spheres", BodyKind::Spheres},
+                                         {"capsules", BodyKind::Capsules},
+                                         {"boxes", BodyKind::Boxes},
+                                         {"mixed", BodyKind::Mixed}}};
 constexpr Names<bcd::Effort, 3> kEfforts{
     {{"fast", bcd::Effort::Fast}, {"normal", bcd::Effort::Normal}, {"best", bcd::Effort::Best}}};
 constexpr Names<bcd::PreStep, 3> kPreSteps{
@@ -52,8 +55,10 @@ void add_limits(std::vector<Option<R>>& out) {
       [](auto& r) -> auto& { return r.request.max_total_vertices; }));
   out.push_back(choice<R>(
       {.name = "bodies",
-       .text = "polytopes; or spheres, whose union holds the solid and every triangle, as planners "
-               "with spheres take them (a robot's are written as cuRobo YAML, XRDF, SRDF or URDF)"},
+       .text = "What the bodies are, whose union holds the solid and every triangle: polytopes; "
+               "spheres, as planners with spheres take them (a robot's are written as cuRobo YAML, "
+               "XRDF, SRDF or URDF); capsules; boxes; mixed: of spheres, capsules and boxes "
+               "whichever takes least to be queried"},
       [](auto& r) -> auto& { return r.request.body_kind; }, kBodyKinds));
   out.push_back(choice<R>(
       {.name = "direction",
@@ -161,6 +166,10 @@ const char* name_in(const Names<Value, N>& names, Value value) {
 }  // namespace
 
 const char* name_of(Direction direction) { return name_in(kDirections, direction); }
+const char* name_of(BodyKind kind) { return name_in(kBodyKinds, kind); }
+const char* plural_of(BodyKind kind) {
+  return kind == BodyKind::Mixed ? "spheres, capsules and boxes" : name_of(kind);
+}
 
 const std::vector<Option<SetOptions>>& set_options() {
   static const std::vector<Option<SetOptions>> options = table();
@@ -238,13 +247,14 @@ geom::Provenance origin_of(const SetRequest& request, const std::string& sha256)
 std::string contradiction(const SetOptions& options, const std::set<std::string>& stated) {
   std::string flaw = contradiction(options.preparation, stated);
   if (!flaw.empty()) return flaw;
-  if (options.request.body_kind == SetRequest::BodyKind::Spheres) {
+  if (options.request.body_kind != SetRequest::BodyKind::Polytopes) {
+    const std::string kind = name_of(options.request.body_kind);
     if (options.request.direction != SetRequest::Direction::Outer)
-      return "{bodies} spheres needs {direction} outer";
+      return "{bodies} " + kind + " needs {direction} outer";
     for (const char* name : {"max-total-vertices", "max-vertices-per-body", "min-thickness",
                              "simplify", "improve-work", "max-work", "pre-step"})
       if (stated.contains(name))
-        return "{" + std::string(name) + "} means nothing with {bodies} spheres";
+        return "{" + std::string(name) + "} means nothing with {bodies} " + kind;
   }
   if (options.request.direction != SetRequest::Direction::Outer) {
     if (options.preparation.mode == Mode::Wrap)

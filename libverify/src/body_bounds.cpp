@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "membership.h"
 #include "nearest.h"
 #include "number.h"
 #include "parallel.h"
@@ -17,82 +18,6 @@ namespace kaboum::verify {
 namespace {
 
 constexpr std::size_t kMostVertices = 200'000;  ///< of all polytopes of a level
-
-template <class Number>
-Triple<Number> minus(const Vec3& a, const Vec3& b) {
-  return {difference<Number>(a[0], b[0]), difference<Number>(a[1], b[1]),
-          difference<Number>(a[2], b[2])};
-}
-
-template <class Number>
-Triple<Number> cross(const Triple<Number>& u, const Triple<Number>& v) {
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-
-/// Whether x ≥ 0; nullopt where the numbers leave it open, which exact ones never do.
-template <class Number>
-std::optional<bool> is_not_negative(const Number& x) {
-  const std::optional<Sign> sign = sign_of(x);
-  return sign ? std::optional(*sign != Sign::Negative) : std::nullopt;
-}
-
-/// All of them, in turn, until one is false or open.
-template <class... Tests>
-std::optional<bool> all(const Tests&... tests) {
-  std::optional<bool> out = true;
-  static_cast<void>(((out = tests(), out == std::optional(true)) && ...));
-  return out;
-}
-
-template <class Number>
-std::optional<bool> near_point(const Vec3& a, const Vec3& p, double radius) {
-  const Triple<Number> w = minus<Number>(p, a);
-  const Number r = difference<Number>(radius, 0);
-  return is_not_negative(r * r - dot(w, w));
-}
-
-/// Of the part of the segment's inside: with d = b − a and w = p − a, 0 ≤ w·d ≤ d·d and
-/// |w × d|² ≤ r² d·d.
-template <class Number>
-std::optional<bool> near_segment(const Vec3& a, const Vec3& b, const Vec3& p, double radius) {
-  const Triple<Number> d = minus<Number>(b, a), w = minus<Number>(p, a);
-  const Number along = dot(w, d), square = dot(d, d), r = difference<Number>(radius, 0);
-  return all([&] { return is_not_negative(along); },
-             [&] { return is_not_negative(square - along); },
-             [&] {
-               const Triple<Number> c = cross(w, d);
-               return is_not_negative(r * r * square - dot(c, c));
-             });
-}
-
-/// Of the prism over the triangle: with n = (b−a)×(c−a), p is on the inner side of the three planes
-/// through its sides along n, and (n·(p−a))² ≤ r² n·n.
-template <class Number>
-std::optional<bool> near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p,
-                                  double radius) {
-  const Triple<Number> n = cross(minus<Number>(b, a), minus<Number>(c, a));
-  const auto side = [&](const Vec3& from, const Vec3& to) {
-    return is_not_negative(dot(n, cross(minus<Number>(to, from), minus<Number>(p, from))));
-  };
-  return all([&] { return side(a, b); }, [&] { return side(b, c); }, [&] { return side(c, a); },
-             [&] {
-               const Number h = dot(n, minus<Number>(p, a)), r = difference<Number>(radius, 0);
-               return is_not_negative(r * r * dot(n, n) - h * h);
-             });
-}
-
-bool near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double radius) {
-  const auto rounded = near_triangle<Approx>(a, b, c, p, radius);
-  return rounded ? *rounded : *near_triangle<Exact>(a, b, c, p, radius);
-}
-bool near_segment(const Vec3& a, const Vec3& b, const Vec3& p, double radius) {
-  const auto rounded = near_segment<Approx>(a, b, p, radius);
-  return rounded ? *rounded : *near_segment<Exact>(a, b, p, radius);
-}
-bool near_point(const Vec3& a, const Vec3& p, double radius) {
-  const auto rounded = near_point<Approx>(a, p, radius);
-  return rounded ? *rounded : *near_point<Exact>(a, p, radius);
-}
 
 /// Whether the body holds every vertex: those of a polytope made of the core's are each near one.
 bool holds(const geom::ConvexBody& body, const geom::Mesh& polytope) {
@@ -158,25 +83,8 @@ std::string text_of(const char* reason) {
 }  // namespace
 
 bool contains(const geom::ConvexBody& body, const Vec3& p) {
-  const std::vector<Vec3>& v = body.core.vertices;
-  const double r = body.radius;
-  if (body.core.triangles.empty())
-    return std::ranges::any_of(v, [&](const Vec3& a) { return near_point(a, p, r); }) ||
-           (v.size() == 2 && near_segment(v[0], v[1], p, r));
-  const auto below = [&](const geom::Triangle& t) {
-    return geom::orient3d(v[t[0]], v[t[1]], v[t[2]], p) != Sign::Positive;
-  };
-  if (r > 0) {
-    for (const geom::Triangle& t : body.core.triangles)
-      for (const std::uint32_t corner : t)
-        if (near_point(v[corner], p, r)) return true;
-    for (const geom::Triangle& t : body.core.triangles)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (near_segment(v[t[k]], v[t[(k + 1) % 3]], p, r)) return true;
-    for (const geom::Triangle& t : body.core.triangles)
-      if (near_triangle(v[t[0]], v[t[1]], v[t[2]], p, r)) return true;
-  }
-  return std::ranges::all_of(body.core.triangles, below);
+  const auto rounded = contains_as(body, numbers<Approx>(p));
+  return rounded ? *rounded : *contains_as(body, numbers<Exact>(p));
 }
 
 double distance_to_bodies(const geom::ConvexSet& set, const Vec3& p) {

@@ -3,6 +3,7 @@
 #include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/ball_cover.h>
+#include <kaboum/verify/body_cover.h>
 #include <kaboum/verify/cover.h>
 
 #include <algorithm>
@@ -115,23 +116,6 @@ std::vector<std::uint32_t> not_within(const geom::Mesh& mesh, const Inclusion& i
 constexpr const char* kNoBounds =
     "the bodies are not convex, or too many, to be bounded by polytopes";
 
-/// Refutes the surface claim where a corner of the original is in no body, exactly: polytopes leave
-/// open what is that near to the bodies.
-void look_at_corners(const geom::Mesh& original, const geom::ConvexSet& set, Claim& surface) {
-  for (const geom::Triangle& t : original.triangles)
-    for (const std::uint32_t v : t) {
-      const Vec3& p = original.vertices[v];
-      const auto holds = [&](const geom::ConvexBody& body) { return contains(body, p); };
-      if (std::ranges::any_of(set.bodies, holds)) continue;
-      surface = {};
-      surface.answer = Answer::Refuted;
-      surface.reason = "a corner of a triangle is in no body";
-      surface.witness = Witness{p, distance_to_bodies(set, p), true};
-      surface.inner_triangles = {static_cast<std::uint32_t>(&t - original.triangles.data())};
-      return;
-    }
-}
-
 /// Where there are no polytopes to decide by.
 Inclusion open_inclusion(const Claim& convex) {
   Inclusion out;
@@ -187,15 +171,9 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   }
   const std::optional<double> margin = geom::margin_of(set);
   if (!margin) {
-    const auto with = [&](const geom::ConvexSet& polytopes) {
-      return verify_inclusion(original, sum_of(polytopes), options);
-    };
-    cover.inclusion = decide_between(
-        set, original.vertices, open_inclusion(cover.convexity.convex),
-        [&](const BodyBounds& bounds) { return with(bounds.inside); },
-        [&](const BodyBounds& bounds) { return with(bounds.outside); });
-    if (cover.convexity.convex.answer == Answer::Verified && is_open(cover.inclusion.surface))
-      look_at_corners(original, set, cover.inclusion.surface);
+    cover.inclusion = cover.convexity.convex.answer == Answer::Verified
+                          ? verify_body_cover(original, set, options)
+                          : open_inclusion(cover.convexity.convex);
     return cover;
   }
   const geom::Mesh sum = sum_of(set);

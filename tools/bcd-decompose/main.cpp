@@ -43,10 +43,11 @@ std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& ce
 
 int decompose_mesh(const DecomposeOptions& o) {
   const io::SetFormat format = set_format_for(o.output, o.output_format);
-  if (o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres &&
-      format != io::SetFormat::Glb)
+  using Kind = certify::SetRequest::BodyKind;
+  const Kind kind = o.set.request.body_kind;
+  if (kind != Kind::Polytopes && kind != Kind::Boxes && format != io::SetFormat::Glb)
     throw Error(ErrorCode::InvalidArgument,
-                "--bodies spheres: only .glb states radii; end --output in .glb, or state "
+                "--bodies with radii: only .glb states radii; end --output in .glb, or state "
                 "--output-format glb");
   if (format == io::SetFormat::Directory) io::require_replaceable(o.output);
   const certify::CertifiedFile made = certify_mesh(o);

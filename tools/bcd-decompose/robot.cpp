@@ -22,6 +22,7 @@
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
+#include "robots/simple_output.h"
 #include "robots/sphere_output.h"
 #include "words.h"
 
@@ -191,9 +192,13 @@ void write_page(const Run& run, const RobotWriter& output) {
           .counts = page::counts_of(run.made)}));
 }
 
-/// Spheres of all links, in one file: no shapes of a URDF.
-int decompose_into_spheres(const DecomposeOptions& o) {
+/// Spheres, capsules or boxes of all links, in one file: no meshes.
+int decompose_into_shapes(const DecomposeOptions& o) {
+  const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
   const std::optional<SphereFormat> format = sphere_format_of(o.output);
+  if (!spheres && format != SphereFormat::Urdf)
+    throw Error(ErrorCode::InvalidArgument,
+                "--bodies capsules, boxes or mixed of a robot: end --output in .urdf");
   if (!format)
     throw Error(ErrorCode::InvalidArgument,
                 "--bodies spheres of a robot: end --output in .yaml (cuRobo), .xrdf, .srdf "
@@ -201,10 +206,11 @@ int decompose_into_spheres(const DecomposeOptions& o) {
   if (o.srdf || !o.preview.empty() || !o.robot.html.empty())
     throw Error(
         ErrorCode::InvalidArgument,
-        "--srdf, --preview and --html-report mean nothing with --bodies spheres of a robot");
+        "--srdf, --preview and --html-report need --bodies polytopes of a robot");
   if (o.robot_vertices > 0)
     throw Error(ErrorCode::InvalidArgument,
-                "--robot-vertices: spheres have no vertices; state --robot-bodies");
+                "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
+                "state --robot-bodies");
   Run run{o, robot::read_robot(o.input)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
@@ -233,18 +239,28 @@ int decompose_into_spheres(const DecomposeOptions& o) {
   };
   const certify::CertifiedBodies bodies =
       certify::certify_bodies(run.robot, run.request, cache, hooks);
-  io::write_file(o.output,
-                 sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
-  log(o.common.quiet, o.output + ": " + counted(bodies.artefact().size(), "sphere", "spheres") +
-                          ", no point farther from its link's shapes than " +
-                          number_up(bodies.certificate().distance) + ", on the mean of links " +
-                          number_up(mean_distance(bodies)) + "; bound-verify robot " + o.input +
-                          " --spheres " + o.output + " decides it");
+  double distance = bodies.certificate().distance;
+  if (spheres) {
+    io::write_file(o.output,
+                   sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
+  } else {
+    const SimpleShapes shapes = simple_shapes(bodies.artefact());
+    distance += shapes.beyond;
+    io::write_file(o.output, urdf_of_shapes(run.robot, bodies, shapes, run.request.parameters(),
+                                            o.output));
+  }
+  log(o.common.quiet,
+      o.output + ": " +
+          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
+                   : counted(bodies.artefact().size(), "body", "bodies")) +
+          ", no point farther from its link's shapes than " + number_up(distance) +
+          ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
+          o.input + (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
   for (const std::string& note : run.notes.lines()) log(o.common.quiet, "note: " + note);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
-                 {{"spheres", bodies.artefact().size()},
-                  {"reach_upper", bodies.certificate().distance},
+                 {{spheres ? "spheres" : "bodies", bodies.artefact().size()},
+                  {"reach_upper", distance},
                   {"mean_reach_upper", mean_distance(bodies)},
                   {"meshes", std::move(meshes)},
                   {"stop", reached ? "done" : "epsilon not reached"},
@@ -263,8 +279,8 @@ int decompose_into_spheres(const DecomposeOptions& o) {
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
-  if (o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres)
-    return decompose_into_spheres(o);
+  if (o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
+    return decompose_into_shapes(o);
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/request_options.h"
+#include "robot_bodies.h"
 #include "robot_spheres.h"
 
 namespace kaboum::tools {
@@ -143,18 +144,23 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "and --prepare=wrap where that was; their --html-report has the command.",
       [&o, &app] {
         require_none(contradiction(o.robot.how));
-        if (o.robot.result.empty() && o.robot.spheres.empty())
-          throw Error(ErrorCode::InvalidArgument, "robot: RESULT or --spheres FILE is needed");
-        if (!o.robot.result.empty() && !o.robot.spheres.empty())
+        const auto given = std::ranges::count_if(
+            std::array{&o.robot.result, &o.robot.spheres, &o.robot.bodies},
+            [](const std::string* file) { return !file->empty(); });
+        if (given == 0)
           throw Error(ErrorCode::InvalidArgument,
-                      "robot: RESULT and --spheres are two results to be judged: state one");
-        if (o.robot.spheres.empty()) return verify_robot(o.robot, o.common);
+                      "robot: RESULT or --spheres FILE or --bodies FILE is needed");
+        if (given > 1)
+          throw Error(ErrorCode::InvalidArgument,
+                      "robot: RESULT, --spheres and --bodies are results to be judged: state one");
+        if (!o.robot.result.empty()) return verify_robot(o.robot, o.common);
         std::vector<std::string> others{"--raw"};
         for (const auto& option : verify::robot_verdict_options())
           if (std::ranges::find(kOfSpheres, option.name) == kOfSpheres.end())
             others.push_back("--" + std::string(option.name));
-        require_absent(*app.get_subcommand("robot"), "--spheres", others);
-        return verify_spheres(o.robot, o.common);
+        const bool spheres = !o.robot.spheres.empty();
+        require_absent(*app.get_subcommand("robot"), spheres ? "--spheres" : "--bodies", others);
+        return spheres ? verify_spheres(o.robot, o.common) : verify_bodies(o.robot, o.common);
       });
   add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
   c->add_option("RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)")
@@ -168,6 +174,12 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
        "solid that they bound; else says how much of its surface is outside, and how "
        "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links "
        "and --package-path may be stated")
+      ->type_name("FILE");
+  c->add_option("--bodies", o.robot.bodies,
+                "Instead of RESULT, a URDF whose collision shapes are spheres, boxes and cylinders "
+                "with or without spheres at their ends: decides of each link whether its own "
+                "shapes hold its triangles, as --spheres does of spheres. Beside it only "
+                "--geometry, --links and --package-path may be stated")
       ->type_name("FILE");
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);

@@ -12,6 +12,7 @@ namespace kaboum::tools {
 struct VerifyRobotOptions {
   std::string original, result;  ///< URDF files
   std::string spheres;           ///< instead of the result: spheres of the links
+  std::string bodies;            ///< instead of it: a URDF with capsules, boxes and spheres
   verify::RobotVerdictOptions how;
 };
 

@@ -21,9 +21,11 @@ namespace kaboum::certify {
 struct SetRequest : bcd::CoverSettings {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
-  /// Polytopes; or spheres (closed balls), of outer sets, which take of the other settings of
+  /// Polytopes; or, of outer sets, spheres (closed balls), capsules, boxes, or whichever of these
+  /// three takes least to be queried (Mixed). All but polytopes take of the other settings of
   /// covers `max_bodies` and `effort`.
-  enum class BodyKind { Polytopes, Spheres } body_kind = BodyKind::Polytopes;
+  enum class BodyKind { Polytopes, Spheres, Capsules, Boxes, Mixed } body_kind =
+      BodyKind::Polytopes;
   /// Spheres within epsilon: the same number, as near as it was found to allow.
   bool nearest = false;
   /// Spheres within epsilon: more are not searched for, with an error instead (LimitReached). What

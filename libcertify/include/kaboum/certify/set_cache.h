@@ -25,6 +25,7 @@ class SetCache {
     geom::Provenance origin;               ///< what the container says of itself; its claims apart
     std::optional<double> clearance = {};  ///< of a wrap, where one is covered [length]
     bool may_be_unwrapped = false;         ///< only where one is needed
+    bool has_radii = false;                ///< bodies are not polytopes alone
   };
   static Key key_of(const geom::Mesh& mesh, const std::string& sha256, const SetRequest& request);
   /// @param mesh_hash  hash_of the mesh

@@ -36,9 +36,8 @@ struct Cover {
 /// of them. Where its distance is m but for rounding, or where it would take too long, the answer
 /// is undecided.
 ///
-/// Bodies of several radii, or with segments and points as cores, are bounded by polytopes. What
-/// polytopes within them hold is verified, what polytopes round them do not hold is refuted. What
-/// lies between the finest of both is undecided (docs/algorithms/rounded-bodies.md).
+/// Of bodies of several radii, or with segments and points as cores, it is verify_body_cover, or
+/// verify_ball_cover.
 ///
 /// @throws as verify_inclusion
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,

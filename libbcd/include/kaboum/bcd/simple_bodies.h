@@ -1,0 +1,45 @@
+#pragma once
+
+#include <kaboum/bcd/cover.h>
+#include <kaboum/geom/solid_mesh.h>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace kaboum::bcd {
+
+/// More capsules and boxes than these are not looked for.
+inline constexpr std::size_t kMostSimpleBodies = 10'000;
+
+/// Kinds of bodies that engines and planners have formulas for.
+struct SimpleKinds {
+  bool balls = false, capsules = false, boxes = false;
+};
+
+/// Request for find_simple_bodies.
+struct SimpleBodyOptions : SearchRun {
+  SimpleKinds kinds;
+  std::optional<std::size_t> max_bodies;
+  Effort effort = Effort::Normal;
+  std::vector<geom::Vec3> held;  ///< points of the solid that the bodies are to hold as well
+};
+
+/// Searches for few capsules and boxes whose union contains the input's solid and every triangle of
+/// it. A capsule is a segment with a radius, float32 numbers; a box is the hull of its corners,
+/// which are rounded to float32.
+///
+/// Bodies grow within the outer parallel body of the solid at the distance ε. Few of them are
+/// chosen that hold sampled points, and two are replaced by one that holds what only they hold,
+/// while there is one. Points of triangles that no body holds are added until there are none. With
+/// `max_bodies` ε is the least for which so many are found. Of several kinds, each piece gets the
+/// one that takes least to be queried. docs/algorithms/capsules-and-boxes.md.
+///
+/// No claim that they cover: certify::certify_set decides that. The distances are certified.
+///
+/// @pre epsilon or max_bodies is given; a kind is
+/// @throws Error{InvalidArgument} on contradictory options; Error{LimitReached} where epsilon takes
+///   more bodies than kMostSimpleBodies, or none were found that hold all
+CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBodyOptions& options);
+
+}  // namespace kaboum::bcd

@@ -1,0 +1,227 @@
+// Boxes and capsules within an outer parallel body. docs/algorithms/capsules-and-boxes.md.
+#include "fitting.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::bcd {
+namespace {
+
+/// Relative allowance for rounding of lengths.
+constexpr double kFitRounding = 1e-11;
+constexpr int kCircleSteps = 60;   ///< towards the centre of a smallest circle
+constexpr int kSectionSteps = 24;  ///< of a golden section: leaves 1e-5 of the length
+
+double distance_from_segment(const Vec3& from, const Vec3& to, const Vec3& p) {
+  const Vec3 along = to - from;
+  const double square = along.squaredNorm();
+  const double share = square > 0 ? std::clamp((p - from).dot(along) / square, 0.0, 1.0) : 0.0;
+  return (from + share * along - p).norm();
+}
+
+/// Distance of c from a convex set that holds the cap, a convex function of c.
+double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& c) {
+  const Vec3 to = c - cap.center;
+  const double square = to.squaredNorm(), along = cap.normal.dot(to);
+  const double up = std::max(0.0, cap.height - along);
+  const double away = std::sqrt(std::max(0.0, square - along * along));
+  const double width =
+      cap.height > 0 ? std::sqrt(std::max(0.0, h * h - cap.height * cap.height)) : h;
+  const double aside = std::max(0.0, away - width);
+  return std::max(std::sqrt(up * up + aside * aside), std::sqrt(square) - h);
+}
+
+/// A bound from below of the least value along the segment, by golden section: the function is
+/// convex, and changes by no more than the way.
+double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& from, const Vec3& to) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double length = (to - from).norm();
+  const auto at = [&](double t) { return distance_from_cap(cap, h, from + t * (to - from)); };
+  double low = 0, high = 1, a = high - kGolden, b = low + kGolden;
+  double at_a = at(a), at_b = at(b);
+  for (int step = 0; step < kSectionSteps && (high - low) * length > 1e-3 * h; ++step) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - kGolden * (high - low);
+      at_a = at(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + kGolden * (high - low);
+      at_b = at(b);
+    }
+  }
+  return std::min(at_a, at_b) - (high - low) * length;
+}
+
+struct Circle {
+  Vec3 center;
+  double radius;
+};
+
+/// A circle round the points' projections along a direction that is little larger than the smallest
+/// one: M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
+Circle circle_round(std::span<const Vec3> points, const Vec3& direction) {
+  const auto flat = [&](const Vec3& p) -> Vec3 { return p - direction.dot(p) * direction; };
+  Vec3 center = flat(points[0]);
+  Circle best{center, std::numeric_limits<double>::infinity()};
+  for (int step = 1; step <= kCircleSteps; ++step) {
+    double most = -1;
+    Vec3 farthest = center;
+    for (const Vec3& p : points) {
+      const Vec3 q = flat(p);
+      if (const double away = (q - center).squaredNorm(); away > most) {
+        most = away;
+        farthest = q;
+      }
+    }
+    if (most < best.radius) best = {center, most};
+    center += (farthest - center) / (step + 1);
+  }
+  best.radius = std::sqrt(best.radius) * (1 + kFitRounding);
+  return best;
+}
+
+}  // namespace
+
+std::vector<Vec3> AxesBox::corners() const {
+  std::vector<Vec3> out;
+  out.reserve(8);
+  for (int i = 0; i < 8; ++i)
+    out.emplace_back(center + axes * Vec3((i & 1) != 0 ? high.x() : low.x(),
+                                          (i & 2) != 0 ? high.y() : low.y(),
+                                          (i & 4) != 0 ? high.z() : low.z()));
+  return out;
+}
+
+double AxesBox::beyond(const Vec3& p) const {
+  const Vec3 q = axes.transpose() * (p - center);
+  return std::max((low - q).maxCoeff(), (q - high).maxCoeff());
+}
+
+double Capsule::beyond(const Vec3& p) const { return distance_from_segment(from, to, p) - radius; }
+
+double room(const ParallelBody& body, const AxesBox& box, int k, bool high, double most) {
+  const double h = body.cap_reach();
+  const int u = (k + 1) % 3, v = (k + 2) % 3;
+  const double sign = high ? 1 : -1;
+  // Along the axis, outwards: where the box begins, and where the face is.
+  const double begin = high ? box.low[k] : -box.high[k], face = high ? box.high[k] : -box.low[k];
+  const double rounding =
+      kFitRounding * (box.center.cwiseAbs().maxCoeff() + box.low.cwiseAbs().maxCoeff() +
+                      box.high.cwiseAbs().maxCoeff() + h);
+  const Eigen::Matrix3d turn = box.axes.transpose();
+  const Eigen::Matrix3d size = turn.cwiseAbs();
+  double best = most;
+  const auto descend = [&](const geom::Box3& node) {
+    if (best < 0) return false;  // it meets one
+    const Vec3 c = turn * (node.center() - box.center);
+    const Vec3 half = size * (0.5 * (node.max - node.min)) + Vec3::Constant(h + rounding);
+    for (const int j : {u, v})
+      if (c[j] - half[j] > box.high[j] || c[j] + half[j] < box.low[j]) return false;
+    return sign * c[k] + half[k] >= begin && sign * c[k] - half[k] <= face + best;
+  };
+  body.visit_caps(descend, [&](const ParallelBody::Cap& cap) {
+    const Vec3 c = turn * (cap.center - box.center), n = turn * cap.normal;
+    double side = 0;  // the most that the other two axes add
+    for (const int j : {u, v}) {
+      const double from = std::max(box.low[j], c[j] - h), to = std::min(box.high[j], c[j] + h);
+      if (from > to + rounding) return;
+      side += n[j] * ((n[j] > 0 ? to : from) - c[j]);
+    }
+    const double at = sign * c[k], slope = sign * n[k];
+    if (at + h + rounding < begin) return;
+    const double needed = cap.height - side - rounding;
+    double meets = std::max(at - h, begin);
+    if (slope > 1e-9) {
+      if (needed > slope * h) return;
+      meets = std::max(meets, at + needed / slope);
+    } else if (needed > std::max(slope * (meets - at), slope * h)) {
+      return;
+    }
+    best = std::min(best, meets - face - rounding);
+  });
+  return best;
+}
+
+void grow(const ParallelBody& body, AxesBox& box, std::span<const int> order, double share) {
+  const double far = 4 * body.distance() + (box.high - box.low).maxCoeff();
+  double least = 0.02 * body.distance();
+  for (int turn = 0; turn < 40; ++turn) {
+    bool moved = false;
+    for (const int face : order) {
+      const int k = face / 2;
+      const bool high = face % 2 != 0;
+      const double most =
+          share < 1 ? std::max(share * (box.high - box.low).maxCoeff(), body.distance())
+                    : 1e3 * far;
+      const double way = room(body, box, k, high, most);
+      if (!(way > least)) continue;
+      (high ? box.high : box.low)[k] += high ? way : -way;
+      moved = true;
+    }
+    if (!moved || share >= 1) return;
+  }
+}
+
+double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, double most) {
+  const double h = body.cap_reach();
+  const Vec3 middle = 0.5 * (from + to);
+  const double half = 0.5 * (to - from).norm();
+  const double rounding = kFitRounding * (middle.cwiseAbs().maxCoeff() + half + h);
+  double best = most;
+  const auto descend = [&](const geom::Box3& node) {
+    // From the segment to the ball round the box, and from its box to the box.
+    const Vec3 c = node.center();
+    const Vec3 reach = 0.5 * (node.max - node.min);
+    if (distance_from_segment(from, to, c) - reach.norm() - h >= best) return false;
+    const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
+    return (low - node.max).cwiseMax(node.min - high).cwiseMax(0.0).norm() - h < best;
+  };
+  body.visit_caps(descend, [&](const ParallelBody::Cap& cap) {
+    if (distance_from_segment(from, to, cap.center) - h >= best) return;
+    best = std::min(best, distance_from_cap(cap, h, from, to) - rounding);
+  });
+  return std::max(best, 0.0);
+}
+
+AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare) {
+  AxesBox out;
+  out.axes = axes;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& p : points) {
+    const Vec3 q = axes.transpose() * p;
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
+  }
+  out.center = axes * (0.5 * (low + high));
+  out.high = 0.5 * (high - low) + Vec3::Constant(spare);
+  out.low = -out.high;
+  return out;
+}
+
+double radius_along(std::span<const Vec3> points, const Vec3& direction) {
+  return circle_round(points, direction).radius;
+}
+
+std::optional<Capsule> capsule_round(std::span<const Vec3> points, const Vec3& direction,
+                                     double radius, double spare) {
+  const Circle circle = circle_round(points, direction);
+  const double held = radius - spare;
+  if (!(held > circle.radius)) return std::nullopt;
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  for (const Vec3& p : points) {
+    const double at = direction.dot(p);
+    const double away = (p - at * direction - circle.center).norm();
+    const double reach = std::sqrt(std::max(0.0, held * held - away * away));
+    from = std::min(from, at + reach);
+    to = std::max(to, at - reach);
+  }
+  if (from > to) from = to = 0.5 * (from + to);
+  return Capsule{circle.center + from * direction, circle.center + to * direction, radius};
+}
+
+}  // namespace kaboum::bcd

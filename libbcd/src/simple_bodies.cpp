@@ -1,0 +1,916 @@
+// Covers by capsules and boxes: bodies that grow within the parallel body, few of them by a local
+// search, fewer by one in place of two. docs/algorithms/capsules-and-boxes.md.
+#include <kaboum/base/error.h>
+#include <kaboum/base/parallel.h>
+#include <kaboum/base/random.h>
+#include <kaboum/bcd/simple_bodies.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/triangle_search.h>
+#include <kaboum/geom/winding.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "fitting.h"
+#include "principal_box.h"
+#include "set_cover.h"
+
+namespace kaboum::bcd {
+namespace {
+
+using geom::Mesh;
+
+/// Shares of ε: what capsules and boxes leave of it, so that polytopes round the bodies are within
+/// it; by which triangles, and by which points, are held with room to spare; the size of caps.
+constexpr double kLeft = 5e-3, kTriangleSpare = 2e-3, kPointSpare = 0.02, kCaps = 0.15;
+constexpr int kPatches = 60;                    ///< rounds of points added where no body is
+constexpr std::size_t kAddedPoints = 200;       ///< in a round
+constexpr int kTriangleCuts = 24;               ///< of a triangle
+constexpr std::size_t kMostSurface = 10'000, kMostCorners = 3'000, kInside = 20'000;
+constexpr std::size_t kInsideShown = 29;        ///< every so manieth is to be held at first
+constexpr std::size_t kMostFrames = 4;
+
+struct SimpleBody {
+  enum class Kind { Ball, Capsule, Box } kind = Kind::Ball;
+  Capsule capsule;  ///< a ball: both ends are its centre
+  AxesBox box;
+
+  [[nodiscard]] double beyond(const Vec3& p) const {
+    return kind == Kind::Box ? box.beyond(p) : capsule.beyond(p);
+  }
+};
+
+/// What a query of a body costs beside that of a ball: measured (the table in
+/// docs/algorithms/capsules-and-boxes.md).
+double cost_of(SimpleBody::Kind kind) {
+  switch (kind) {
+    case SimpleBody::Kind::Ball:
+      return 1;
+    case SimpleBody::Kind::Capsule:
+      return 1.5;
+    case SimpleBody::Kind::Box:
+      break;
+  }
+  return 2.5;
+}
+
+struct SimpleEffort {
+  std::size_t points, seeds, steps;
+  int rounds;          ///< of choosing again
+  std::size_t merges;  ///< most tries of one body for two
+};
+
+SimpleEffort effort_for(Effort effort) {
+  switch (effort) {
+    case Effort::Fast:
+      return {1000, 250, 300, 1, 3'000};
+    case Effort::Normal:
+      break;
+    case Effort::Best:
+      return {4000, 1500, 5000, 6, 100'000};
+  }
+  return {2000, 500, 1000, 3, 15'000};
+}
+
+class SimpleBodySearch {
+ public:
+  SimpleBodySearch(const Mesh& mesh, const SimpleBodyOptions& options)
+      : mesh_(mesh),
+        options_(options),
+        effort_(effort_for(options.effort)),
+        query_(mesh),
+        winding_(mesh),
+        box_(geom::bounding_box(mesh)) {
+    const double largest = std::max(box_.min.cwiseAbs().maxCoeff(), box_.max.cwiseAbs().maxCoeff());
+    spacing_ = geom::float32_spacing(largest + box_.diagonal());
+    sample();
+    points_.insert(points_.end(), options.held.begin(), options.held.end());
+    find_frames();
+  }
+
+  CoverCandidate run() {
+    std::vector<SimpleBody> bodies;
+    if (options_.max_bodies) {
+      bodies = within_count(*options_.max_bodies);
+      if (options_.epsilon && epsilon_ <= *options_.epsilon) bodies = cover(*options_.epsilon, kAny);
+    } else {
+      bodies = cover(*options_.epsilon, kAny);
+    }
+    CoverCandidate out;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      out.bodies.push_back(convex_body(bodies[i], i));
+      const std::size_t vertices = out.bodies.back().core.vertices.size();
+      out.statistics.vertices += vertices;
+      out.statistics.largest = std::max(out.statistics.largest, vertices);
+    }
+    out.statistics.leaves = bodies.size();
+    out.excess_upper = epsilon_;
+    out.excess_lower = std::min(farthest(bodies), epsilon_);
+    if (options_.epsilon && !(out.excess_upper <= *options_.epsilon))
+      out.stop = Stop::TooManyBodies;
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t kAny = kMostSimpleBodies;
+
+  struct SurfacePoint {
+    Vec3 at, inwards;
+  };
+
+  void show(const char* stage, double share) const {
+    if (options_.progress) options_.progress({stage, share});
+  }
+
+  // --- points ---
+
+  /// Points of the surface, evenly by area; vertices; points of the inside, of a grid.
+  void sample() {
+    std::vector<double> sums;
+    double area = 0;
+    for (const auto& [i, j, k] : mesh_.triangles) {
+      area += 0.5 * (mesh_.vertices[j] - mesh_.vertices[i])
+                        .cross(mesh_.vertices[k] - mesh_.vertices[i])
+                        .norm();
+      sums.push_back(area);
+    }
+    std::size_t count = effort_.points;
+    if (options_.epsilon) {
+      const double squares = area / (*options_.epsilon * *options_.epsilon);
+      count = std::clamp(static_cast<std::size_t>(std::min(4 * squares, 1e9)), count, kMostSurface);
+    }
+    const double step = area / static_cast<double>(count);
+    double next = 0.5 * step;
+    for (std::size_t t = 0; t < sums.size(); ++t) {
+      const auto& [i, j, k] = mesh_.triangles[t];
+      const Vec3 &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
+      const Vec3 normal = (b - a).cross(c - a);
+      for (; next < sums[t]; next += step) {
+        double u = random_.between(0, 1), v = random_.between(0, 1);
+        if (u + v > 1) {
+          u = 1 - u;
+          v = 1 - v;
+        }
+        surface_.push_back({a + u * (b - a) + v * (c - a), -normal.normalized()});
+      }
+    }
+    for (const SurfacePoint& p : surface_) points_.push_back(p.at);
+    const std::size_t stride = mesh_.vertices.size() / kMostCorners + 1;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); v += stride)
+      points_.push_back(mesh_.vertices[v]);
+    sample_inside();
+  }
+
+  void sample_inside() {
+    const double volume = (box_.max - box_.min).prod();
+    if (!(volume > 0)) return;
+    const double step = std::cbrt(volume / static_cast<double>(kInside));
+    for (double x = box_.min.x() + 0.5 * step; x < box_.max.x(); x += step)
+      for (double y = box_.min.y() + 0.5 * step; y < box_.max.y(); y += step)
+        for (double z = box_.min.z() + 0.5 * step; z < box_.max.z(); z += step)
+          inner_.emplace_back(x, y, z);
+    std::vector<char> is_inside(inner_.size());
+    kaboum::parallel_for(std::size_t{0}, inner_.size(), [&](std::size_t i) {
+      const std::optional<int> winding = winding_(inner_[i]);
+      is_inside[i] = winding && *winding >= 1;
+    });
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < inner_.size(); ++i)
+      if (is_inside[i] != 0) inner_[count++] = inner_[i];
+    inner_.resize(count);
+    for (std::size_t i = 0; i < inner_.size(); i += kInsideShown) points_.push_back(inner_[i]);
+  }
+
+  /// Axes that most of the surface is square to: of each frame the first normal has most area of
+  /// what no frame before has, the second one most of what is square to it. And those of all
+  /// points' covariance.
+  void find_frames() {
+    std::vector<char> taken(surface_.size(), 0);
+    const auto along = [&](const Vec3& n) {
+      std::size_t out = 0;
+      for (std::size_t i = 0; i < surface_.size(); ++i)
+        out += taken[i] == 0 && std::abs(surface_[i].inwards.dot(n)) > 0.999 ? 1U : 0U;
+      return out;
+    };
+    const std::size_t stride = surface_.size() / 300 + 1;
+    while (frames_.size() + 1 < kMostFrames) {
+      Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+      std::size_t most = surface_.size() / 50;
+      for (std::size_t i = 0; i < surface_.size(); i += stride)
+        if (const std::size_t has = along(surface_[i].inwards); has > most) {
+          most = has;
+          first = surface_[i].inwards;
+        }
+      if (first.isZero(0)) break;
+      most = 0;
+      for (std::size_t i = 0; i < surface_.size(); i += stride) {
+        const Vec3& n = surface_[i].inwards;
+        if (std::abs(n.dot(first)) > 0.01) continue;
+        if (const std::size_t has = along(n); has > most) {
+          most = has;
+          second = n;
+        }
+      }
+      frames_.push_back(frame_of(first, second));
+      for (std::size_t i = 0; i < surface_.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+          if (std::abs(surface_[i].inwards.dot(frames_.back().col(k))) > 0.999) taken[i] = 1;
+    }
+    if (const auto principal = principal_box(points_)) frames_.push_back(principal->axes);
+    if (frames_.empty()) frames_.push_back(Eigen::Matrix3d::Identity());
+  }
+
+  static Eigen::Matrix3d frame_of(const Vec3& first, const Vec3& second) {
+    Eigen::Matrix3d out;
+    out.col(0) = first.normalized();
+    Vec3 other = second - second.dot(out.col(0)) * out.col(0);
+    if (!(other.norm() > 0.1)) {
+      int least = 0;
+      out.col(0).cwiseAbs().minCoeff(&least);
+      other = Vec3::Unit(least) - out.col(0)[least] * out.col(0);
+    }
+    out.col(1) = other.normalized();
+    out.col(2) = out.col(0).cross(out.col(1));
+    return out;
+  }
+
+  // --- candidates ---
+
+  void set_distance(double epsilon) {
+    epsilon_ = epsilon;
+    body_ = std::make_unique<ParallelBody>(query_, winding_, epsilon * (1 - kLeft), kCaps);
+    spare_ = kPointSpare * epsilon + 2 * spacing_;
+  }
+
+  static SimpleBody ball(const Vec3& center, double radius) {
+    return {SimpleBody::Kind::Ball, {center, center, radius}, {}};
+  }
+
+  /// A capsule, or the ball that it is where it is short, with the largest radius that is allowed;
+  /// nullopt where that is less than `least`.
+  [[nodiscard]] std::optional<SimpleBody> capsule(const Vec3& from, const Vec3& to,
+                                                  double least) const {
+    Vec3 end = to;
+    // A segment that is a point is none.
+    if ((to - from).norm() < 64 * spacing_) {
+      if (options_.kinds.balls) {
+        const double radius = body_->radius_about(from);
+        return radius >= least ? std::optional(ball(from, radius)) : std::nullopt;
+      }
+      end = from + 64 * spacing_ * Vec3::UnitX();
+    }
+    const double radius = clearance(*body_, from, end, 2 * box_.diagonal());
+    if (!(radius >= least)) return std::nullopt;
+    return SimpleBody{SimpleBody::Kind::Capsule, {from, end, radius}, {}};
+  }
+
+  /// How far a ball of a radius may roll along a direction.
+  [[nodiscard]] Vec3 rolled(Vec3 at, const Vec3& direction, double radius) const {
+    constexpr int kRolls = 40;
+    for (int step = 0; step < kRolls; ++step) {
+      const double way = body_->radius_about(at) - radius;
+      if (!(way > 0.02 * epsilon_)) break;
+      at += way * direction;
+    }
+    return at;
+  }
+
+  /// Ball centres inwards of a point of the surface: of the farthest ball that holds it, and of the
+  /// largest one.
+  [[nodiscard]] std::pair<Vec3, Vec3> centres_at(const SurfacePoint& p) const {
+    constexpr double kHeld = 0.98;
+    constexpr int kHalvings = 8, kPlaces = 6;
+    const auto radius = [&](double depth) {
+      return body_->radius_about(p.at + depth * p.inwards);
+    };
+    double low = 0, high = 0.5 * box_.diagonal() + 2 * epsilon_;
+    for (int turn = 0; turn < kHalvings; ++turn) {
+      const double middle = 0.5 * (low + high);
+      (kHeld * radius(middle) >= middle ? low : high) = middle;
+    }
+    double largest = low, most = radius(low);
+    for (int k = 0; k < kPlaces; ++k)
+      if (const double one = radius(low * k / kPlaces); one > most) {
+        most = one;
+        largest = low * k / kPlaces;
+      }
+    return {p.at + low * p.inwards, p.at + largest * p.inwards};
+  }
+
+  void add_capsules(const SurfacePoint& p, std::vector<SimpleBody>& out) const {
+    const auto [farthest, largest] = centres_at(p);
+    for (const Vec3& c : {farthest, largest}) {
+      const double radius = body_->radius_about(c);
+      if (!(radius > 0)) continue;
+      if (options_.kinds.balls) out.push_back(ball(c, radius));
+      for (const Eigen::Matrix3d& frame : frames_)
+        for (int k = 0; k < 3; ++k)
+          for (const double share : {0.98, 0.85}) {
+            const Vec3 d = frame.col(k);
+            const Vec3 from = rolled(c, -d, share * radius), to = rolled(c, d, share * radius);
+            if (const auto found = capsule(from, to, 0.5 * radius)) out.push_back(*found);
+          }
+    }
+  }
+
+  void add_boxes(const SurfacePoint& p, std::uint64_t seed, std::vector<SimpleBody>& out) const {
+    constexpr int kOrders = 3;
+    Random random(seed);
+    const auto [farthest, largest] = centres_at(p);
+    for (const Eigen::Matrix3d& frame : frames_)
+      for (int turn = 0; turn < kOrders; ++turn) {
+        std::array<int, 6> order{0, 1, 2, 3, 4, 5};
+        for (std::size_t i = 5; i > 0; --i) std::swap(order[i], order[random.index(i + 1)]);
+        const Vec3& c = turn == 0 ? largest : farthest;
+        const double half = 0.5 * body_->radius_about(c);
+        if (!(half > 0)) continue;
+        SimpleBody one;
+        one.kind = SimpleBody::Kind::Box;
+        one.box = {c, frame, Vec3::Constant(-half), Vec3::Constant(half)};
+        grow(*body_, one.box, order, turn == 2 ? 1 : 0.25);
+        out.push_back(one);
+      }
+  }
+
+  void add_candidates(const std::vector<SurfacePoint>& at) {
+    std::vector<std::vector<SimpleBody>> found(at.size());
+    kaboum::parallel_for(std::size_t{0}, at.size(), [&](std::size_t i) {
+      if (options_.kinds.capsules) add_capsules(at[i], found[i]);
+      if (options_.kinds.boxes) add_boxes(at[i], candidates_.size() + i, found[i]);
+    });
+    for (const std::vector<SimpleBody>& some : found)
+      candidates_.insert(candidates_.end(), some.begin(), some.end());
+  }
+
+  /// A body about a point of the solid.
+  void add_at(const Vec3& p) {
+    const double radius = body_->radius_about(p);
+    if (!(radius > 0)) return;
+    if (options_.kinds.capsules) {
+      if (const auto one = capsule(p, p, 0)) candidates_.push_back(*one);
+    } else {
+      SimpleBody one;
+      one.kind = SimpleBody::Kind::Box;
+      const double half = 0.57 * radius;
+      one.box = {p, frames_[0], Vec3::Constant(-half), Vec3::Constant(half)};
+      constexpr std::array<int, 6> kOrder{0, 1, 2, 3, 4, 5};
+      grow(*body_, one.box, kOrder, 0.25);
+      candidates_.push_back(one);
+    }
+  }
+
+  // --- choices ---
+
+  [[nodiscard]] std::vector<std::uint32_t> held_by(const SimpleBody& one,
+                                                   const std::vector<Vec3>& points) const {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t p = 0; p < points.size(); ++p)
+      if (one.beyond(points[p]) <= -spare_) out.push_back(p);
+    return out;
+  }
+
+  [[nodiscard]] std::vector<SimpleBody> choose(const std::vector<Vec3>& points,
+                                               std::size_t steps) const {
+    std::vector<std::vector<std::uint32_t>> sets(candidates_.size());
+    kaboum::parallel_for(std::size_t{0}, candidates_.size(),
+                         [&](std::size_t c) { sets[c] = held_by(candidates_[c], points); });
+    std::vector<SimpleBody> out;
+    for (const std::uint32_t c : SetCover(points.size(), std::move(sets)).search(steps, 1))
+      out.push_back(candidates_[c]);
+    return out;
+  }
+
+  // --- one body for given points ---
+
+  [[nodiscard]] std::optional<SimpleBody> ball_for(const std::vector<Vec3>& points) const {
+    Vec3 center = points[0];
+    constexpr int kSteps = 60;
+    for (int step = 1; step <= kSteps; ++step) {
+      Vec3 farthest = center;
+      double most = -1;
+      for (const Vec3& p : points)
+        if (const double away = (p - center).squaredNorm(); away > most) {
+          most = away;
+          farthest = p;
+        }
+      center += (farthest - center) / (step + 1);
+    }
+    double needed = 0;
+    for (const Vec3& p : points) needed = std::max(needed, (p - center).norm());
+    const double radius = body_->radius_about(center);
+    return radius >= needed + spare_ ? std::optional(ball(center, radius)) : std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<SimpleBody> capsule_for(const std::vector<Vec3>& points,
+                                                      const std::vector<Vec3>& directions) const {
+    for (const Vec3& d : directions) {
+      const double least = radius_along(points, d) + spare_;
+      for (const double share : {0.9, 0.6, 0.3, 0.02}) {
+        const double radius = least + share * epsilon_;
+        const auto found = capsule_round(points, d, radius, spare_);
+        if (!found) continue;
+        // What is far outside does not fit.
+        const Vec3 middle = 0.5 * (found->from + found->to);
+        if (!(body_->signed_distance(middle).upper < epsilon_)) continue;
+        if (const auto one = capsule(found->from, found->to, radius)) return one;
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<SimpleBody> box_for(const std::vector<Vec3>& points,
+                                                  const std::vector<Eigen::Matrix3d>& axes) const {
+    std::vector<std::pair<double, AxesBox>> tried;
+    for (const Eigen::Matrix3d& frame : axes) {
+      const AxesBox one = box_round(points, frame, spare_ * (1 + 1e-6));
+      tried.emplace_back((one.high - one.low).prod(), one);
+    }
+    std::ranges::stable_sort(tried, {}, [](const auto& entry) { return entry.first; });
+    for (const auto& [volume, one] : tried) {
+      if (!(body_->signed_distance(one.center).upper < body_->distance()) || !fits(*body_, one))
+        continue;
+      SimpleBody out;
+      out.kind = SimpleBody::Kind::Box;
+      out.box = one;
+      constexpr std::array<int, 6> kOrder{0, 1, 2, 3, 4, 5};
+      grow(*body_, out.box, kOrder, 0.1);
+      return out;
+    }
+    return std::nullopt;
+  }
+
+  /// A body that holds the points, of the kind that costs least.
+  /// @param below  it is to cost less than this
+  [[nodiscard]] std::optional<SimpleBody> body_for(const std::vector<Vec3>& points,
+                                                   const std::vector<SimpleBody>& like,
+                                                   double below) const {
+    if (points.empty()) return std::nullopt;
+    std::vector<Eigen::Matrix3d> axes = frames_;
+    std::vector<Vec3> directions;
+    if (const auto principal = principal_box(points)) axes.push_back(principal->axes);
+    for (const SimpleBody& one : like) {
+      if (one.kind == SimpleBody::Kind::Box) {
+        axes.push_back(one.box.axes);
+      } else if (const Vec3 along = one.capsule.to - one.capsule.from; along.norm() > 100 * spacing_) {
+        directions.push_back(along.normalized());
+        axes.push_back(frame_of(along, Vec3::Zero()));
+      }
+    }
+    for (const Eigen::Matrix3d& frame : axes)
+      for (int k = 2; k >= 0; --k) {
+        const Vec3 d = frame.col(k);
+        if (std::ranges::none_of(directions,
+                                 [&](const Vec3& e) { return std::abs(e.dot(d)) > 0.9999; }))
+          directions.push_back(d);
+      }
+    using Kind = SimpleBody::Kind;
+    const SimpleKinds& kinds = options_.kinds;
+    if (kinds.balls && cost_of(Kind::Ball) < below)
+      if (auto one = ball_for(points)) return one;
+    if (kinds.capsules && cost_of(Kind::Capsule) < below)
+      if (auto one = capsule_for(points, directions)) return one;
+    if (kinds.boxes && cost_of(Kind::Box) < below) return box_for(points, axes);
+    return std::nullopt;
+  }
+
+  // --- fewer ---
+
+  /// Which bodies hold each point.
+  struct Holders {
+    std::vector<std::vector<std::uint32_t>> of_body;
+    std::vector<std::uint32_t> times;
+  };
+
+  [[nodiscard]] Holders holders_of(const std::vector<SimpleBody>& bodies) const {
+    Holders out;
+    out.of_body.resize(bodies.size());
+    out.times.assign(points_.size(), 0);
+    kaboum::parallel_for(std::size_t{0}, bodies.size(),
+                         [&](std::size_t b) { out.of_body[b] = held_by(bodies[b], points_); });
+    for (const auto& held : out.of_body)
+      for (const std::uint32_t p : held) ++out.times[p];
+    return out;
+  }
+
+  /// Points that only these bodies hold.
+  [[nodiscard]] std::vector<Vec3> only_of(const Holders& holders,
+                                          std::initializer_list<std::size_t> of) const {
+    std::vector<std::uint32_t> all;
+    for (const std::size_t b : of)
+      all.insert(all.end(), holders.of_body[b].begin(), holders.of_body[b].end());
+    std::ranges::sort(all);
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < all.size();) {
+      std::size_t next = i;
+      while (next < all.size() && all[next] == all[i]) ++next;
+      if (holders.times[all[i]] == next - i) out.push_back(points_[all[i]]);
+      i = next;
+    }
+    return out;
+  }
+
+  void leave_out_unneeded(std::vector<SimpleBody>& bodies) const {
+    for (std::size_t i = 0; i < bodies.size();) {
+      const Holders holders = holders_of(bodies);
+      for (; i < bodies.size(); ++i)
+        if (only_of(holders, {i}).empty()) break;
+      if (i < bodies.size()) {
+        bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(i));
+        i = 0;
+      }
+    }
+  }
+
+  /// One body in place of two, while that succeeds. The nearest pairs come first.
+  void merge(std::vector<SimpleBody>& bodies, std::size_t& tries) {
+    leave_out_unneeded(bodies);
+    bool merged = true;
+    while (merged && bodies.size() > 1) {
+      merged = false;
+      show("one body for two", 0);
+      const Holders holders = holders_of(bodies);
+      std::vector<geom::Box3> reach(bodies.size());
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (const Vec3& p : only_of(holders, {b})) reach[b].extend(p);
+      std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> pairs;
+      for (std::size_t a = 0; a < bodies.size(); ++a)
+        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+          geom::Box3 both = reach[a];
+          both.extend(reach[b]);
+          pairs.push_back({both.diagonal(), {a, b}});
+        }
+      std::ranges::sort(pairs);
+      std::vector<char> changed(bodies.size(), 0);
+      std::vector<SimpleBody> next = bodies;
+      for (const auto& [size, pair] : pairs) {
+        const auto [a, b] = pair;
+        if (changed[a] != 0 || changed[b] != 0) continue;
+        if (tries == 0) break;
+        --tries;
+        const auto one = body_for(only_of(holders, {a, b}), {bodies[a], bodies[b]},
+                                  cost_of(bodies[a].kind) + cost_of(bodies[b].kind));
+        if (!one) continue;
+        next[a] = *one;
+        changed[a] = 1;
+        changed[b] = 2;
+        candidates_.push_back(*one);
+        merged = true;
+        break;  // who holds what has changed
+      }
+      std::vector<SimpleBody> rest;
+      for (std::size_t i = 0; i < next.size(); ++i)
+        if (changed[i] != 2) rest.push_back(next[i]);
+      bodies = std::move(rest);
+      leave_out_unneeded(bodies);
+    }
+  }
+
+  /// Bodies of cheaper kinds where these hold what only the dear ones do.
+  void make_cheaper(std::vector<SimpleBody>& bodies) const {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Holders holders = holders_of(bodies);
+      if (const auto one = body_for(only_of(holders, {b}), {bodies[b]}, cost_of(bodies[b].kind)))
+        bodies[b] = *one;
+    }
+  }
+
+  // --- all triangles ---
+
+  /// As it is written: rounded, so that it lies in the body that ε allows.
+  [[nodiscard]] SimpleBody written(const SimpleBody& one) const {
+    SimpleBody out = one;
+    if (one.kind == SimpleBody::Kind::Box) {
+      out.box.low += Vec3::Constant(spacing_);
+      out.box.high -= Vec3::Constant(spacing_);
+      return out;
+    }
+    out.capsule.from = geom::to_float32(one.capsule.from);
+    out.capsule.to = geom::to_float32(one.capsule.to);
+    const double most = one.kind == SimpleBody::Kind::Ball
+                            ? body_->radius_about(out.capsule.from)
+                            : clearance(*body_, out.capsule.from, out.capsule.to,
+                                        2 * box_.diagonal());
+    double radius = geom::to_float32(most);
+    if (radius > most) radius -= geom::float32_spacing(radius * (1 - 1e-7));
+    out.capsule.radius = radius;
+    return out;
+  }
+
+  [[nodiscard]] geom::ConvexBody convex_body(const SimpleBody& one, std::size_t index) const {
+    geom::ConvexBody out;
+    switch (one.kind) {
+      case SimpleBody::Kind::Ball:
+        out.name = "sphere_" + std::to_string(index);
+        out.core.vertices = {one.capsule.from};
+        out.radius = one.capsule.radius;
+        break;
+      case SimpleBody::Kind::Capsule:
+        out.name = "capsule_" + std::to_string(index);
+        out.core.vertices = {one.capsule.from, one.capsule.to};
+        out.radius = one.capsule.radius;
+        break;
+      case SimpleBody::Kind::Box: {
+        out.name = "box_" + std::to_string(index);
+        std::vector<Vec3> corners;
+        for (const Vec3& p : one.box.corners()) corners.push_back(geom::to_float32(p));
+        auto hull = geom::convex_hull(corners);
+        ensure(hull.has_value(), "a box is flat");
+        out.core = *std::move(hull);
+        break;
+      }
+    }
+    return out;
+  }
+
+  struct Piece {
+    std::array<Vec3, 3> corner;
+    int cuts;
+  };
+
+  /// Points of a triangle in no body, by cutting it until parts are in one.
+  void find_free(const std::array<Vec3, 3>& triangle, const std::vector<SimpleBody>& bodies,
+                 std::size_t most, std::vector<Vec3>& out) const {
+    const double spare = kTriangleSpare * epsilon_ + 4 * spacing_;
+    std::vector<const SimpleBody*> near;
+    const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
+    double reach = 0;
+    for (const Vec3& p : triangle) reach = std::max(reach, (p - middle).norm());
+    for (const SimpleBody& one : bodies)
+      if (one.beyond(middle) <= reach) near.push_back(&one);
+    std::vector<Piece> open{{triangle, 0}};
+    while (!open.empty() && out.size() < most) {
+      const Piece piece = open.back();
+      open.pop_back();
+      bool held = false;
+      std::array<bool, 3> some{};
+      for (const SimpleBody* one : near) {
+        bool all = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const bool in = one->beyond(piece.corner[k]) <= -spare;
+          some[k] = some[k] || in;
+          all = all && in;
+        }
+        held = held || all;
+        if (held) break;
+      }
+      if (held) continue;
+      bool free = false;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (some[k]) continue;
+        out.push_back(piece.corner[k]);
+        free = true;
+      }
+      if (piece.cuts >= kTriangleCuts) {
+        out.push_back((piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3);
+        continue;
+      }
+      if (free && piece.cuts > 6) continue;
+      std::size_t longest = 0;
+      for (std::size_t k = 1; k < 3; ++k)
+        if ((piece.corner[(k + 1) % 3] - piece.corner[k]).squaredNorm() >
+            (piece.corner[(longest + 1) % 3] - piece.corner[longest]).squaredNorm())
+          longest = k;
+      const std::size_t next = (longest + 1) % 3;
+      const Vec3 half = 0.5 * (piece.corner[longest] + piece.corner[next]);
+      for (const std::size_t k : {longest, next}) {
+        std::array<Vec3, 3> corner = piece.corner;
+        corner[k] = half;
+        open.push_back({corner, piece.cuts + 1});
+      }
+    }
+  }
+
+  /// Points of triangles, or of the inside, that no body holds, some of them.
+  [[nodiscard]] std::vector<Vec3> free_points(const std::vector<SimpleBody>& bodies) const {
+    std::vector<SimpleBody> as_written;
+    as_written.reserve(bodies.size());
+    for (const SimpleBody& one : bodies) as_written.push_back(written(one));
+    std::vector<std::vector<Vec3>> found(mesh_.triangles.size());
+    kaboum::parallel_for(std::size_t{0}, mesh_.triangles.size(), [&](std::size_t t) {
+      const auto& [i, j, k] = mesh_.triangles[t];
+      find_free({mesh_.vertices[i], mesh_.vertices[j], mesh_.vertices[k]}, as_written, 12,
+                found[t]);
+    });
+    std::vector<Vec3> all;
+    for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
+    const double spare = kTriangleSpare * epsilon_;
+    if (all.empty())
+      for (const std::vector<Vec3>* points : {&inner_, &options_.held})
+        for (const Vec3& p : *points)
+          if (std::ranges::none_of(as_written,
+                                   [&](const SimpleBody& b) { return b.beyond(p) <= -spare; }))
+            all.push_back(p);
+    std::vector<Vec3> out;
+    const std::size_t stride = all.size() / kAddedPoints + 1;
+    for (std::size_t i = 0; i < all.size(); i += stride) out.push_back(all[i]);
+    return out;
+  }
+
+  /// Gives points that no body holds to bodies that can hold them beside what only they hold.
+  /// @return those that are left
+  [[nodiscard]] std::vector<Vec3> given_to(std::vector<SimpleBody>& bodies,
+                                           std::vector<Vec3> free) const {
+    constexpr std::size_t kNear = 3;
+    for (std::size_t turn = 0; turn < 2 * bodies.size() && !free.empty(); ++turn) {
+      const Vec3 p = free[turn % free.size()];
+      std::vector<std::pair<double, std::size_t>> near;
+      for (std::size_t b = 0; b < bodies.size(); ++b) near.emplace_back(bodies[b].beyond(p), b);
+      std::ranges::sort(near);
+      near.resize(std::min(near.size(), kNear));
+      const Holders holders = holders_of(bodies);
+      for (const auto& [away, b] : near) {
+        std::vector<Vec3> wanted = only_of(holders, {b});
+        for (const Vec3& q : free)
+          if ((q - p).norm() <= epsilon_) wanted.push_back(q);
+        wanted.push_back(p);
+        const auto one = body_for(wanted, {bodies[b]}, 1e9);
+        if (!one) continue;
+        bodies[b] = *one;
+        std::erase_if(free, [&](const Vec3& q) { return one->beyond(q) <= -spare_; });
+        break;
+      }
+    }
+    return free;
+  }
+
+  /// Bodies that hold all triangles; empty if there would have to be more than `most`.
+  [[nodiscard]] std::vector<SimpleBody> completed(std::vector<SimpleBody> bodies,
+                                                  std::size_t most) {
+    for (int round = 0; round < kPatches; ++round) {
+      show("filling gaps", static_cast<double>(round) / kPatches);
+      std::vector<Vec3> free = free_points(bodies);
+      if (free.empty()) return bodies;
+      points_.insert(points_.end(), free.begin(), free.end());
+      std::erase_if(free, [&](const Vec3& p) {
+        return std::ranges::any_of(
+            bodies, [&](const SimpleBody& b) { return b.beyond(p) <= -spare_; });
+      });
+      // What is held, but not with enough to spare, counts as free.
+      if (3 * round < kPatches) free = given_to(bodies, std::move(free));
+      if (free.empty()) continue;
+      const std::size_t known = candidates_.size();
+      std::vector<SurfacePoint> at;
+      const std::size_t stride = free.size() / 40 + 1;
+      for (std::size_t i = 0; i < free.size(); ++i) {
+        add_at(free[i]);
+        const auto& [a, b, c] = query_.corners(query_.nearest(free[i]).triangle);
+        const Vec3 inwards = -(b - a).cross(c - a).normalized();
+        if (i % stride == 0 && inwards.allFinite()) at.push_back({free[i], inwards});
+      }
+      if (known < 20'000) add_candidates(at);
+      const std::vector<SimpleBody> more = choose(free, 0);
+      if (more.empty()) return {};
+      bodies.insert(bodies.end(), more.begin(), more.end());
+      if (bodies.size() > most + most / 4 + 4) return {};
+    }
+    return {};
+  }
+
+  /// A cover of all triangles within ε; empty where none was found with `most` bodies or fewer.
+  std::vector<SimpleBody> cover(double epsilon, std::size_t most) {
+    show("choosing bodies", 0);
+    set_distance(epsilon);
+    candidates_.clear();
+    std::vector<SurfacePoint> seeds;
+    const std::size_t stride = std::max<std::size_t>(1, surface_.size() / effort_.seeds);
+    for (std::size_t i = 0; i < surface_.size(); i += stride) seeds.push_back(surface_[i]);
+    add_candidates(seeds);
+    for (const Vec3& p : points_)
+      if (std::ranges::none_of(candidates_,
+                               [&](const SimpleBody& b) { return b.beyond(p) <= -spare_; }))
+        add_at(p);
+    std::vector<SimpleBody> best;
+    for (int round = 0; round < effort_.rounds; ++round) {
+      std::vector<SimpleBody> bodies = choose(points_, effort_.steps);
+      if (bodies.empty()) break;
+      std::size_t tries = effort_.merges;
+      merge(bodies, tries);
+      bodies = completed(std::move(bodies), most);
+      if (bodies.empty()) continue;
+      // Points where gaps were are known by now.
+      for (int again = 0; again < 3; ++again) {
+        std::vector<SimpleBody> fewer = bodies;
+        tries = effort_.merges;
+        merge(fewer, tries);
+        if (options_.kinds.balls) make_cheaper(fewer);
+        fewer = completed(std::move(fewer), most);
+        leave_out_unneeded(fewer);
+        if (fewer.empty() || cost(fewer) >= cost(bodies)) break;
+        bodies = std::move(fewer);
+      }
+      if (best.empty() || cost(bodies) < cost(best)) best = bodies;
+      candidates_.insert(candidates_.end(), bodies.begin(), bodies.end());
+    }
+    if (!best.empty() && !free_points(best).empty()) best = completed(std::move(best), most);
+    if (best.size() <= most && !best.empty()) {
+      for (SimpleBody& one : best) one = written(one);
+      return best;
+    }
+    if (most == kAny)
+      throw Error(ErrorCode::LimitReached,
+                  "no capsules or boxes were found that hold all triangles within epsilon; allow a "
+                  "larger one");
+    return {};
+  }
+
+  static double cost(const std::vector<SimpleBody>& bodies) {
+    return std::accumulate(bodies.begin(), bodies.end(), 0.0, [](double sum, const SimpleBody& b) {
+      return sum + cost_of(b.kind);
+    });
+  }
+
+  /// The least ε found with so many bodies.
+  std::vector<SimpleBody> within_count(std::size_t count) {
+    constexpr double kNear = 1.03;
+    constexpr int kTurns = 12;
+    double high = 0.6 * box_.diagonal(), low = 0, tried = high;
+    std::vector<SimpleBody> best;
+    for (int turn = 0; turn < kTurns; ++turn) {
+      std::vector<SimpleBody> bodies = cover(tried, count);
+      if (!bodies.empty()) {
+        best = std::move(bodies);
+        high = tried;
+      } else {
+        low = tried;
+      }
+      if (best.empty())
+        tried *= 2;
+      else
+        tried = low > 0 ? std::sqrt(low * high) : 0.5 * high;
+      if (low > 0 && high < kNear * low) break;
+    }
+    if (best.empty())
+      throw Error(ErrorCode::LimitReached, "no so few capsules or boxes were found");
+    set_distance(high);
+    return best;
+  }
+
+  /// The farthest of some points of the bodies. [length]
+  [[nodiscard]] double farthest(const std::vector<SimpleBody>& bodies) const {
+    double out = 0;
+    const auto look = [&](const Vec3& p) {
+      out = std::max(out, body_->signed_distance(p).lower);
+    };
+    for (const SimpleBody& one : bodies) {
+      if (one.kind == SimpleBody::Kind::Box) {
+        for (const Vec3& p : one.box.corners()) look(one.box.center + (1 - 1e-6) * (p - one.box.center));
+        continue;
+      }
+      for (const Vec3& end : {one.capsule.from, one.capsule.to})
+        if (const std::optional<Vec3> at = body_->boundary_near(end)) {
+          const Vec3 along = (*at - end).normalized();
+          if (along.allFinite()) look(end + one.capsule.radius * (1 - 1e-12) * along);
+        }
+    }
+    return out;
+  }
+
+  const Mesh& mesh_;
+  const SimpleBodyOptions& options_;
+  SimpleEffort effort_;
+  geom::DistanceQuery query_;
+  geom::WindingNumber winding_;
+  geom::Box3 box_;
+  Random random_{1};
+  double spacing_ = 0;  ///< of float32 numbers [length]
+  double epsilon_ = 0, spare_ = 0;
+  std::unique_ptr<ParallelBody> body_;  ///< what bodies may not leave
+  std::vector<SurfacePoint> surface_;
+  std::vector<Vec3> points_;  ///< to be held
+  std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
+  std::vector<Eigen::Matrix3d> frames_;
+  std::vector<SimpleBody> candidates_;
+};
+
+}  // namespace
+
+CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBodyOptions& options) {
+  if (!options.epsilon && !options.max_bodies)
+    throw Error(ErrorCode::InvalidArgument, "bodies: epsilon or a number of them is needed");
+  if (!options.kinds.capsules && !options.kinds.boxes)
+    throw Error(ErrorCode::InvalidArgument, "bodies: capsules or boxes have to be allowed");
+  if (options.epsilon && !(*options.epsilon > 0))
+    throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
+  if (options.max_bodies && *options.max_bodies == 0)
+    throw Error(ErrorCode::InvalidArgument, "there must be a body at least");
+  const geom::SolidMesh closed = geom::close_holes(input);
+  const geom::Box3 box = geom::bounding_box(closed.mesh());
+  const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *options.epsilon) {
+    CoverCandidate coarse;
+    coarse.stop = Stop::TooCoarse;
+    return coarse;
+  }
+  SimpleBodyOptions asked = options;
+  if (asked.epsilon) asked.epsilon = std::min(*asked.epsilon, 0.6 * box.diagonal());
+  CoverCandidate out = SimpleBodySearch(closed.mesh(), asked).run();
+  out.statistics.filled_triangles = closed.filled_triangles();
+  return out;
+}
+
+}  // namespace kaboum::bcd

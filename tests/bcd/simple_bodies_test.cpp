@@ -1,0 +1,127 @@
+// Capsules and boxes: numbers of them that shapes are known to need, what they hold, how far they
+// reach.
+#include <gtest/gtest.h>
+#include <kaboum/bcd/simple_bodies.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/prepare.h>
+#include <kaboum/verify/cover.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fitting.h"
+#include "support/shapes.h"
+
+namespace kaboum::bcd {
+namespace simple_bodies_test {
+namespace {
+
+using geom::Mesh;
+
+/// A prism of many sides along z.
+Mesh rod(double radius, double length) {
+  std::vector<Vec3> points;
+  constexpr int kSides = 40;
+  for (int i = 0; i < kSides; ++i)
+    for (const double z : {0.0, length})
+      points.emplace_back(radius * std::cos(2 * std::numbers::pi * i / kSides),
+                          radius * std::sin(2 * std::numbers::pi * i / kSides), z);
+  return *geom::convex_hull(points);
+}
+
+Mesh bar(const Vec3& size) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i)
+    points.emplace_back((i & 1) != 0 ? size.x() : 0, (i & 2) != 0 ? size.y() : 0,
+                        (i & 4) != 0 ? size.z() : 0);
+  return *geom::convex_hull(points);
+}
+
+CoverCandidate cover(const Mesh& mesh, const SimpleKinds& kinds, double epsilon) {
+  SimpleBodyOptions options;
+  options.kinds = kinds;
+  options.epsilon = epsilon;
+  options.effort = Effort::Fast;
+  const geom::Prepared solid = geom::prepare(mesh, {});
+  CoverCandidate out = find_simple_bodies(solid.solid, options);
+  geom::ConvexSet set;
+  set.bodies = out.bodies;
+  const verify::Cover found = verify::verify_cover(mesh, set);
+  EXPECT_EQ(found.convexity.convex.answer, verify::Answer::Verified) << found.convexity.convex.reason;
+  EXPECT_EQ(found.inclusion.solid.answer, verify::Answer::Verified) << found.inclusion.solid.reason;
+  EXPECT_EQ(found.inclusion.surface.answer, verify::Answer::Verified)
+      << found.inclusion.surface.reason;
+  EXPECT_EQ(verify::verify_excess(set, mesh, epsilon, true).answer, verify::Answer::Verified);
+  EXPECT_LE(out.excess_lower, out.excess_upper);
+  EXPECT_LE(out.excess_upper, epsilon);
+  for (const geom::ConvexBody& body : out.bodies)
+    for (const Vec3& v : body.core.vertices) EXPECT_TRUE(geom::is_float32(v));
+  return out;
+}
+
+TEST(SimpleBodies, ARodIsOneCapsule) {
+  // The rim of its end is √2 r = 1.41 r from the end of its axis; the capsule's tip goes 0.45 out.
+  EXPECT_EQ(cover(rod(1, 10), {.capsules = true}, 0.47).bodies.size(), 1U);
+}
+
+TEST(SimpleBodies, ABarIsOneBox) {
+  EXPECT_EQ(cover(bar({4, 1, 2}), {.boxes = true}, 0.1).bodies.size(), 1U);
+}
+
+TEST(SimpleBodies, AnLIsTwoBoxes) {
+  const Mesh l = test::merged({bar({4, 1, 1}), bar({1, 4, 1})});
+  EXPECT_EQ(cover(l, {.boxes = true}, 0.1).bodies.size(), 2U);
+}
+
+TEST(SimpleBodies, MixedTakesCheapKinds) {
+  const CoverCandidate found =
+      cover(rod(1, 10), {.balls = true, .capsules = true, .boxes = true}, 0.47);
+  ASSERT_EQ(found.bodies.size(), 1U);
+  EXPECT_EQ(found.bodies[0].core.vertices.size(), 2U);
+}
+
+TEST(SimpleBodies, ByNumber) {
+  SimpleBodyOptions options;
+  options.kinds.boxes = true;
+  options.max_bodies = 1;
+  options.effort = Effort::Fast;
+  const CoverCandidate one =
+      find_simple_bodies(geom::prepare(bar({4, 1, 2}), {}).solid, options);
+  EXPECT_EQ(one.bodies.size(), 1U);
+  EXPECT_LT(one.excess_upper, 0.3);
+}
+
+// The room of a face against boxes that are tried: none within it leaves the body, and a little
+// more does.
+TEST(SimpleBodies, RoomIsWhatIsLeft) {
+  const Mesh mesh = bar({4, 1, 2});
+  const geom::DistanceQuery query(mesh);
+  const geom::WindingNumber winding(mesh);
+  constexpr double kDistance = 0.3;
+  const ParallelBody body(query, winding, kDistance, 0.1);
+  const auto far = [&](const AxesBox& box) {
+    double out = 0;
+    for (const Vec3& p : box.corners()) out = std::max(out, body.signed_distance(p).upper);
+    return out;
+  };
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(0.2, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const Eigen::Matrix3d& axes : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), turned})
+    for (int face = 0; face < 6; ++face) {
+      AxesBox box{{2, 0.5, 1}, axes, Vec3::Constant(-0.2), Vec3::Constant(0.2)};
+      const double way = room(body, box, face / 2, face % 2 != 0, 100);
+      EXPECT_GT(way, 0.1);
+      (face % 2 != 0 ? box.high : box.low)[face / 2] += face % 2 != 0 ? way : -way;
+      EXPECT_LE(far(box), kDistance);
+      EXPECT_GT(far(box), 0.9 * kDistance);
+    }
+  // From the middle of a side, a capsule is as thick as the bar and the distance.
+  EXPECT_NEAR(clearance(body, {1, 0.5, 1}, {3, 0.5, 1}), 0.5 + kDistance, 0.01);
+  EXPECT_LE(clearance(body, {1, 0.5, 1}, {3, 0.5, 1}), 0.5 + kDistance);
+  EXPECT_EQ(clearance(body, {1, 0.5, 1}, {9, 0.5, 1}), 0);
+}
+
+}  // namespace
+}  // namespace simple_bodies_test
+}  // namespace kaboum::bcd

@@ -1,0 +1,298 @@
+// `bound-verify robot ROBOT --bodies FILE`: whether capsules, boxes and spheres hold a robot's links.
+#include "robot_bodies.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/robot/exact_shapes.h>
+#include <kaboum/robot/robot_file.h>
+#include <kaboum/verify/cover.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+#include "common/verdict.h"
+
+namespace kaboum::tools {
+namespace {
+
+using geom::Vec3;
+using robot::Geometry;
+using verify::Answer;
+
+/// Of lengths: bounds what the pose of a shape, whose rotation is computed from angles within
+/// 40 · 2^-53, and a dozen operations err by.
+constexpr double kPoseRounding = 0x1p-45;
+constexpr double kLeastCapsule = 0.5;  ///< of its cylinder's radius: thinner ones are of no use
+
+/// Bodies within the shapes of a link, and bodies round them.
+struct Bounds {
+  geom::ConvexSet inside, outside;
+};
+
+void add(geom::ConvexSet& set, geom::Mesh core, double radius) {
+  set.bodies.push_back({"shape_" + std::to_string(set.bodies.size()), std::move(core), radius});
+}
+
+/// The box of a shape with sides that are longer by twice `more`.
+std::optional<geom::Mesh> box_of(const Geometry& g, double more) {
+  const Vec3 half = 0.5 * g.size + Vec3::Constant(more);
+  if (!(half.minCoeff() > 0)) return std::nullopt;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.emplace_back(g.origin * Vec3((i & 1) != 0 ? half.x() : -half.x(),
+                                         (i & 2) != 0 ? half.y() : -half.y(),
+                                         (i & 4) != 0 ? half.z() : -half.z()));
+  return geom::convex_hull(corners);
+}
+
+/// The largest radius of a ball about an end of a cylinder that lies in one of the spheres.
+double ball_at(const Vec3& end, const std::vector<Geometry>& shapes) {
+  double out = 0;
+  for (const Geometry& g : shapes)
+    if (g.shape == Geometry::Shape::Sphere)
+      out = std::max(out, g.size.x() - (g.origin.translation - end).norm());
+  return out;
+}
+
+/// A prism with 32 sides in a cylinder.
+std::optional<geom::Mesh> prism_in(const Geometry& g, double error) {
+  constexpr int kSides = 32;
+  const double radius = g.size.x() - error, half = 0.5 * g.size.y() - error;
+  if (!(radius > 0 && half > 0)) return std::nullopt;
+  std::vector<Vec3> points;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * std::acos(-1.0) * i / kSides;
+    for (const double z : {-half, half})
+      points.emplace_back(g.origin *
+                          Vec3(radius * std::cos(angle), radius * std::sin(angle), z));
+  }
+  return geom::convex_hull(points);
+}
+
+void add_cylinder(const Geometry& g, double error, const std::vector<Geometry>& shapes,
+                  Bounds& out) {
+  const double half = 0.5 * g.size.y();
+  const Vec3 low = g.origin * Vec3(0, 0, -half), high = g.origin * Vec3(0, 0, half);
+  // What the balls at its ends and the cylinder hold.
+  const double radius =
+      std::min({g.size.x(), ball_at(low, shapes), ball_at(high, shapes)}) - error;
+  const bool is_segment = low != high;
+  if (is_segment && radius > kLeastCapsule * g.size.x())
+    add(out.inside, {{low, high}, {}}, radius);
+  else if (auto prism = prism_in(g, error))
+    add(out.inside, *std::move(prism), 0);
+  if (is_segment)
+    add(out.outside, {{low, high}, {}}, g.size.x() + error);
+  else if (g.size.x() + error > 0)
+    add(out.outside, {{low}, {}}, g.size.x() + error);
+}
+
+/// @throws Error{InvalidInput} naming the line of a shape of another kind
+Bounds bounds_of(const robot::Link& link, const std::string& file) {
+  Bounds out;
+  for (const Geometry& g : link.collision) {
+    const double error = kPoseRounding * (g.origin.translation.norm() + 2 * g.size.norm());
+    switch (g.shape) {
+      case Geometry::Shape::Sphere:
+        if (!(g.size.x() > 0)) break;
+        add(out.inside, {{g.origin.translation}, {}}, g.size.x());
+        add(out.outside, {{g.origin.translation}, {}}, g.size.x());
+        break;
+      case Geometry::Shape::Box:
+        if (auto box = box_of(g, -error)) add(out.inside, *std::move(box), 0);
+        if (auto box = box_of(g, error)) add(out.outside, *std::move(box), 0);
+        break;
+      case Geometry::Shape::Cylinder:
+        add_cylinder(g, error, link.collision, out);
+        break;
+      case Geometry::Shape::Mesh:
+        throw Error(ErrorCode::InvalidInput,
+                    file + ":" + std::to_string(g.line) + ": link '" + link.name +
+                        "': its collision shapes are to be spheres, boxes and cylinders; this is "
+                        "a mesh: state the file as RESULT");
+    }
+  }
+  return out;
+}
+
+struct LinkAnswer {
+  std::string name, sentence;
+  std::size_t shapes = 0, triangles = 0;
+  Answer answer = Answer::Verified;
+  verify::Inclusion inclusion;
+};
+
+/// What bodies inside hold is verified, what bodies outside do not hold is refuted.
+verify::Inclusion decide(const geom::Mesh& mesh, const Bounds& bounds) {
+  const auto is_done = [](const verify::Claim& claim) {
+    return claim.answer == Answer::Verified || claim.answer == Answer::Undefined;
+  };
+  verify::Inclusion inside = verify::verify_cover(mesh, bounds.inside).inclusion;
+  if (is_done(inside.surface) && is_done(inside.solid)) return inside;
+  const verify::Inclusion outside = verify::verify_cover(mesh, bounds.outside).inclusion;
+  const auto between = [&](verify::Claim& claim, const verify::Claim& necessary) {
+    if (is_done(claim)) return;
+    if (necessary.answer == Answer::Refuted) {
+      claim = necessary;
+    } else {
+      claim.answer = Answer::Undecided;
+      claim.reason = "the answer lies within what poses are rounded by";
+    }
+  };
+  between(inside.surface, outside.surface);
+  between(inside.solid, outside.solid);
+  return inside;
+}
+
+/// Cylinders and spheres of the original: by a polytope round them.
+std::string open_shape(const std::vector<Geometry>& round, const Bounds& bounds) {
+  for (const Geometry& g : round) {
+    if (robot::is_point(g)) continue;
+    if (g.shape == Geometry::Shape::Sphere &&
+        std::ranges::any_of(bounds.inside.bodies, [&](const geom::ConvexBody& body) {
+          return body.core.vertices.size() == 1 &&
+                 body.core.vertices[0] == g.origin.translation && body.radius >= g.size.x();
+        }))
+      continue;
+    const geom::Mesh polytope = *geom::convex_hull(robot::bounding_points(g));
+    if (verify::verify_cover(polytope, bounds.inside).inclusion.solid.answer != Answer::Verified)
+      return "whether the bodies hold its " + robot::describe(g) +
+             " is not decided: they do not hold a polytope round it";
+  }
+  return {};
+}
+
+std::string text_of(const Vec3& p) {
+  return "(" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + ")";
+}
+
+std::string sentence_of(const LinkAnswer& link) {
+  if (link.shapes == 0) return "it has no shape in the file";
+  const verify::Inclusion& in = link.inclusion;
+  const std::string bodies =
+      std::to_string(link.shapes) + (link.shapes == 1 ? " shape" : " shapes");
+  if (link.answer == Answer::Verified)
+    return bodies + (link.triangles == 0 ? " hold its shapes" : " hold every triangle") +
+           (in.solid.answer == Answer::Verified ? " and the solid"
+            : link.triangles > 0                ? "; its mesh is open"
+                                                : "");
+  if (in.surface.answer == Answer::Refuted && in.surface.witness)
+    return std::to_string(in.surface.inner_triangles.size()) + " of its " +
+           std::to_string(link.triangles) + " triangles stick out of its " + bodies + ", by " +
+           number(in.surface.witness->depth) + " at " + text_of(in.surface.witness->point);
+  if (in.solid.answer == Answer::Refuted && in.solid.witness)
+    return "every triangle is inside, but a void is left in the solid at " +
+           text_of(in.solid.witness->point);
+  return in.surface.answer != Answer::Verified ? in.surface.reason : in.solid.reason;
+}
+
+LinkAnswer judge(const std::string& name, const geom::Mesh& mesh,
+                 const std::vector<Geometry>& round, const Bounds& bounds, std::size_t shapes) {
+  LinkAnswer out;
+  out.name = name;
+  out.shapes = shapes;
+  out.triangles = mesh.triangles.size();
+  if (shapes == 0 || bounds.outside.bodies.empty()) {
+    out.shapes = 0;
+    out.answer = Answer::Refuted;
+    out.sentence = sentence_of(out);
+    return out;
+  }
+  const std::string open = open_shape(round, bounds);
+  if (!open.empty()) out.answer = Answer::Undecided;
+  if (!mesh.triangles.empty()) {
+    out.inclusion = decide(mesh, bounds);
+    out.answer = verify::worse(out.answer, out.inclusion.surface.answer);
+    if (out.inclusion.solid.answer != Answer::Undefined)
+      out.answer = verify::worse(out.answer, out.inclusion.solid.answer);
+  }
+  out.sentence = out.answer == Answer::Undecided && !open.empty() ? open : sentence_of(out);
+  return out;
+}
+
+Json claim_json(const verify::Claim& claim) {
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+  if (claim.witness) {
+    const Vec3& p = claim.witness->point;
+    json["witness"] = {{"point", {p.x(), p.y(), p.z()}}, {"depth", claim.witness->depth}};
+  }
+  return json;
+}
+
+/// @throws Error{InvalidInput} naming the first link with shapes that the robot does not have.
+void require_known(const robot::RobotFile& bodies, const robot::RobotFile& robot) {
+  std::vector<std::string> names;
+  for (const robot::Link& link : robot.robot.links) names.push_back(link.name);
+  for (const robot::Link& link : bodies.robot.links)
+    if (!link.collision.empty() && !robot.robot.find_link(link.name))
+      throw Error(ErrorCode::InvalidInput, bodies.path.string() + ": robot '" + robot.robot.name +
+                                               "' has no link '" + link.name + "'" +
+                                               did_you_mean(link.name, names));
+}
+
+}  // namespace
+
+int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
+  const ThreadLimit threads(common.threads);
+  require_apart({{"--report", common.report}}, {o.original, o.bodies});
+  const robot::RobotFile robot = robot::read_robot(o.original);
+  robot::require_links(robot, o.how.shapes.links);
+  const robot::RobotFile bodies = robot::read_robot(o.bodies);
+  require_known(bodies, robot);
+  std::ostream& out = common.report == "-" ? std::cerr : std::cout;
+  Answer all = Answer::Verified;
+  std::size_t held = 0, judged = 0, count = 0;
+  Json links = Json::array();
+  for (const robot::Link& link : robot.robot.links) {
+    if (!o.how.shapes.has(link)) continue;
+    std::vector<Geometry> flat, round;
+    for (const Geometry& g : o.how.shapes.shapes_of(link))
+      (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
+          .push_back(g);
+    const geom::Mesh mesh = robot::exact_shapes(flat, robot, o.how.shapes.packages);
+    if (mesh.triangles.empty() && round.empty()) continue;
+    const auto index = bodies.robot.find_link(link.name);
+    const robot::Link none{link.name, {}, {}};
+    const robot::Link& own = index ? bodies.robot.links[*index] : none;
+    const LinkAnswer now =
+        judge(link.name, mesh, round, bounds_of(own, o.bodies), own.collision.size());
+    all = verify::worse(all, now.answer);
+    ++judged;
+    held += now.answer == Answer::Verified ? 1 : 0;
+    count += now.shapes;
+    links.push_back({{"link", now.name},
+                     {"answer", name_of(now.answer)},
+                     {"sentence", now.sentence},
+                     {"shapes", now.shapes},
+                     {"triangles", now.triangles},
+                     {"claims",
+                      {{"surface", claim_json(now.inclusion.surface)},
+                       {"solid", claim_json(now.inclusion.solid)}}}});
+    if (!common.quiet)
+      out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
+          << std::endl;
+  }
+  if (judged == 0)
+    throw Error(ErrorCode::InvalidInput,
+                o.original + ": no link has a shape" +
+                    (o.how.shapes.visual ? std::string() : "; try --geometry visual"));
+  if (!common.report.empty())
+    write_report(common, "bound-verify",
+                 {{"relation", "bodies"},
+                  {"verdict", name_of(all)},
+                  {"geometry", o.how.shapes.visual ? "visual" : "collision"},
+                  {"original", {{"file", o.original}, {"sha256", robot.sha256}}},
+                  {"bodies", {{"file", o.bodies}, {"sha256", bodies.sha256}}},
+                  {"count", count},
+                  {"links_held", held},
+                  {"links", std::move(links)}});
+  if (!common.quiet)
+    out << name_of(all) << ": " << count << " shapes hold " << held << " of " << judged << " links"
+        << std::endl;
+  return exit_code(all);
+}
+
+}  // namespace kaboum::tools
