@@ -1,5 +1,6 @@
 // Options of requests: texts of their values, and what is wrong with one.
 
+#include <kaboum/base/length_unit.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/base/option.h>
 #include <kaboum/base/parse_length.h>
@@ -112,15 +113,23 @@ std::string settings_flaw(const OptionDescription& option, const std::string& va
   return known.empty() ? "must be NAME=NUMBER, as in finger=0.04" : "";
 }
 
+/// "m, dm, cm"
+std::string joined_units() { return joined({kLengthUnits.begin(), kLengthUnits.end()}, ", "); }
+
 std::string length_flaw(const OptionDescription& option, const std::string& value) {
   const auto length = parse_length(value);
-  if (length && !(option.absolute && length->percent)) return {};
+  const bool may_have_unit = !option.absolute || option.metres;
+  const bool has_unit = length && length->unit != Length::Unit::Own;
+  if (length && !(option.absolute && length->percent) && (may_have_unit || !has_unit)) return {};
   if (!option.absolute)
-    return "must be a positive number, or a percentage such as 0.5%, without blanks or units, "
-           "not " +
-           value;
-  return "must be a positive length without a unit, as in 0.005, not " + value +
-         (length ? " (there is no diagonal that it could be a percentage of)" : "");
+    return "must be a positive number, perhaps with a unit (" + joined_units() +
+           "), as in 5mm, or a percentage such as 0.5%, without blanks, not " + value;
+  return std::string("must be a positive length") +
+         (may_have_unit ? ", perhaps with a unit, as in 5mm, not "
+                        : " without a unit, as in 0.005, not ") +
+         value +
+         (length && length->percent ? " (there is no diagonal that it could be a percentage of)"
+                                    : "");
 }
 
 }  // namespace
@@ -300,7 +309,11 @@ void parse(const std::string& text, std::vector<std::size_t>& value) {
   value = parsed_counts(text).value_or(std::vector<std::size_t>());
   std::ranges::sort(value, std::greater<>());
 }
-void parse(const std::string& text, double& value) { value = parsed<double>(text).value_or(0); }
+void parse(const std::string& text, double& value) {
+  const auto length = parse_length(text);
+  value = length && length->unit != Length::Unit::Own ? length->in("m").value
+                                                      : parsed<double>(text).value_or(0);
+}
 void parse(const std::string& text, Length& value) {
   value = parse_length(text).value_or(Length{});
 }
@@ -317,6 +330,11 @@ std::vector<std::string> parts(const std::string& text, const OptionDescription&
 }  // namespace option_text
 
 namespace option_detail {
+
+std::string length_in(std::string_view unit, const std::string& text) {
+  const std::optional<Length> length = parse_length(text);
+  return length && length->unit != Length::Unit::Own ? length->in(unit).text() : text;
+}
 
 std::string recorded_words(const OptionDescription& option, const std::string& value) {
   std::string name = "--" + option.name;

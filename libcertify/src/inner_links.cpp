@@ -21,15 +21,17 @@ using robot::Geometry;
 /// Allowances for rounding, tried one after the other.
 constexpr std::array<double, 3> kInnerAllowance{1, 16, 256};
 
-/// The polytope round this much smaller a cylinder or sphere lies in the shape: it reaches 0.5 % or
-/// 2 % of the radius beyond what it is round (robot::bounding_excess).
+/// The polytope round this much smaller a cylinder, or sphere, capsule or ellipsoid, lies in the
+/// shape: it reaches 0.5 % or 2 % of the radius beyond what it is round (robot::bounding_excess).
 constexpr double kInnerCylinder = 1 / (1.005 * (1 + 1e-9)), kInnerSphere = 1 / (1.02 * (1 + 1e-9));
 
-/// Points whose hull lies in a box, cylinder or sphere; none where it has no volume.
+/// Points whose hull lies in a shape that is no mesh; none where it has no volume.
 std::vector<geom::Vec3> inscribed_points(Geometry g) {
   if (robot::is_flat(g)) return {};
   if (g.shape == Geometry::Shape::Cylinder) g.size.x() *= kInnerCylinder;
-  if (g.shape == Geometry::Shape::Sphere) g.size.x() *= kInnerSphere;
+  if (g.shape == Geometry::Shape::Sphere || g.shape == Geometry::Shape::Capsule)
+    g.size.x() *= kInnerSphere;
+  if (g.shape == Geometry::Shape::Ellipsoid) g.size *= kInnerSphere;
   return robot::bounding_points(g);
 }
 

@@ -22,14 +22,16 @@ io::ReadResult read_triangles(const fs::path& file, std::optional<io::Format> fo
   return read;
 }
 
-/// What the file is known to say of itself takes the place of what was asked for.
+/// What the file is known to say of itself takes the place of what was asked for. Lengths are
+/// brought into its unit.
 SetRequest with_unit(SetRequest request, const std::string& unit, const Hooks& hooks) {
-  if (unit.empty() || unit == request.unit) return request;
-  if (hooks.note && !request.unit.empty())
-    hooks.note("Its vertices are in " + unit + " as read, and so is its set, not in " +
-               request.unit + ".");
-  request.unit = unit;
-  return request;
+  if (!unit.empty() && unit != request.unit) {
+    if (hooks.note && !request.unit.empty())
+      hooks.note("Its vertices are in " + unit + " as read, and so is its set, not in " +
+                 request.unit + ".");
+    request.unit = unit;
+  }
+  return in_own_unit(std::move(request));
 }
 
 void say(const std::vector<std::string>& notes, const Hooks& hooks) {

@@ -54,7 +54,8 @@ void add_targets(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
       {.name = "epsilon",
        .text = "Keep every point of either surface within this distance of the other: a length in "
-               "the mesh's unit, or a percentage of the bounding box's diagonal, as in 0.5%"},
+               "the mesh's unit (of robots m) or its own, as in 5mm, or a percentage of the "
+               "bounding box's diagonal, as in 0.5%"},
       [](auto& r) -> auto& { return r.request.epsilon; }));
 }
 

@@ -35,8 +35,10 @@ void add_limits(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
       {.name = "epsilon",
        .text = "Fewest bodies with no point farther than this from the solid: a length in the "
-               "mesh's unit, or a percentage of the bounding box's diagonal, as in 0.5%",
-       .otherwise = "1% unless {max-bodies} or {max-total-vertices} is given"},
+               "mesh's unit (of robots m) or its own, as in 5mm, or a percentage of the bounding "
+               "box's diagonal, as in 0.5%",
+       .otherwise = "1%, of robots 1cm for all links, unless {max-bodies} or "
+                    "{max-total-vertices} is given"},
       [](auto& r) -> auto& { return r.request.epsilon; }));
   out.push_back(option<R>(
       {.name = "max-bodies",
@@ -142,7 +144,7 @@ std::vector<Option<R>> table() {
     out.push_back(std::move(o));
   std::vector<std::pair<std::string, std::string>> units;
   units.reserve(kLengthUnits.size());
-  for (const std::string& unit : kLengthUnits) units.emplace_back(unit, unit);
+  for (const std::string_view unit : kLengthUnits) units.emplace_back(unit, unit);
   out.push_back(choice<R>(
       {.name = "unit",
        .text = "Unit of length, noted in the container: m, dm, cm, mm, um, km, "
@@ -221,6 +223,16 @@ SetOptions options_of(const SetRequest& request) {
   return out;
 }
 
+SetRequest in_own_unit(SetRequest request) {
+  const auto bring = [&](std::optional<Length>& length) {
+    if (length) length = length->in(request.unit);
+  };
+  bring(request.epsilon);
+  if (request.wrap) bring(request.wrap->offset);
+  if (request.wrap) bring(request.wrap->seal);
+  return request;
+}
+
 std::optional<Length> SetRequest::wanted_epsilon() const {
   if (epsilon || max_bodies || max_total_vertices) return epsilon;
   return Length{1, true};
@@ -242,6 +254,12 @@ geom::Provenance origin_of(const SetRequest& request, const std::string& sha256)
   p.frame = request.frame;
   p.direction = name_of(request.direction);
   return p;
+}
+
+void be_of_robot(SetOptions& options) {
+  bring_lengths_into("m", set_options(), options);
+  SetRequest& r = options.request;
+  if (!r.epsilon && !r.max_bodies && !r.max_total_vertices) r.epsilon = Length{kRobotEpsilon};
 }
 
 std::string contradiction(const SetOptions& options, const std::set<std::string>& stated) {

@@ -55,7 +55,8 @@ Option<R> of_bodies(const std::string& name, const std::string& text) {
 void add_bodies(std::vector<Option<R>>& out) {
   Option<R> epsilon = of_bodies("epsilon",
                                 "Largest distance of the links' convex bodies from their meshes, a "
-                                "length or a percentage of each mesh's diagonal");
+                                "length (in metres, or as 5mm) or a percentage of each mesh's "
+                                "diagonal");
   epsilon.name = "body-epsilon";
   epsilon.otherwise = "as {epsilon}";
   epsilon.always_recorded = true;
@@ -91,7 +92,7 @@ void add_unrecorded(std::vector<Option<R>>& out) {
       [](auto& r) -> auto& { return r.packages; }));
   std::vector<std::pair<std::string, std::string>> units;
   units.reserve(kLengthUnits.size());
-  for (const std::string& unit : kLengthUnits) units.emplace_back(unit, unit);
+  for (const std::string_view unit : kLengthUnits) units.emplace_back(unit, unit);
   out.push_back(choice<R>(
       {.name = "unit",
        .text = "Unit of length, noted in the container: m, dm, cm, mm, um, km, in or ft",
@@ -107,6 +108,7 @@ std::vector<Option<R>> table() {
        .text = "Largest margin round the bodies, by which they are enlarged. How far they then "
                "reach beyond what is swept is part of the result, and limited by {max-reach}",
        .absolute = true,
+       .metres = true,
        .always_recorded = true},
       [](auto& r) -> auto& { return r.epsilon; })));
   out.push_back(choice<R>(
@@ -121,6 +123,7 @@ std::vector<Option<R>> table() {
        .text = "Largest distance of a hull, its margin apart, from what it bounds; takes more "
                "bodies",
        .absolute = true,
+       .metres = true,
        .otherwise = "no limit"},
       [](auto& r) -> auto& { return r.max_reach; })));
   out.push_back(option<R>(
@@ -174,12 +177,12 @@ RobotRequest bodies_request_of(const SweptSetOptions& options) {
 
 SweepRequest sweep_request_of(const SweptSetOptions& options) {
   SweepRequest out;
-  out.search.epsilon = options.epsilon.value;
+  out.search.epsilon = options.epsilon.in("m").value;
   out.search.rule = options.rule;
   out.search.merge = !options.no_merge;
   out.search.simplify = options.simplify;
   out.search.explicit_margin = !options.implicit_margin;
-  if (options.max_reach) out.search.max_excess = options.max_reach->value;
+  if (options.max_reach) out.search.max_excess = options.max_reach->in("m").value;
   out.decide_motion = false;
   out.parameters = record_of(options);
   out.unit = options.unit;

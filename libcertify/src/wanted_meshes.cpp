@@ -35,6 +35,7 @@ WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoi
 }
 
 Length in_unit_of_mesh(Length length, const geom::Vec3& scale) {
+  length = length.in("m");
   if (!length.percent) length.value /= scale.maxCoeff();
   return length;
 }

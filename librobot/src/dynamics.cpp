@@ -4,6 +4,9 @@
 #include <kaboum/base/error.h>
 #include <kaboum/robot/dynamics.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "xml.h"
 
 namespace kaboum::robot {
@@ -15,7 +18,14 @@ Transform read_pose(const XmlFile& file, const XMLElement& parent) {
   const XMLElement* e = file.only_child(parent, "origin");
   if (e == nullptr) return {};
   const Vec3 rpy = file.vector(*e, "rpy", Vec3::Zero());
-  return {rotation_from_rpy(rpy.x(), rpy.y(), rpy.z()), file.vector(*e, "xyz", Vec3::Zero())};
+  Transform out{rotation_from_rpy(rpy.x(), rpy.y(), rpy.z()), file.vector(*e, "xyz", Vec3::Zero())};
+  if (e->Attribute("quat_xyzw") != nullptr) {
+    const std::vector<double> x = file.numbers(*e, "quat_xyzw", 4);
+    const Eigen::Quaterniond q(x[3], x[0], x[1], x[2]);
+    if (!(q.norm() > 0) || !std::isfinite(q.norm())) file.fail(*e, "quat_xyzw is no rotation");
+    out.linear = q.normalized().toRotationMatrix();
+  }
+  return out;
 }
 
 Inertial read_inertial(const XmlFile& file, const XMLElement& element) {

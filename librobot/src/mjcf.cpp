@@ -159,6 +159,12 @@ class MjcfWriter {
       } else if (g.shape == Geometry::Shape::Cylinder) {
         e->SetAttribute("type", "cylinder");
         e->SetAttribute("size", digits({size.x(), size.y() / 2}).c_str());
+      } else if (g.shape == Geometry::Shape::Capsule) {
+        e->SetAttribute("type", "capsule");
+        e->SetAttribute("size", digits({size.x(), size.y() / 2}).c_str());
+      } else if (g.shape == Geometry::Shape::Ellipsoid) {
+        e->SetAttribute("type", "ellipsoid");
+        e->SetAttribute("size", digits(size).c_str());
       } else {
         e->SetAttribute("type", "sphere");
         e->SetAttribute("size", digits({size.x()}).c_str());

@@ -1,4 +1,4 @@
-// Boxes, cylinders and spheres as points whose hull contains them.
+// Boxes, cylinders, spheres, capsules and ellipsoids as points whose hull contains them.
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
@@ -71,6 +71,14 @@ std::vector<Vec3> sphere(double radius) {
   return points;
 }
 
+/// Spheres round both ends of its segment.
+std::vector<Vec3> capsule(double radius, double length) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : sphere(radius))
+    for (const double end : {-0.5, 0.5}) points.emplace_back(p + Vec3(0, 0, end * length));
+  return points;
+}
+
 }  // namespace
 
 Vec3 solid_size(const Geometry& geometry) {
@@ -101,6 +109,10 @@ std::string describe(const Geometry& g) {
     }
     case Geometry::Shape::Cylinder:
       return nothing("cylinder", g.size.x(), " of radius 0", g.size.y());
+    case Geometry::Shape::Capsule:
+      return nothing("capsule", g.size.x(), " of radius 0", g.size.y());
+    case Geometry::Shape::Ellipsoid:
+      return is_flat(g) ? "ellipsoid with an axis of 0" : "ellipsoid";
     case Geometry::Shape::Sphere:
       break;
   }
@@ -112,6 +124,8 @@ double bounding_excess(const Geometry& g) {
   const Vec3 size = solid_size(g);
   const double added = (size - g.size).norm();
   if (g.shape == Geometry::Shape::Sphere) return 0.02 * size.x();
+  if (g.shape == Geometry::Shape::Capsule) return 0.02 * size.x() + added;
+  if (g.shape == Geometry::Shape::Ellipsoid) return 0.02 * size.maxCoeff() + added;
   if (g.shape == Geometry::Shape::Cylinder) return 0.005 * size.x() + added;
   return added;
 }
@@ -129,6 +143,13 @@ std::vector<Vec3> bounding_points(const Geometry& g) {
       break;
     case Geometry::Shape::Sphere:
       points = sphere(size.x());
+      break;
+    case Geometry::Shape::Capsule:
+      points = capsule(size.x(), size.y());
+      break;
+    case Geometry::Shape::Ellipsoid:
+      points = sphere(1);
+      for (Vec3& p : points) p = p.cwiseProduct(size);
       break;
     case Geometry::Shape::Mesh:
       throw Error(ErrorCode::InvalidArgument, "a mesh is not bounded by a formula");

@@ -133,10 +133,17 @@ class SdfWriter {
       add(*geometry.InsertNewChildElement("box"), "size", digits(size));
       return;
     }
-    const bool cylinder = g.shape == Geometry::Shape::Cylinder;
-    XMLElement* e = geometry.InsertNewChildElement(cylinder ? "cylinder" : "sphere");
+    if (g.shape == Geometry::Shape::Ellipsoid) {
+      add(*geometry.InsertNewChildElement("ellipsoid"), "radii", digits(size));
+      return;
+    }
+    const bool sphere = g.shape == Geometry::Shape::Sphere;
+    XMLElement* e =
+        geometry.InsertNewChildElement(sphere                                 ? "sphere"
+                                       : g.shape == Geometry::Shape::Cylinder ? "cylinder"
+                                                                              : "capsule");
     add(*e, "radius", digits(size.x()));
-    if (cylinder) add(*e, "length", digits(size.y()));
+    if (!sphere) add(*e, "length", digits(size.y()));
   }
 
   void add_joint(XMLElement& model, std::size_t j) {

@@ -1,7 +1,8 @@
-// Reads URDF, the robot descriptions of ROS: <http://wiki.ros.org/urdf/XML>. Meanings and defaults
-// are those of urdfdom 3.0, the reader of ROS, which is laxer in places (two origins, two shapes in
-// a geometry: it takes the first) and stricter in others (inertia and materials, which this reader
-// does not look at). tests/engines compares the two.
+// Reads URDF 1.0, 1.1 and 1.2, the robot descriptions of ROS: <http://wiki.ros.org/urdf/XML>.
+// Meanings and defaults are those of urdfdom 3.0, the reader of ROS, and of urdfdom 6.0 for what is
+// new in 1.1 (capsules, quat_xyzw) and 1.2 (limits), which is laxer in places (two origins, two
+// shapes in a geometry: it takes the first) and stricter in others (inertia and materials, which
+// this reader does not look at). tests/engines compares the two.
 
 #include <kaboum/base/error.h>
 #include <kaboum/robot/robot.h>
@@ -21,10 +22,12 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-/// Rotations as quaternions, which URDF does not have; readers pass over them.
+/// Rotations as quaternions, which URDF 1.0 does not have; its readers pass over them.
 void refuse_quaternions(const XMLElement& element, const std::string& name) {
   if (element.Attribute("quat_xyzw") != nullptr)
-    fail_at(name, element.GetLineNum(), "quat_xyzw is not supported: write the rotation as rpy");
+    fail_at(
+        name, element.GetLineNum(),
+        "quat_xyzw is of URDF 1.1: state <robot version=\"1.1\">, or write the rotation as rpy");
   for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
     refuse_quaternions(*e, name);
 }
@@ -96,7 +99,8 @@ struct JointEntry {
 /// Links and joints of a document, one element at a time.
 class Elements {
  public:
-  explicit Elements(const std::string& name) : name_(name), file_(name) {}
+  /// @param minor  of the version: 1.0, 1.1 or 1.2
+  Elements(const std::string& name, int minor) : name_(name), file_(name), minor_(minor) {}
 
   void read(const XMLElement& root) {
     refuse_unread(root, {"link", "joint"}, name_);
@@ -123,6 +127,7 @@ class Elements {
   [[nodiscard]] Transform read_origin(const XMLElement& parent) const {
     const XMLElement* e = file_.only_child(parent, "origin");
     if (e == nullptr) return {};
+    if (e->Attribute("quat_xyzw") != nullptr) return read_quaternion(*e);
     const Vec3 half = file_.vector(*e, "rpy", Vec3::Zero()) / 2;
     const Vec3 s = half.array().sin(), c = half.array().cos();
     Eigen::Quaterniond q(c[0] * c[1] * c[2] + s[0] * s[1] * s[2],   // w
@@ -132,6 +137,17 @@ class Elements {
     const double norm = std::sqrt(q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w());
     q.coeffs() /= norm;
     return {q.toRotationMatrix(), file_.vector(*e, "xyz", Vec3::Zero())};
+  }
+
+  [[nodiscard]] Transform read_quaternion(const XMLElement& e) const {
+    if (e.Attribute("rpy") != nullptr) file_.fail(e, "both rpy and quat_xyzw: give one of them");
+    const std::vector<double> x = file_.numbers(e, "quat_xyzw", 4);
+    Eigen::Quaterniond q(x[3], x[0], x[1], x[2]);
+    const double norm = q.coeffs().stableNorm();
+    if (!(norm > 0) || !std::isfinite(norm)) file_.fail(e, "quat_xyzw is no rotation");
+    q.coeffs() /= norm;
+    q.normalize();
+    return {q.toRotationMatrix(), file_.vector(e, "xyz", Vec3::Zero())};
   }
 
   [[nodiscard]] Geometry read_geometry(const XMLElement& shape, const std::string& link) const {
@@ -163,6 +179,13 @@ class Elements {
       const double length = file_.number(*e, "length");
       g.shape = Geometry::Shape::Cylinder;
       g.size = {file_.number(*e, "radius"), length, length};
+    } else if (kind == "capsule" && minor_ >= 1) {
+      const double length = file_.number(*e, "length"), radius = file_.number(*e, "radius");
+      g.shape = length == 0 ? Geometry::Shape::Sphere : Geometry::Shape::Capsule;
+      g.size = {radius, length, length};
+      if (length == 0) g.size = Vec3::Constant(radius);
+    } else if (kind == "capsule") {
+      file_.fail(*e, place + "capsules are of URDF 1.1: state <robot version=\"1.1\">");
     } else if (kind == "mesh") {
       g.shape = Geometry::Shape::Mesh;
       g.mesh = file_.text(*e, "filename");
@@ -170,9 +193,9 @@ class Elements {
       if ((g.size.array() == 0).any()) fail_at(name_, g.line, place + "a mesh scaled by 0");
       return g;
     } else {
-      fail_at(
-          name_, g.line,
-          place + "a shape of kind <" + kind + ">; supported are box, cylinder, sphere and mesh");
+      fail_at(name_, g.line,
+              place + "a shape of kind <" + kind +
+                  ">; supported are box, cylinder, sphere, capsule and mesh");
     }
     if ((g.size.array() < 0).any())
       fail_at(name_, g.line, place + "a " + describe(g) + " whose size is negative");
@@ -221,11 +244,18 @@ class Elements {
     if (!(length > 0) || !std::isfinite(length)) fail("the axis has no direction");
     out.joint.axis = (direction / length).normalized();
     if (const XMLElement* limit = file_.only_child(e, "limit"); limit != nullptr) {
+      const bool stated =
+          limit->Attribute("lower") != nullptr && limit->Attribute("upper") != nullptr;
       const double lower = file_.number(*limit, "lower", 0),
                    upper = file_.number(*limit, "upper", 0);
+      if (minor_ >= 2 && type != "continuous" && !stated)
+        file_.fail(*limit, "joint '" + out.joint.name + "': URDF 1.2 wants both lower and upper");
       if (type != "continuous") {
         out.variable.lower = lower;
         out.variable.upper = upper;
+      } else if (minor_ >= 2) {  // where they are stated
+        if (limit->Attribute("lower") != nullptr) out.variable.lower = lower;
+        if (limit->Attribute("upper") != nullptr) out.variable.upper = upper;
       }
       // 0 is written where nothing is known.
       const double velocity = file_.number(*limit, "velocity", 0);
@@ -241,7 +271,17 @@ class Elements {
 
   const std::string& name_;
   XmlFile file_;
+  int minor_;
 };
+
+/// The minor number of the version of URDF: 0, 1 or 2.
+int minor_version(const XMLElement& root, const XmlFile& file) {
+  if (root.Attribute("version") == nullptr) return 0;
+  const double version = file.number(root, "version");
+  for (const int minor : {0, 1, 2})
+    if (version == (10 + minor) / 10.0) return minor;
+  file.fail(root, "URDF " + file.text(root, "version") + " is not known; 1.0, 1.1 and 1.2 are");
+}
 
 /// Puts links and joints in order: from the root on, depth first.
 class Assembly {
@@ -379,12 +419,11 @@ Robot parse_urdf(std::string_view text, const std::string& name) {
     fail_at(name, more->GetLineNum(),
             std::string("<") + more->Name() + "> after </robot>: a file holds one robot");
   refuse_xacro(root, name);
-  refuse_quaternions(root, name);
   const XmlFile file(name);
   const std::string robot_name = file.text(root, "name");
-  if (root.Attribute("version") != nullptr && file.number(root, "version") != 1)
-    file.fail(root, "only version 1.0 is supported");
-  Elements elements(name);
+  const int minor = minor_version(root, file);
+  if (minor == 0) refuse_quaternions(root, name);
+  Elements elements(name, minor);
   elements.read(root);
   Robot robot = Assembly(std::move(elements), name).build();
   robot.name = robot_name;

@@ -79,22 +79,30 @@ double XmlFile::number(const tinyxml2::XMLElement& element, const char* key,
   return element.Attribute(key) != nullptr ? number(element, key) : otherwise;
 }
 
-geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key) const {
-  const std::string value = text(element, key);
-  geom::Vec3 out;
-  int count = 0;
+std::optional<std::vector<double>> finite_numbers(std::string_view text) {
+  std::vector<double> out;
   for (std::size_t end = 0;;) {
-    const std::size_t begin = value.find_first_not_of(kXmlBlanks, end);
-    if (begin == std::string::npos) break;
-    end = std::min(value.find_first_of(kXmlBlanks, begin), value.size());
-    const auto x = finite_number(std::string_view(value).substr(begin, end - begin));
-    if (!x || count == 3) count = 4;
-    if (count == 4) break;
-    out[count++] = *x;
+    const std::size_t begin = text.find_first_not_of(kXmlBlanks, end);
+    if (begin == std::string::npos) return out;
+    end = std::min(text.find_first_of(kXmlBlanks, begin), text.size());
+    const auto x = finite_number(text.substr(begin, end - begin));
+    if (!x) return std::nullopt;
+    out.push_back(*x);
   }
-  if (count != 3)
-    fail(element, std::string(key) + " is " + quoted(value) + ", not three finite numbers");
-  return out;
+}
+
+std::vector<double> XmlFile::numbers(const tinyxml2::XMLElement& element, const char* key,
+                                     std::size_t count) const {
+  const std::string value = text(element, key);
+  auto out = finite_numbers(value);
+  if (out && out->size() == count) return *std::move(out);
+  fail(element, std::string(key) + " is " + quoted(value) + ", not " +
+                    (count == 3 ? "three" : std::to_string(count)) + " finite numbers");
+}
+
+geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key) const {
+  const std::vector<double> x = numbers(element, key, 3);
+  return {x[0], x[1], x[2]};
 }
 
 geom::Vec3 XmlFile::vector(const tinyxml2::XMLElement& element, const char* key,

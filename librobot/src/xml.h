@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kaboum::robot {
 
@@ -21,6 +22,9 @@ void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std
 /// A number written in decimal, blanks round it allowed; nullopt for anything else, infinity and
 /// NaN too.
 std::optional<double> finite_number(std::string_view text);
+
+/// Numbers with blanks between them; nullopt where one is none.
+std::optional<std::vector<double>> finite_numbers(std::string_view text);
 
 /// One file: what its elements hold, or a message that names it and the line.
 class XmlFile {
@@ -41,6 +45,9 @@ class XmlFile {
   /// A number that must be there.
   double number(const tinyxml2::XMLElement& element, const char* key) const;
   double number(const tinyxml2::XMLElement& element, const char* key, double otherwise) const;
+  /// So many numbers with blanks between them.
+  std::vector<double> numbers(const tinyxml2::XMLElement& element, const char* key,
+                              std::size_t count) const;
   /// Three numbers with blanks between them.
   geom::Vec3 vector(const tinyxml2::XMLElement& element, const char* key) const;
   geom::Vec3 vector(const tinyxml2::XMLElement& element, const char* key,

@@ -101,11 +101,11 @@ std::optional<Length> length_of(const py::object& value, const char* argument) {
   } else if (const auto number = number_of(value)) {
     if (*number > 0 && std::isfinite(*number)) return Length{*number, false};
   }
-  throw Error(
-      ErrorCode::InvalidArgument,
-      std::string(argument) +
-          " must be a positive number, or a percentage of the diagonal such as '0.5%', not " +
-          py::repr(value).cast<std::string>());
+  throw Error(ErrorCode::InvalidArgument, std::string(argument) +
+                                              " must be a positive number, a length with its unit "
+                                              "such as '5mm', or a percentage of the "
+                                              "diagonal such as '0.5%', not " +
+                                              py::repr(value).cast<std::string>());
 }
 
 void refuse_name(const char* argument, const std::string& name,

@@ -221,6 +221,7 @@ CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
   MeshValue value = mesh_of(mesh, "mesh");
   if (r.scale != 1) value = scaled(std::move(value), r.scale);
   if (!value.unit.empty()) r.unit = value.unit;
+  r = certify::in_own_unit(std::move(r));
   using Diagonal = geom::PrepareOptions::Diagonal;
   r.preparation.quads = value.bent_quads;
   r.preparation.diagonal =

@@ -201,7 +201,7 @@ const std::vector<Option<DecimateOptions>>& decimate_options() {
   return options;
 }
 
-std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshOptions& options,
+std::vector<BoundingMesh> decimated(const py::object& mesh, certify::MeshOptions options,
                                     const RunKeywords& running) {
   Watch watch(running.progress);
   std::shared_ptr<const geom::Prepared> original;
@@ -215,6 +215,7 @@ std::vector<BoundingMesh> decimated(const py::object& mesh, const certify::MeshO
     if (!value.source.empty()) name = value.source;
     notes = value.notes;
   }
+  bring_lengths_into(value.unit, certify::mesh_options(), options);
   return run(running.threads, [&] {
     const certify::MeshHooks hooks{.progress = watch.hook(), .found = {}, .prepared = {}};
     const certify::MeshRequest& request = options.request;

@@ -37,7 +37,7 @@ const char* type_words(const OptionDescription& option) {
     case Kind::Memory:
       return "int or str";
     case Kind::Length:
-      return option.absolute ? "float" : "float or str";
+      return option.absolute && !option.metres ? "float" : "float or str";
     case Kind::Files:
       return "path or sequence of paths";
     case Kind::Names:
@@ -232,7 +232,10 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       else if (option.absolute)
         refuse(option, "a positive length", value);
       else
-        refuse(option, "a positive number, or a percentage of the diagonal such as '0.5%'", value);
+        refuse(option,
+               "a positive number, a length such as '5mm', or a percentage of the diagonal such as "
+               "'0.5%'",
+               value);
       break;
     case Kind::Files:
     case Kind::Names:

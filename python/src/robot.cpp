@@ -104,10 +104,11 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons
   require_all_taken("certify_robot", keywords, certify_keywords());
   require_none(certify::contradiction(options, stated));
   const RobotValue value = robot_of(robot, "robot");
+  const bool has_budget = robot_bodies || robot_vertices;
+  if (!has_budget) certify::be_of_robot(options);
   r.set = certify::request_of(options);
   r.partial = partial;
   r.epsilons = epsilons_of(epsilons);
-  const bool has_budget = robot_bodies || robot_vertices;
   if (has_budget)
     for (const char* other : {"epsilon", "max-bodies", "max-total-vertices"})
       if (stated.contains(other))
@@ -361,7 +362,7 @@ certify::LinkEpsilons epsilons_of(const py::object& given) {
                                   ("epsilons['" + name + "']").c_str());
     if (!length)
       throw Error(ErrorCode::InvalidArgument, "epsilons['" + name + "'] must be a length");
-    out.emplace(name, *length);
+    out.emplace(name, length->in("m"));
   }
   return out;
 }

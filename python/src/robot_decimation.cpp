@@ -42,6 +42,7 @@ EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("decimate_robot", keywords, decimate_keywords());
   require_none(certify::contradiction(options, stated));
+  bring_lengths_into("m", known, options);
   std::optional<io::Format> format;
   if (output_format) format = format_of(output_format, "output_format");
   options.request.comment = "bmesh-decimate " KABOUM_VERSION;

@@ -81,6 +81,7 @@ Verdict verify_robot(const py::object& original, const py::object& result,
   const RunKeywords running =
       take_keywords("verify_robot", verify::robot_verdict_options(), given, options, Runs::Threads);
   require_none(contradiction(options));
+  bring_lengths_into("m", verify::robot_verdict_options(), options);
   const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
   robot::require_links(*first.file, options.shapes.links);
   Files files(options.shapes.packages, options.exact_points);

@@ -224,6 +224,7 @@ py::dict make_scene(const py::object& path, const py::object& robots, const py::
   scene::SceneMaker maker;
   const RunKeywords running =
       take_keywords("make_scene", scene::scene_options(), given, maker, Runs::Cached);
+  bring_lengths_into(maker.options.sets.unit, scene::scene_options(), maker);
   maker.scene = path_text(path, "path");
   maker.robots = files_of(robots, "robots");
   maker.objects = files_of(objects, "objects", &maker.primitives);

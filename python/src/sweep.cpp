@@ -150,6 +150,7 @@ SweptSet sweep_path(const py::object& robot, const py::object& path, bool verify
   take_options(certify::swept_set_options(), keywords, options);
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("sweep", keywords, keywords_of(certify::swept_set_options()));
+  bring_lengths_into("m", certify::swept_set_options(), options);
   robot::RobotFile placed = placed_robot(robot_of(robot, "robot"), options);
   SweptSet out;
   robot::Path waypoints = path_from(

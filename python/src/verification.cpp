@@ -82,7 +82,7 @@ Verdict decide(verify::Relation relation, const MeshValue& original,
     const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
     std::optional<double> bound;
     if (asked.epsilon) {
-      bound = asked.epsilon->of(geom::bounding_box(mesh).diagonal());
+      bound = asked.epsilon->in(original.unit).of(geom::bounding_box(mesh).diagonal());
       if (!std::isfinite(*bound) || !(*bound > margin))
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");

@@ -25,6 +25,7 @@ WrapValue wrap(const py::object& mesh, const std::string& precision, const py::k
   const RunKeywords running =
       take_keywords("wrap", certify::wrap_options(), given, asked, Runs::Threads);
   const MeshValue value = mesh_of(mesh, "mesh");
+  bring_lengths_into(value.unit, certify::wrap_options(), asked);
   if (precision != "float" && precision != "double")
     refuse_name("precision", precision, {"float", "double"});
   certify::WrapRequest request;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/option.h>
+#include <kaboum/base/parse_length.h>
 
 namespace kaboum {
 namespace {
@@ -78,6 +79,36 @@ TEST(Options, RefuseWrongValues) {
   EXPECT_NE(flaw_of(named(all, "way"), "rigth").find("did you mean 'right'"), std::string::npos);
 }
 
+/// A unit says what a number is in; it is brought into the one that is needed, without rounding
+/// between units of ten.
+TEST(Options, LengthsWithUnits) {
+  const auto all = options();
+  Request request;
+  const auto stated = [&](const std::string& text, std::string_view unit) {
+    EXPECT_EQ(flaw_of(named(all, "epsilon"), text), "") << text;
+    named(all, "epsilon").assign(request, text);
+    EXPECT_EQ(named(all, "epsilon").value(request), text);
+    bring_lengths_into(unit, all, request);
+    return *request.epsilon;
+  };
+  EXPECT_EQ(stated("5mm", "m"), Length{0.005});
+  EXPECT_EQ(stated("0.7cm", "m"), Length{0.7 / 100});
+  EXPECT_EQ(stated("2in", "mm"), Length{50.8});
+  EXPECT_EQ(stated("3ft", "in"), Length{36});
+  EXPECT_EQ(stated("1m", "um"), Length{1e6});
+  EXPECT_EQ(stated("0.1km", "dm"), Length{1000});
+  EXPECT_EQ(stated("5mm", "mm"), Length{5});
+  EXPECT_EQ(stated("5", "mm"), Length{5}) << "in the unit of what it is about";
+  EXPECT_EQ(stated("5", ""), Length{5});
+  EXPECT_EQ(stated("0.5%", ""), (Length{0.5, true}));
+  EXPECT_THROW(stated("5mm", ""), Error) << "nobody has said what the unit is";
+  EXPECT_THROW(stated("5mm", "0.005 m"), Error);
+  request.epsilon = parse_length("5mm");
+  EXPECT_THROW(static_cast<void>(request.epsilon->of(1)), Error) << "never taken for 5";
+  for (const char* wrong : {"5 mm", "mm", "5MM", "5mm%", "5%mm", "0mm", "-1mm", "5nm", "5mmm"})
+    EXPECT_NE(flaw_of(named(all, "epsilon"), wrong), "") << wrong;
+}
+
 /// Bytes with and without a unit; no number that is no size.
 TEST(Options, SizesOfMemory) {
   EXPECT_EQ(parse_memory("1000"), 1000U);
@@ -125,6 +156,13 @@ TEST(Options, OtherMembers) {
   EXPECT_EQ(record_of(all, motion), "");
   EXPECT_EQ(value_words(all[1]), "LENGTH");
   EXPECT_NE(flaw_of(all[1], "1%"), "");
+  EXPECT_NE(flaw_of(all[1], "5mm"), "") << "its unit is not known";
+  OptionDescription of_robots = all[1];
+  of_robots.metres = true;
+  EXPECT_EQ(flaw_of(of_robots, "5mm"), "");
+  all[1].assign(motion, "5mm");
+  EXPECT_EQ(motion.resolution, 0.005);
+  motion.resolution = 1e-5;
   EXPECT_NE(flaw_of(all[0], "a=1\na=2"), "");
   EXPECT_EQ(read_record(all, "--joint b=0.25 --joint a=1 --resolution 0.5 --work 3", motion), "");
   EXPECT_EQ(motion.joints, (std::map<std::string, double>{{"a", 1}, {"b", 0.25}}));

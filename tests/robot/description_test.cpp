@@ -3,6 +3,7 @@
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/kinematics.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "robots.h"
@@ -30,6 +31,78 @@ std::string message(const std::string& text, bool urdf = true) {
     return error.what();
   }
   return "no error";
+}
+
+std::string versioned(const std::string& version, const std::string& inside) {
+  return "<robot name='r' version='" + version + "'>" + inside + "</robot>";
+}
+
+std::string shaped(const std::string& shape) {
+  return "<link name='a'><collision><geometry>" + shape + "</geometry></collision></link>";
+}
+
+/// Capsules and quaternions are of 1.1; 1.2 wants both limits, and takes those of continuous
+/// joints.
+TEST(Urdf, NewVersions) {
+  const std::string capsule = shaped("<capsule radius='0.1' length='0.5'/>");
+  EXPECT_NE(message(robot_of(capsule)).find("URDF 1.1"), std::string::npos);
+  EXPECT_NE(message(versioned("1.0", capsule)).find("r.urdf:1:"), std::string::npos);
+  for (const char* version : {"1.1", "1.2"}) {
+    const Geometry read = parse(versioned(version, capsule)).links[0].collision.at(0);
+    EXPECT_EQ(read.shape, Geometry::Shape::Capsule);
+    EXPECT_EQ(read.size, Vec3(0.1, 0.5, 0.5));
+  }
+  const Robot ball = parse(versioned("1.1", shaped("<capsule radius='0.1' length='0'/>")));
+  EXPECT_EQ(ball.links[0].collision.at(0).shape, Geometry::Shape::Sphere);
+  EXPECT_NE(message(versioned("1.3", kLinks)).find("1.3 is not known"), std::string::npos);
+  EXPECT_NE(message(versioned("1.1", shaped("<capsule radius='-1' length='1'/>"))), "no error");
+  EXPECT_NE(message(versioned("1.1", shaped("<capsule radius='1'/>"))), "no error");
+
+  const auto turned = [](const std::string& version, const std::string& origin) {
+    return versioned(version, "<link name='a'/><link name='b'/>" +
+                                  joint("j", "fixed", "a", "b", "<origin " + origin + "/>"));
+  };
+  const Robot robot = parse(turned("1.1", "xyz='1 2 3' quat_xyzw='0 0 3 4'"));
+  const Mat3 third = rotation_about(Vec3::UnitZ(), 2 * std::atan2(3, 4));
+  EXPECT_LT((robot.joints[0].origin.linear - third).norm(), 1e-15);
+  EXPECT_EQ(robot.joints[0].origin.translation, Vec3(1, 2, 3));
+  EXPECT_NE(message(turned("1.0", "quat_xyzw='0 0 0 1'")), "no error");
+  for (const char* wrong : {"quat_xyzw='0 0 0 1' rpy='0 0 0'", "quat_xyzw='0 0 0 0'",
+                            "quat_xyzw='0 0 1'", "quat_xyzw='0 0 0 nan'"})
+    EXPECT_NE(message(turned("1.1", wrong)), "no error") << wrong;
+
+  const auto limited = [](const std::string& version, const char* type, const std::string& limit) {
+    return versioned(version,
+                     "<link name='a'/><link name='b'/>" + joint("j", type, "a", "b", limit));
+  };
+  const std::string half = "<limit lower='-1' effort='1' velocity='1' acceleration='1' jerk='1'/>";
+  EXPECT_EQ(parse(limited("1.1", "revolute", half)).variables[0].upper, 0);
+  EXPECT_NE(message(limited("1.2", "revolute", half)).find("both lower and upper"),
+            std::string::npos);
+  const std::string both = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+  EXPECT_EQ(parse(limited("1.1", "continuous", both)).variables[0].upper, std::nullopt);
+  EXPECT_EQ(parse(limited("1.2", "continuous", both)).variables[0].upper, 1);
+}
+
+/// The hull of its points holds a capsule or an ellipsoid, and reaches little beyond.
+TEST(Primitives, RoundShapesAreBounded) {
+  for (const Geometry::Shape shape : {Geometry::Shape::Capsule, Geometry::Shape::Ellipsoid}) {
+    Geometry g;
+    g.shape = shape;
+    g.size = {0.2, 0.7, shape == Geometry::Shape::Capsule ? 0.7 : 0.4};
+    const auto hull = geom::convex_hull(bounding_points(g));
+    ASSERT_TRUE(hull);
+    const auto support = [&](const Vec3& n) {
+      if (shape == Geometry::Shape::Ellipsoid) return n.cwiseProduct(g.size).norm();
+      return g.size.x() + std::abs(n.z()) * g.size.y() / 2;
+    };
+    for (const geom::Triangle& t : hull->triangles) {
+      const Vec3 &a = hull->vertices[t[0]], &b = hull->vertices[t[1]], &c = hull->vertices[t[2]];
+      const Vec3 n = (b - a).cross(c - a).normalized();
+      EXPECT_GE(n.dot(a), support(n) * (1 - 1e-15));
+      EXPECT_LE(n.dot(a), support(n) + bounding_excess(g));
+    }
+  }
 }
 
 TEST(Urdf, JointsOfAllKinds) {

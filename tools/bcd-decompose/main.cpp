@@ -92,6 +92,7 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
                  {"--depfile", o.depfile}},
                 inputs);
   const ThreadLimit threads(o.common.threads);
+  if (is_robot(o.input) && o.robot_bodies + o.robot_vertices == 0) certify::be_of_robot(o.set);
   try {
     return is_robot(o.input) ? decompose_robot(o) : decompose_mesh(o);
   } catch (const certify::TooCoarse& error) {  // a valid "no"

@@ -60,6 +60,8 @@ void read(tools::DecimationCase& run) {
   run.input = io::read_mesh(o.input, run.input.format, hash ? &bytes : nullptr);
   if (hash) run.log.input_sha256 = io::sha256(bytes);
   apply(run.input, o.unit, o.input);
+  tools::naming(o.input,
+                [&] { bring_lengths_into(run.input.unit, certify::mesh_options(), run.options); });
   for (const std::string& text : run.input.notes) note(run, text);
   if (const std::string text =
           certify::warning_of(run.request().epsilon, geom::bounding_box(run.input.mesh).diagonal());

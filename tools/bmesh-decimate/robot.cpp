@@ -182,6 +182,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                                                 "one by one for others");
   require_robot_folder(o.output, "");
   apply_preset(app, o.output, o.robot, nullptr);
+  bring_lengths_into("m", certify::mesh_options(), o.mesh);
   require_separate(o);
   Run run{o, robot::read_robot(o.input)};
   const std::vector<std::string> included =

@@ -39,6 +39,11 @@ MeshCase read(const VerifyMeshOptions& o, bool quiet) {
   return run;
 }
 
+/// Of both files: one may leave it out.
+const std::string& unit_of(const MeshCase& run) {
+  return run.original.unit.empty() ? run.approximation.unit : run.original.unit;
+}
+
 /// @throws Error where the length is none of this mesh's, or below a cover's margin.
 void set_bound(MeshCase& run, const Length& epsilon) {
   const double bound = epsilon.of(run.diagonal),
@@ -67,7 +72,8 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
   if (o.original == "-" && o.approximation == "-")
     throw Error(ErrorCode::InvalidArgument, "only one of the two files can be standard input");
   MeshCase run = read(o, common.quiet);
-  if (o.how.epsilon) set_bound(run, *o.how.epsilon);
+  if (o.how.epsilon)
+    set_bound(run, naming(o.original, [&] { return o.how.epsilon->in(unit_of(run)); }));
 
   Progress progress(common.quiet);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;

@@ -31,6 +31,10 @@ const char* name_of_shape(const verify::ShapeVerdict& shape) {
       return "box";
     case Geometry::Shape::Cylinder:
       return "cylinder";
+    case Geometry::Shape::Capsule:
+      return "capsule";
+    case Geometry::Shape::Ellipsoid:
+      return "ellipsoid";
     case Geometry::Shape::Sphere:
       break;
   }
@@ -289,7 +293,9 @@ class RobotVerifier {
 
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
-  return RobotVerifier(options, common).run();
+  VerifyRobotOptions in_metres = options;
+  bring_lengths_into("m", verify::robot_verdict_options(), in_metres.how);
+  return RobotVerifier(in_metres, common).run();
 }
 
 }  // namespace kaboum::tools

@@ -60,7 +60,7 @@ bool is_held(const robot::Geometry& sphere, const geom::ConvexSet& balls) {
   });
 }
 
-/// Shapes that have no triangles: of spheres and cylinders it is decided that balls hold them, by
+/// Shapes that have no triangles: of round shapes it is decided that balls hold them, by
 /// one ball or by a polytope round them, or nothing.
 /// @return why it is not known; empty: all are held
 std::string open_shape(const std::vector<robot::Geometry>& shapes, const geom::ConvexSet& balls) {
@@ -75,7 +75,7 @@ std::string open_shape(const std::vector<robot::Geometry>& shapes, const geom::C
   return {};
 }
 
-/// A point of a cylinder or a sphere that is in no ball for certain, of some that are spread over
+/// A point of a round shape that is in no ball for certain, of some that are spread over
 /// it.
 std::optional<geom::Vec3> missed_point(const robot::Geometry& g, const geom::ConvexSet& balls) {
   constexpr int kRound = 64, kAlong = 16, kAcross = 4;
@@ -94,8 +94,12 @@ std::optional<geom::Vec3> missed_point(const robot::Geometry& g, const geom::Con
         const double across = cylinder ? g.size.x() * n / kAcross
                                        : g.size.x() * std::sqrt(std::max(0.0, 1 - share * share));
         const double along = share * (cylinder ? g.size.y() / 2 : g.size.x());
-        const geom::Vec3 p = g.origin * (kInwards * geom::Vec3(across * std::cos(angle),
-                                                               across * std::sin(angle), along));
+        geom::Vec3 local(across * std::cos(angle), across * std::sin(angle), along);
+        if (g.shape == robot::Geometry::Shape::Capsule)
+          local.z() += std::copysign(g.size.y() / 2, share);
+        if (g.shape == robot::Geometry::Shape::Ellipsoid && g.size.x() > 0)
+          local = local.cwiseProduct(g.size / g.size.x());
+        const geom::Vec3 p = g.origin * (kInwards * local);
         if (is_missed(p)) return p;
       }
   return std::nullopt;

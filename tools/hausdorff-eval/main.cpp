@@ -66,8 +66,10 @@ void describe(CLI::App& app, Options& o) {
          "a percentage of the diagonal of both bounding boxes, as in 0.5%; of STEP and IGES "
          "the deviation of the exact faces from the triangles counts, too")
       ->check([](const std::string& s) {
-        return tools::parse_length(s) ? std::string()
-                                      : "must be a positive number, or a percentage such as 0.5%";
+        return tools::parse_length(s)
+                   ? std::string()
+                   : "must be a positive number, perhaps with a unit, as in 5mm, or a "
+                     "percentage such as 0.5%";
       })
       ->type_name("LENGTH|P%");
   app.add_option("--csv", o.csv, "Write the numbers as CSV, a line each way (- for stdout)")
@@ -127,10 +129,11 @@ void note_what_bounds_nothing(tools::ShapeFile& file) {
 
 /// The exit code, said where it is not 0.
 /// @param deviations  of exact faces from the triangles that stand for them, added
-int conclude(const Options& o, double diagonal, double deviations,
+/// @param unit  of both files; empty: not known
+int conclude(const Options& o, double diagonal, const std::string& unit, double deviations,
              const distance::Compared& result) {
   if (!o.at_most.empty()) {
-    const double limit = tools::parse_length(o.at_most)->of(diagonal);
+    const double limit = tools::parse_length(o.at_most)->in(unit).of(diagonal);
     if (deviations > 0 ? (result.upper() + deviations) * (1 + 0x1p-50) > limit
                        : result.upper() > limit) {
       tools::log(false, "hausdorff-eval: " +
@@ -214,7 +217,8 @@ int run(const Options& o) {
   for (const tools::ShapeFile& file : files)
     for (const std::string& note : file.notes)
       tools::log(o.common.quiet, "note: " + file.shape.name + ": " + note);
-  return conclude(o, comparison.diagonal(), files[0].deviation + files[1].deviation, result);
+  return conclude(o, comparison.diagonal(), files[files[0].unit.empty() ? 1 : 0].unit,
+                  files[0].deviation + files[1].deviation, result);
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ int say_made(const tools::SceneOptions& o, const scene::MadeScene& made, const s
 int make_scene(const tools::SceneOptions& o) {
   const tools::ThreadLimit threads(o.common.threads);
   scene::SceneMaker maker = o.make;
+  bring_lengths_into(maker.options.sets.unit, scene::scene_options(), maker);
   maker.scene = o.scene;
   maker.robots = named_files(o.robots, "--robot");
   maker.objects = named_files(o.objects, "--object");

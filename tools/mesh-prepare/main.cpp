@@ -35,7 +35,7 @@ struct PrepareToolOptions {
 
 /// What was made of which file.
 struct PrepareCase {
-  const PrepareToolOptions& asked;
+  PrepareToolOptions asked;  ///< its lengths in the unit of what is read
   io::ReadResult input = {};
   std::string sha256 = {};
   geom::Mesh mesh = {};  ///< that is written
@@ -127,6 +127,13 @@ void wrap(PrepareCase& run, bool doubles) {
   run.mesh = made.artefact();
 }
 
+/// Into the unit of what was read.
+void bring_lengths(PrepareCase& run) {
+  bring_lengths_into(run.input.unit, certify::preparation_options(certify::PreparedFor::Preparing),
+                     run.asked.preparation);
+  bring_lengths_into(run.input.unit, certify::wrap_options(), run.asked.wrap);
+}
+
 /// Reads the triangles, or makes them of a CAD file.
 void read(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
@@ -149,6 +156,7 @@ int prepare_file(const CLI::App& app, const PrepareToolOptions& o) {
   const ThreadLimit threads(o.common.threads);
   PrepareCase run{.asked = o};
   read(run);
+  naming(o.input, [&] { bring_lengths(run); });
   const bool doubles = io::holds_double(format);
   if (o.wraps()) {
     wrap(run, doubles);

@@ -110,9 +110,10 @@ class Entries : public YAML::EventHandler {
     if (!length)
       fail(file_, mark,
            "'" + entries_.back().pattern + "': '" + value +
-               "' must be a positive number, or a percentage such as 0.5%, without blanks or "
-               "units");
-    entries_.back().epsilon = *length;
+               "' must be a positive number, perhaps with a unit, as in 5mm, or a percentage such "
+               "as "
+               "0.5%, without blanks");
+    entries_.back().epsilon = length->in("m");
     named_ = false;
   }
 

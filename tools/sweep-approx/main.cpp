@@ -262,5 +262,8 @@ int main(int argc, char** argv) {
                "sweep-approx"};
   tools::SweepApproxOptions options;
   tools::describe(app, options);
-  return tools::run(app, argc, argv, [&] { return tools::sweep_path(options); });
+  return tools::run(app, argc, argv, [&] {
+    bring_lengths_into("m", certify::swept_set_options(), options.sweep);
+    return tools::sweep_path(options);
+  });
 }

@@ -50,7 +50,7 @@ std::size_t count_strangers(const std::vector<Geometry>& original,
 
 ScaledBound scaled_bound(const Length& epsilon, double diagonal, const geom::Vec3& scale) {
   if (epsilon.percent) return {epsilon.of(diagonal), false};
-  return {epsilon.value / scale.maxCoeff(), scale.minCoeff() < scale.maxCoeff()};
+  return {epsilon.in("m").value / scale.maxCoeff(), scale.minCoeff() < scale.maxCoeff()};
 }
 
 Answer answer_of(const HeldDistance& distance, const ScaledBound& bound) {

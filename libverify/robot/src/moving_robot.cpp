@@ -1,4 +1,5 @@
 // A robot in motion, as the verifier of swept sets takes it.
+#include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/verify/moving_robot.h>
 
@@ -18,6 +19,9 @@ To kind_of(From shape) {
       return To::Box;
     case From::Cylinder:
       return To::Cylinder;
+    case From::Capsule:
+    case From::Ellipsoid:
+      return To::Mesh;  // a polytope round it
     case From::Sphere:
       break;
   }
@@ -71,7 +75,13 @@ std::optional<MovingShape> moving_shape(const robot::Robot& robot, std::uint32_t
   }
   out.chain = chain_to(robot, link);
   out.chain.push_back(stage_of(shape.origin));
-  if (out.kind == To::Mesh) out.mesh = scaled(std::move(mesh), shape.size);
+  if (shape.shape == From::Capsule || shape.shape == From::Ellipsoid) {
+    robot::Geometry here = shape;
+    here.origin = {};
+    out.mesh = *geom::convex_hull(robot::bounding_points(here));
+  } else if (out.kind == To::Mesh) {
+    out.mesh = scaled(std::move(mesh), shape.size);
+  }
   return out;
 }
 

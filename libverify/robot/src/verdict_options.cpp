@@ -16,7 +16,8 @@ std::vector<Option<RobotVerdictOptions>> robot_table() {
       option<R>(
           {.name = "epsilon",
            .text = "Also decide that no body is farther than this from the meshes it holds: a "
-                   "length in the robot's unit, or a percentage of each mesh's diagonal"},
+                   "length in metres or its own unit, as in 5mm, or a percentage of each mesh's "
+                   "diagonal"},
           [](auto& r) -> auto& { return r.epsilon; }),
       choice<R>(
           {.name = "prepare",
@@ -65,6 +66,7 @@ std::vector<Option<MotionVerdictOptions>> motion_table() {
            .text = "Parts that move and measure less are not divided further; where they are "
                    "not known to be inside, the answer is undecided",
            .absolute = true,
+           .metres = true,
            .otherwise = "margin / 10^6"},
           [](auto& r) -> auto& { return r.gap; }),
       option<R>(

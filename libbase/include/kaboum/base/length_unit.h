@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <cstddef>
+#include <string_view>
 
 namespace kaboum {
 
+inline constexpr std::size_t kLengthUnitCount = 8;
 /// Names of the units of length that options, containers and scenes may state.
-inline const std::array<std::string, 8> kLengthUnits{"m", "dm", "cm", "mm", "um", "km", "in", "ft"};
+inline constexpr std::array<std::string_view, kLengthUnitCount> kLengthUnits{
+    "m", "dm", "cm", "mm", "um", "km", "in", "ft"};
 
 }  // namespace kaboum

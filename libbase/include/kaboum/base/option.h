@@ -26,7 +26,7 @@ struct OptionDescription {
     Counts,  ///< different integers, the largest first: "20000,10000"
     Number,  ///< a finite number
     Memory,  ///< bytes, more than 0: "500M", "2G"; k, K, M and G are powers of 1024
-    Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "0.5%"
+    Length,  ///< a positive length, or a percentage of a diagonal: "0.002", "2mm", "0.5%"
     Choice,  ///< one of `choices`
     Text,
     Files,     ///< files or folders, each stated by itself
@@ -43,6 +43,7 @@ struct OptionDescription {
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
   bool between = false;   ///< a number lies between the limits and is none of them
   bool absolute = false;  ///< a length is no percentage; a number is such a length
+  bool metres = false;    ///< an absolute length is one of robots, and may state another unit
   bool for_all = false;   ///< of settings: a number without a name is of all, with an empty name
   /// Name of a list where all its parts are stated at once: "plugins"; empty: `name`.
   std::string plural = {};
@@ -129,6 +130,9 @@ struct Option : OptionDescription {
 };
 
 namespace option_detail {
+/// A length in another unit, as it is where it states none.
+std::string length_in(std::string_view unit, const std::string& text);
+
 template <class T>
 struct Content {
   using Type = T;
@@ -296,6 +300,19 @@ std::vector<Option<Whole>> options_of_part(const std::vector<Option<Part>>& opti
                      assign(part(whole), text);
                    }});
   return out;
+}
+
+/// Brings lengths that are stated in a unit into that of what they are about.
+/// @param unit  one of kLengthUnits: m for robots
+/// @throws Error{InvalidArgument} where one is stated and `unit` is none.
+template <class Request>
+void bring_lengths_into(std::string_view unit, const std::vector<Option<Request>>& options,
+                        Request& request) {
+  for (const Option<Request>& option : options) {
+    if (option.kind != OptionDescription::Kind::Length) continue;
+    const std::optional<std::string> value = option.value(request);
+    if (value) option.assign(request, option_detail::length_in(unit, *value));
+  }
 }
 
 /// The option of that name.

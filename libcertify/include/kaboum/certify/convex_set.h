@@ -58,6 +58,10 @@ struct SetRequest : bcd::CoverSettings {
   [[nodiscard]] std::string parameters() const;
 };
 
+/// The request with lengths that are stated in a unit brought into its own one.
+/// @throws Error{InvalidArgument} where one is, and `unit` is empty.
+SetRequest in_own_unit(SetRequest request);
+
 /// Certificate of a set. A claim only as part of a CertifiedSet.
 struct SetCertificate {
   SetRequest::Direction direction = SetRequest::Direction::Outer;

@@ -25,6 +25,13 @@ SetRequest request_of(const SetOptions& options);
 /// Options that come to a request; its source, and what no option states, apart.
 SetOptions options_of(const SetRequest& request);
 
+/// Epsilon of a robot's links where nothing is asked for. [m]
+inline constexpr double kRobotEpsilon = 0.01;
+
+/// Makes the options those of a robot's links: lengths in metres, and by default one epsilon for
+/// all links, kRobotEpsilon, unless a limit is given.
+void be_of_robot(SetOptions& options);
+
 /// Why the options do not go together, with names as OptionDescription::text has them; empty where
 /// they do.
 /// @param stated  names of those that a user stated

@@ -14,17 +14,18 @@ enum class JointType { Fixed, Revolute, Prismatic };
 
 /// A shape fixed to a link.
 struct Geometry {
-  enum class Shape { Mesh, Box, Cylinder, Sphere };
+  enum class Shape { Mesh, Box, Cylinder, Sphere, Capsule, Ellipsoid };
   Shape shape = Shape::Box;
   Transform origin;  ///< from the shape's frame to the link's
   /// Mesh: scale of its coordinates. Box: lengths of the edges. Cylinder: radius, length along z.
-  /// Sphere: radius. [length, or a factor]
+  /// Sphere: radius. Capsule: radius, length along z of the segment that it is round. Ellipsoid:
+  /// half its axes. [length, or a factor]
   Vec3 size = Vec3::Ones();
   std::string mesh;  ///< file or URI, as the robot's file states it
   int line = 0;      ///< of the robot's file; 0: not known
 };
 
-/// True if a box, cylinder or sphere has a size of 0: no volume, but perhaps an area or a length.
+/// True if a shape that is no mesh has a size of 0: no volume, but perhaps an area or a length.
 bool is_flat(const Geometry& geometry);
 /// True if it is a point: nothing is left that could be held.
 bool is_point(const Geometry& geometry);
@@ -69,11 +70,12 @@ struct Robot {
 /// @throws Error{InvalidInput} naming the joint or link.
 void require_valid(const Robot& robot);
 
-/// Robot of a URDF document: revolute, continuous, prismatic, fixed and mimicking joints. Variables
-/// are numbered depth first from the root, the joints of one link in the order of their names.
-/// Rotations come from rpy within 40 · 2^-53. Shapes of size 0 are kept (is_flat): robots in wide
-/// use have some. Inertia, materials and transmissions are not looked at. Source:
-/// <http://wiki.ros.org/urdf/XML>; where that is silent, as urdfdom 3.0.
+/// Robot of a URDF document, 1.0, 1.1 or 1.2: revolute, continuous, prismatic, fixed and mimicking
+/// joints. Variables are numbered depth first from the root, the joints of one link in the order of
+/// their names. Rotations come from rpy, or from quat_xyzw since 1.1, within 40 · 2^-53. Capsules
+/// are of 1.1. Shapes of size 0 are kept (is_flat): robots in wide use have some. Inertia,
+/// materials and transmissions are not looked at. Source: <http://wiki.ros.org/urdf/XML>; where
+/// that is silent, as urdfdom: 3.0, and 6.0 of what is new.
 /// @param name  appears in messages.
 /// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed or has
 ///   xacro in it; planar and floating joints; several or no roots, loops, links with two parents.
@@ -87,8 +89,9 @@ Robot parse_urdf(std::string_view text, const std::string& name);
 ///   prismatic and fixed, frames that are not connected to the world.
 Robot parse_rl(std::string_view text, const std::string& name);
 
-/// Points whose hull contains the box, cylinder or sphere: the box's corners, a prism with 32 sides
-/// round the cylinder (0.5 % of the radius), a polytope with 162 corners round the sphere (2 %).
+/// Points whose hull contains the box, cylinder, sphere, capsule or ellipsoid: the box's corners, a
+/// prism with 32 sides round the cylinder (0.5 % of the radius), a polytope with 162 corners round
+/// the sphere (2 %), two of them round the capsule, one stretched round the ellipsoid.
 /// What is flat is given 0.5 % of its largest size as thickness. In the link's frame, up to
 /// rounding of 100 · 2^-53 of their distance.
 /// @pre shape is not Mesh; it is no point.
