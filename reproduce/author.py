@@ -41,7 +41,7 @@ def _judged(call, name, original, here, closed):
     points, triangles = meshes.read_off(call.folder / here)
     row["vertices"], row["user_seconds"] = len(points), call.seconds(name)
     if closed:
-        row["verdict"], row["out"], _ = judged.solids(call, name, original, here, False)
+        row["verdict"], row["out"] = judged.verdict(call, name, original, here, False)
     else:
         inner = f"{name}-no-border.off"
         meshes.write_off(call.folder / inner, *meshes.without_border(points, triangles))
@@ -71,8 +71,7 @@ def _ours(call, original, name, n, cost, closed):
 def _cells(n, by, row):
     if row is None:
         return [lines.count(n), by, *["—"] * 6, "no result", "—"]
-    out = row.get("out")
-    return [lines.count(n), by, "—" if out is None else figure(out), *lines.distances(row), row["verdict"],
+    return [lines.count(n), by, judged.bracket(row["out"]), *lines.distances(row), row["verdict"],
             f"{row['user_seconds']:.1f} s" + (f", stopped at {lines.count(row['vertices'])}" if row["vertices"] > n else "")]
 
 
@@ -87,7 +86,7 @@ def section(context, document):
     document.paragraph(
         "boundingmesh --direction Outward, with the metric that is the thesis's cost, and the same cost of ours (--effort fast) and our own (--effort "
         "normal), all from the same **closed** file: the prepared mesh with its holes closed. Distances of the surfaces in percent of the diagonal, maxima "
-        "certified; how far the original's solid reaches out of the result's, certified; whether the result encloses it is decided by bound-verify. "
+        "certified; how far the original's solid sticks out of the result (bracket), and whether the result encloses it, by bound-verify. "
         "CPU time of the whole process, one thread.")
     call = Calls(context, "bounding-mesh")
     models = [m for m in context.models if m.thesis and m.vertices() < 100000 or m.name == "kr120"]
@@ -142,7 +141,8 @@ def sets_section(context, document):
     document.paragraph(
         "bounding-convex-decomposition with its default error (2 % of the diagonal) and several numbers of voxels and values of alpha; ours with as many "
         "bodies and vertices in all (--max-bodies, --max-total-vertices), from the same closed file. How far the original sticks out of the union and how "
-        "far the union reaches beyond it, in percent of the diagonal, certified for every point. Times are CPU seconds.")
+        "far the union reaches beyond it, in percent of the diagonal, certified for every point (—: not measured within the time). His last step simplifies each hull to a bounding mesh, "
+        "which need not be convex: then the bodies are taken as they are, as one mesh. Times are CPU seconds.")
     call = Calls(context, "bounding-sets")
     models = [m for m in context.models if m.name in ("mitsubishi", "kr120", "bunny", "bracket")]
     for model in models:

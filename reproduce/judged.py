@@ -2,7 +2,7 @@
 
 from document import figure
 
-GAP, SECONDS = 0.1, 120  # of distances between solids: relative, CPU time
+GAP, SECONDS = 0.1, 30  # of distances between solids: relative, CPU time
 STOPPED = (-24, -9)  # by that limit
 
 
@@ -24,45 +24,52 @@ def surfaces(call, name, original, here, more=()):
     return row
 
 
-BAD_INPUT = 3  # bodies that are not convex, exactly: hulls of others, rounded. They are taken as one mesh then
+BAD_INPUT = 3  # bodies that are not convex, exactly. They are taken as one mesh then
 
 
 def verdict(call, name, original, here, is_set):
-    """Whether the original is inside, by bound-verify."""
-    commands = [["cover", original, here]] * is_set + [["mesh", "--outer", original, here]]
-    for number, command in enumerate(commands):
-        step = f"{name}-verdict" + "-as-mesh" * number
-        result = f"{step}-report.json"
-        code = call(step, call.programs / "bound-verify", [*command, "--quiet", "--report", result],
-                    [original, call.folder / here], [result], (0, 1, 7, *[BAD_INPUT] * (number + 1 < len(commands))))
-        if code in (0, 1, 7):
-            return {"verified": "encloses", "refuted": "sticks out"}.get(call.report(result)["verdict"], "undecided")
-    return "not decided"
+    """What bound-verify says of whether the original's solid is inside, and the bracket of how far it sticks out [percent], None where
+    nothing is decided. Faces of the original that enclose nothing may stick out of what encloses the solid."""
+    result = f"{name}-verdict-report.json"
+    command = ["cover", original, here] if is_set else ["mesh", "--outer", original, here]
+    if call(f"{name}-verdict", call.programs / "bound-verify", [*command, "--quiet", "--report", result], [original, call.folder / here], [result],
+            (0, 1, 7)) is None:
+        return "not decided", None
+    report = call.report(result)
+    solid, surface = report["claims"]["solid"], report["claims"].get("surface", {})
+    if solid["answer"] == "verified":
+        return "encloses" if surface.get("answer", "verified") == "verified" else "encloses the solid, not all faces", (0, 0)
+    if solid["answer"] == "refuted":
+        depth = solid.get("depth") or surface.get("depth")
+        return "sticks out", depth and tuple(100 * depth[key] / report["bbox_diagonal"] for key in ("lower", "upper"))
+    return "undecided", None
 
 
 def solids(call, name, original, here, is_set):
-    """(verdict, how far the original sticks out of what bounds it, how far that reaches beyond the original) in percent, both certified upper
-    bounds of the farthest point of the solids; None where measuring failed or took too long. Where bound-verify has decided that the original is
-    inside, it sticks out by 0, and a mesh reaches beyond it by no more than its surface does: measuring what is nearly 0 takes long."""
-    said = verdict(call, name, original, here, is_set)
-    if said == "encloses" and not is_set:
+    """(verdict, bracket of how far the original sticks out, how far what stands for it reaches beyond it) in percent. The last is certified of every
+    point of a set, as solids; of a mesh it is that of its surface. None where measuring failed or took too long."""
+    said, out = verdict(call, name, original, here, is_set)
+    if not is_set:
         found = surfaces(call, name, original, here)
-        return said, 0, None if found is None else found["a2o_max"]
-    for number, kind in enumerate([["--b-as", "set"]] * is_set + [["--b-as", "mesh"]]):
-        step = f"{name}-solid" + "-as-mesh" * number
+        return said, out, None if found is None else found["a2o_max"]
+    for kind in ("set", "mesh"):
+        step = f"{name}-solid-as-{kind}"
         result = f"{step}-report.json"
         code = call(step, call.programs / "hausdorff-eval",
-                    [original, here, "--solid", "--gap", GAP, "--samples", 1000, "--threads", "1", "--quiet", *kind, "--report", result],
-                    [original, call.folder / here], [result], (0, 7, *STOPPED, *[BAD_INPUT] * (kind[1] == "set")), limit=SECONDS)
+                    [original, here, "--solid", "--gap", GAP, "--samples", 1000, "--threads", "1", "--quiet", "--b-as", kind, "--report", result],
+                    [original, call.folder / here], [result], (0, 7, *STOPPED, BAD_INPUT), limit=SECONDS)
         if code != BAD_INPUT:
             break
-    if code not in (0, 7):
-        return said, 0 if said == "encloses" else None, None
-    report = call.report(result)
-    return said, 0 if said == "encloses" else percent_of(report, "max_upper", "a_to_b"), percent_of(report, "max_upper", "b_to_a")
+    return said, out, percent_of(call.report(result), "max_upper", "b_to_a") if code in (0, 7) else None
 
 
 def cells(found):
     """Verdict, how far out, how far beyond, as texts."""
     said, out, beyond = found
-    return [said, *("—" if x is None else figure(x) for x in (out, beyond))]
+    return [said, bracket(out), "—" if beyond is None else figure(beyond)]
+
+
+def bracket(out):
+    if out is None:
+        return "—"
+    return figure(out[1]) if out[0] == out[1] else f"{figure(out[0])}–{figure(out[1])}"
