@@ -11,8 +11,8 @@
 // mesh), `seconds_all` includes making the method's own mesh and taking the result out.
 // Distances to the prepared input are in percent of the diagonal: maxima certified upper bounds
 // (gap 1 %), means from samples. --subdivided cuts every triangle into four first (common.h).
-// --out: results go to FOLDER/MODEL-METHOD.off (of the last ratio), where they can be judged by others.
-// CGAL's part is GPL: this program is never installed.
+// --out: results go to FOLDER/MODEL-METHOD.off (of the last ratio), where they can be judged by
+// others. CGAL's part is GPL: this program is never installed.
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
@@ -226,10 +226,9 @@ Json run(const Options& o, const Input& input, const std::string& method, double
            {"peak_megabytes_read", megabytes}};
   if (distances) measure_into(row, p.solid.mesh(), result.mesh);
   if (!o.out.empty())
-    io::write_file(
-        std::filesystem::path(o.out) /
-            (std::filesystem::path(input.file).stem().string() + "-" + method + ".off"),
-        io::serialise_mesh(result.mesh, io::Format::Off));
+    io::write_file(std::filesystem::path(o.out) /
+                       (std::filesystem::path(input.file).stem().string() + "-" + method + ".off"),
+                   io::serialise_mesh(result.mesh, io::Format::Off));
   return row;
 }
 
