@@ -80,7 +80,7 @@ class Runs:
         self.programs = context.runner.programs
         self.quick = context.quick
         self.seeds = range(1, 4 if context.quick else 13)
-        self.table = []
+        self.table, self.unchecked = [], []
 
     def one(self, name, n, search, seed, *options):
         """The report of a run; None: no plan within the limit."""
@@ -93,7 +93,9 @@ class Runs:
         code = self.call(folder, SCENARIOS / name / "run",
                          [n, "--seed", seed, "--search", search, "--timeout", 1000 * LIMIT, "--no-cache", "--plan-only",
                           "--out", folder, *options], inputs, [solve, plan], codes=(0, 1, 7, 8, *KILLED), limit=LIMIT)
-        if code != 0:
+        if code in KILLED and all((self.call.folder / file).is_file() for file in (solve, plan)):
+            self.unchecked.append(f"{name} {n} {search}")  # planning ended, and checking the plan did not
+        elif code != 0:
             return None
         found = statistics_of(self.call.report(solve), self.call.report(plan))
         self.table.append([name, n, search, seed, " ".join(options), *found.values()])
@@ -111,7 +113,9 @@ class Runs:
                 break
         return found
 
-    def write(self, folder, name):
+    def write(self, document, folder, name):
+        if self.unchecked:
+            document.paragraph(f"Plans that were not checked within {LIMIT} s of CPU time: {', '.join(dict.fromkeys(self.unchecked))}.")
         written(folder / f"scenarios-{name}.csv", ["scenario", "n", "search", "seed", "options", *QUANTITIES], self.table)
 
 
@@ -219,7 +223,7 @@ def stacked_section(context, document):
         rows.append([title, str(n), *(own_row(found, keys) if found else [f"ours: none in {LIMIT} s of CPU time" if tried else "ours: not tried",
                                                                           *(NOTHING for _ in keys)])])
     document.table(["search", "n", "by", *(QUANTITIES[key] for key in keys)], rows)
-    runs.write(context.folder, "stacked")
+    runs.write(document, context.folder, "stacked")
 
 
 TABLE_IV = {"total_time_s": "total_planning_s", "inverse_kinematics_s": "inverse_kinematics_s", "path_planning_s": "path_planning_s",
@@ -259,7 +263,7 @@ def remove_section(context, document):
                 by_and_cells[1:] = [without.get(key, text) for key, text in zip(keys, by_and_cells[1:])]
             rows.append([case, str(n), by_and_cells[0] + (", without volumes" if by != "volumes" else ""), *by_and_cells[1:]])
     document.table(["case", "n", "by", *(QUANTITIES[key] for key in keys)], rows)
-    runs.write(context.folder, "remove")
+    runs.write(document, context.folder, "remove")
 
 
 LINE = re.compile(r"^(?P<what>.+?)\s+mean +(?P<mean>[\d.]+) us, median +[\d.]+, 99 % +(?P<late>[\d.]+), most +[\d.]+"
@@ -370,7 +374,7 @@ def assembly_section(context, document):
                        "cost is in the two sections on exact meshes.")
     compared(document, runs, "bimanual-assembly", 4, thesis.by_search("table-6-7.csv", geometry="bounded_0.02m", library="Bullet"),
              [k for k in QUANTITIES if k not in VOLUMES])
-    runs.write(context.folder, "assembly")
+    runs.write(document, context.folder, "assembly")
 
 
 def circular_section(context, document):
@@ -380,7 +384,7 @@ def circular_section(context, document):
     document.paragraph(DIFFERS)
     compared(document, runs, "circular-rearrange", 3, thesis.by_search("table-6-2.csv"),
              [k for k in QUANTITIES if k != "waypoints_in_plan" and k not in VOLUMES])
-    runs.write(context.folder, "circular-rearrange")
+    runs.write(document, context.folder, "circular-rearrange")
 
 
 def start(context, document, heading):
