@@ -41,13 +41,16 @@ if(KABOUM_WITH_PYTHON)
   set(PYTHON_EXECUTABLE ${Python3_EXECUTABLE})
   find_package(pybind11 2.10 REQUIRED CONFIG)
 endif()
-# Collision libraries that may decide a scene's contacts (libworld/engines). By pkg-config: Bullet's own
-# configuration is for all of it.
+# Collision libraries that may decide a scene's contacts (libworld/engines). By pkg-config, which remembers what it found.
+foreach(_engine FCL BULLET ODE)
+  set(KABOUM_${_engine}_FOUND FALSE)
+endforeach()
 if(KABOUM_WITH_FCL)
   pkg_check_modules(KABOUM_FCL QUIET fcl ccd)
 endif()
 if(KABOUM_WITH_BULLET)
   pkg_check_modules(KABOUM_BULLET QUIET bullet)
+  list(FILTER KABOUM_BULLET_LINK_LIBRARIES EXCLUDE REGEX "Dynamics|SoftBody")  # programs start faster
 endif()
 if(KABOUM_WITH_ODE)
   pkg_check_modules(KABOUM_ODE QUIET ode)

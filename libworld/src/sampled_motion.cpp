@@ -97,10 +97,17 @@ class Samples {
   std::vector<Mover> movers_;
 };
 
-/// The pairs of a state of which a robot of these moves one.
+/// The pairs of which a robot of these moves one: as for MovingPairs, a path that leaves the limits
+/// makes those count that are proved apart within them.
 std::vector<std::array<Item, 2>> moving_pairs(const Checker& checker, const WorldState& state,
                                               const std::vector<MovingRobot>& robots) {
-  std::vector<std::array<Item, 2>> out = checker.pairs(state, {});
+  WorldState start = state;
+  for (const auto& [robot, path] : robots) {
+    start.q[robot] = path->front();
+    for (const std::vector<double>& q : *path)
+      if (!checker.is_within_limits(robot, q)) start.q[robot] = q;
+  }
+  std::vector<std::array<Item, 2>> out = checker.pairs(start, {});
   std::erase_if(out, [&](const std::array<Item, 2>& pair) {
     return std::ranges::none_of(pair, [&](const Item& item) {
       return std::ranges::any_of(
@@ -116,8 +123,8 @@ MotionAnswer sampled_motion(const Checker& checker, const WorldState& state,
                             const std::vector<MovingRobot>& robots, const MotionOptions& options) {
   MotionAnswer out;
   Samples samples(checker, state, robots, options);
+  const std::vector<std::array<Item, 2>> pairs = moving_pairs(checker, state, robots);
   const auto count = samples.visit([&](const WorldState& now, std::size_t segment, double share) {
-    const std::vector<std::array<Item, 2>> pairs = moving_pairs(checker, now, robots);
     const auto found = checker.substitute()->find_meeting(now, pairs, false);
     if (found.empty()) return false;
     out.outcome = MotionAnswer::Outcome::Contact;
@@ -139,24 +146,28 @@ std::vector<Item> sampled_obstacles(const Checker& checker, const WorldState& st
                                     const MovingRobot& robot, const std::vector<Item>& things,
                                     const MotionOptions& options) {
   const std::vector<MovingRobot> robots{robot};
+  const auto thing_of = [&](const std::array<Item, 2>& pair) {
+    return is_moved_by(robot.robot, pair[0], state) ? pair[1] : pair[0];
+  };
+  std::vector<std::array<Item, 2>> pairs = moving_pairs(checker, state, robots);
+  std::erase_if(pairs, [&](const std::array<Item, 2>& pair) {
+    const Item thing = thing_of(pair);
+    return is_moved_by(robot.robot, thing, state) ||
+           std::ranges::find(things, thing) == things.end();
+  });
   std::vector<Item> found;
   Samples samples(checker, state, robots, options);
   const auto count =
       samples.visit([&](const WorldState& now, std::size_t /*segment*/, double /*share*/) {
-        std::vector<std::array<Item, 2>> pairs = moving_pairs(checker, now, robots);
-        const auto thing_of = [&](const std::array<Item, 2>& pair) {
-          return is_moved_by(robot.robot, pair[0], now) ? pair[1] : pair[0];
-        };
-        std::erase_if(pairs, [&](const std::array<Item, 2>& pair) {
-          const Item thing = thing_of(pair);
-          return is_moved_by(robot.robot, thing, now) ||
-                 std::ranges::find(things, thing) == things.end() ||
-                 std::ranges::find(found, thing) != found.end();
-        });
+        const std::size_t before = found.size();
         for (const std::size_t k : checker.substitute()->find_meeting(now, pairs, true))
           if (const Item thing = thing_of(pairs[k]); std::ranges::find(found, thing) == found.end())
             found.push_back(thing);
-        return false;
+        if (found.size() > before)
+          std::erase_if(pairs, [&](const std::array<Item, 2>& pair) {
+            return std::ranges::find(found, thing_of(pair)) != found.end();
+          });
+        return pairs.empty();
       });
   if (!count) found = things;  // of what was not looked at nothing is said to be free
   std::sort(found.begin(), found.end());

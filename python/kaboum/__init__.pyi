@@ -484,6 +484,16 @@ class World:
         # end of options
         progress: _Progress | None = None,
     ) -> Any: ...
+    def contact_pairs(
+        self,
+        q: ArrayLike,
+        *,
+        robot: str | None = None,
+        # options of engines
+        engine: Literal["own", "fcl", "bullet", "ode"] = "own",
+        # end of options
+        progress: _Progress | None = None,
+    ) -> Any: ...
     def are_free(
         self, q: ArrayLike, *, robot: str | None = None, progress: _Progress | None = None
     ) -> NDArray[np.bool_]: ...

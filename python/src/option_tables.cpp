@@ -4,6 +4,7 @@
 #include <kaboum/certify/set_options.h>
 #include <kaboum/certify/sweep_options.h>
 #include <kaboum/distance/compare_options.h>
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/kinematics/inverse_options.h>
 #include <kaboum/motion/keep_options.h>
@@ -45,6 +46,7 @@ void bind_option_tables(py::module_& module) {
         out["verify_sweep"] = table_of(keywords_of(verify::motion_verdict_options()));
         out["margins"] = table_of(keywords_of(world::margin_options()));
         out["check"] = table_of(keywords_of(world::state_options()));
+        out["engines"] = table_of(keywords_of(engines::engine_options()));
         out["check_motion"] = table_of(keywords_of(world::motion_options()));
         out["find_path"] = table_of(keywords_of(motion::path_options()));
         out["keep"] = table_of(keywords_of(motion::keep_options()));

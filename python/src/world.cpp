@@ -1,5 +1,6 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
+#include <kaboum/engines/engine_options.h>
 #include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
@@ -198,6 +199,41 @@ py::object check(const WorldValue& in, const py::object& q, const std::optional<
   std::vector<ContactList> made = contacts_at(in, index, rows, options, watch);
   if (one) return py::cast(std::move(made.front()));
   return py::cast(std::move(made));
+}
+
+/// Names of the pairs that own predicates or a library of others see in contact.
+py::object contact_pairs(const WorldValue& in, const py::object& q,
+                         const std::optional<std::string>& robot, const py::kwargs& given) {
+  engines::EngineRequest request;
+  const RunKeywords running =
+      take_keywords("contact_pairs", engines::engine_options(), given, request, Runs::Alone);
+  const std::size_t index = robot_index(in.world(), robot);
+  bool one = false;
+  const robot::Path rows =
+      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  Watch watch(running.progress);
+  const auto lists = run(0, [&] {
+    const auto substitute = engines::make_substitute(
+        in.world(), in.scene->inputs.empty() ? std::string() : in.scene->inputs.front(), request);
+    const world::Checker engine(in.world(), nullptr, substitute.get());
+    world::Scratch scratch;
+    std::vector<std::vector<std::array<std::string, 2>>> out;
+    for_rows(rows, watch, [&](const std::vector<double>& row) {
+      out.emplace_back();
+      for (const auto& contact : engine.find_contacts(state_at(in, index, row), scratch, {}))
+        out.back().push_back(
+            {in.world().name_of(contact.items[0]), in.world().name_of(contact.items[1])});
+    });
+    return out;
+  });
+  py::list made;
+  for (const auto& list : lists) {
+    py::list pairs;
+    for (const auto& [a, b] : list) pairs.append(py::make_tuple(a, b));
+    if (one) return pairs;
+    made.append(pairs);
+  }
+  return made;
 }
 
 py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
@@ -910,6 +946,24 @@ Returns
 bytes
     A PNG.)";
 
+constexpr const char* kContactPairsDoc =
+    R"(Which pairs are in contact, as `kaboum-check --engine` sees them.
+
+What a library of others says is not certified: no pair does not mean free. Own predicates know
+more about contacts: `check`.
+
+Parameters
+----------
+q : array
+    A value for each variable, or rows of so many.
+robot : str, optional
+{keywords}
+
+Returns
+-------
+list
+    Of pairs of names; of rows, a list of these.)";
+
 constexpr const char* kPairsDoc =
     R"(Pairs of a robot's links: which never touch, or need no check, as `kaboum-scene pairs`.
 
@@ -949,6 +1003,8 @@ void bind_questions_with_options(WorldClass& world) {
                                       world::motion_options(), "kaboum.Inclusion", kStaysDoc);
   const std::string pairs_text =
       text("link_pairs", "", world::pair_options(), "kaboum.LinkPairs", kPairsDoc);
+  const std::string contact_text =
+      text("contact_pairs", "q: object, ", engines::engine_options(), "object", kContactPairsDoc);
   const auto robot = py::arg("robot") = py::none();
   world.def("check", &check, py::arg("q"), py::kw_only(), robot, check_text.c_str())
       .def("check_motion", &check_motion, py::arg("path"), py::kw_only(), robot,
@@ -960,7 +1016,9 @@ void bind_questions_with_options(WorldClass& world) {
       .def("nearest", &nearest, py::arg("q"), py::kw_only(), robot, nearest_text.c_str())
       .def("draw", &draw_world, py::arg("q"), py::arg("file") = py::none(), py::kw_only(), robot,
            draw_text.c_str())
-      .def("link_pairs", &link_pairs, py::kw_only(), robot, pairs_text.c_str());
+      .def("link_pairs", &link_pairs, py::kw_only(), robot, pairs_text.c_str())
+      .def("contact_pairs", &contact_pairs, py::arg("q"), py::kw_only(), robot,
+           contact_text.c_str());
 }
 
 void bind_questions(WorldClass& world) {

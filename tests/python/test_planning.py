@@ -250,6 +250,27 @@ def test_world_says_what_the_programs_say(cell):
             assert pair["certain"] or pair["epsilon"] > 0
 
 
+def test_contacts_by_libraries_of_others(cell):
+    world = kaboum.World(cell)
+    home = world.home()
+    rows = home + np.random.default_rng(8).uniform(-2, 2, (60, len(home)))
+    own = world.contact_pairs(rows)
+    assert [not pairs for pairs in own] == world.are_free(rows).tolist()
+    assert world.contact_pairs(rows[0]) == own[0]
+    for engine in ("fcl", "bullet", "ode"):
+        try:
+            said = world.contact_pairs(rows, engine=engine)
+        except kaboum.Error as error:
+            assert "KABOUM_WITH_" in str(error)
+            continue
+        # What barely touches is a matter of rounding.
+        assert sum(a != b for a, b in zip(own, said)) <= 2
+        for pairs, exact in zip(own, world.contact_pairs(rows, engine=engine, engine_shapes="meshes")):
+            assert set(exact) <= set(pairs)
+    with pytest.raises(kaboum.Error, match="engine must be own, fcl, bullet or ode"):
+        world.contact_pairs(home, engine="physx")
+
+
 def test_paths_are_free_at_every_instant(cell):
     world = kaboum.World(cell)
     home = world.home()

@@ -51,6 +51,7 @@ def calls(arm, world, tmp_path):
         "check": lambda **k: world.check(rows, **k),
         "nearest": lambda **k: world.nearest([0, 0], **k),
         "are_free": lambda **k: world.are_free(rows, **k),
+        "contact_pairs": lambda **k: world.contact_pairs(rows, **k),
         "check_motion": lambda **k: world.check_motion([[0, 0], [1.5, 0]], **k),
         "find_path": lambda **k: world.find_path([0, 0], [1.8, 0.1], max_work=0.05, **k),
         "inverse_kinematics": lambda **k: kaboum.inverse_kinematics(
@@ -65,7 +66,7 @@ def calls(arm, world, tmp_path):
     }
 
 
-NAMES = ["check", "nearest", "are_free", "check_motion", "find_path", "inverse_kinematics", "replay", "sweep", "wrap", "make_scene", "certify_robot", "cache_entries", "write"]
+NAMES = ["check", "nearest", "are_free", "contact_pairs", "check_motion", "find_path", "inverse_kinematics", "replay", "sweep", "wrap", "make_scene", "certify_robot", "cache_entries", "write"]
 
 
 @pytest.mark.parametrize("name", NAMES)

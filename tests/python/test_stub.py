@@ -90,6 +90,7 @@ FRONT_ENDS = {
     "write_heatmap": (["hausdorff"], RUNS, "hausdorff-eval"),
     "draw": (["draw"], set(), "mesh-picture"),
     "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
+    "World.contact_pairs": (["engines"], {"robot", "progress"}, "kaboum-check"),
     "World.check_motion": (["check_motion", "keep"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.nearest": (["check"], {"robot", "progress"}, "kaboum-check"),

@@ -29,13 +29,14 @@ class EngineWorld : public world::Substitute {
     }
     first_object_ = things_;
     things_ += world.objects.size();
-    extents_.resize(things_);
+    things_at_.resize(things_);
+    links_.resize(robots_.size());
     collider_ = make_collider(request.library, things_);
     if (request.shapes == Shapes::Meshes) {
       for (const auto& [item, mesh] : meshes) {
         if (mesh.triangles.empty()) continue;
         collider_->add(number_of(item), mesh);
-        extents_[number_of(item)].own.extend(geom::bounding_box(mesh));
+        things_at_[number_of(item)].box.own.extend(geom::bounding_box(mesh));
       }
     } else {
       for (std::size_t r = 0; r < world.robots.size(); ++r)
@@ -52,7 +53,7 @@ class EngineWorld : public world::Substitute {
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const std::size_t a = number_of(pairs[k][0]), b = number_of(pairs[k][1]);
-      if (!extents_[a].meets(extents_[b]) || !collider_->meet(a, b)) continue;
+      if (!things_at_[a].box.meets(things_at_[b].box) || !meet(a, b)) continue;
       out.push_back(k);
       if (!all) break;
     }
@@ -83,22 +84,43 @@ class EngineWorld : public world::Substitute {
       geom::Box3 box = geom::bounding_box(set.body(i));
       box.min.array() -= more;
       box.max.array() += more;
-      extents_[thing].own.extend(box);
+      things_at_[thing].box.own.extend(box);
     }
   }
 
-  /// Puts the things of the pairs where they are.
+  /// Where a thing is.
+  struct Place {
+    TurnedBox box;
+    geom::Transform pose;
+    bool known = false;  ///< to the collider, too
+    bool placed = false, looked_at = false;
+  };
+
+  bool meet(std::size_t a, std::size_t b) {
+    for (const std::size_t thing : {a, b}) {
+      Place& at = things_at_[thing];
+      if (!at.known) collider_->put(thing, at.pose);
+      at.known = true;
+    }
+    return collider_->meet(a, b);
+  }
+
+  /// Finds where the things of the pairs are.
   void place(const WorldState& state, const std::vector<std::array<Item, 2>>& pairs) {
-    placed_.assign(things_, 0);
-    links_.assign(robots_.size(), {});
+    for (Place& at : things_at_) at.looked_at = false;
+    for (std::vector<geom::Transform>& links : links_) links.clear();
     for (const std::array<Item, 2>& pair : pairs)
       for (const Item& item : pair) {
-        const std::size_t thing = number_of(item);
-        if (placed_[thing] != 0) continue;
-        placed_[thing] = 1;
+        Place& at = things_at_[number_of(item)];
+        if (at.looked_at) continue;
+        const bool first = !at.placed;
+        at.looked_at = at.placed = true;
         const geom::Transform pose = pose_of(item, state);
-        extents_[thing].put(pose);
-        collider_->put(thing, pose);
+        if (!first && pose.linear == at.pose.linear && pose.translation == at.pose.translation)
+          continue;  // it rests
+        at.pose = pose;
+        at.known = false;
+        at.box.put(pose);
       }
   }
 
@@ -119,9 +141,8 @@ class EngineWorld : public world::Substitute {
   std::vector<Robot> robots_;
   std::size_t things_ = 0, first_object_ = 0;
   std::unique_ptr<Collider> collider_;
-  std::mutex mutex_;                ///< of all that follows, and the collider
-  std::vector<TurnedBox> extents_;  ///< of things
-  std::vector<char> placed_;
+  std::mutex mutex_;  ///< of all that follows, and the collider
+  std::vector<Place> things_at_;
   std::vector<std::vector<geom::Transform>> links_;
 };
 
