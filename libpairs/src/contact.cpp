@@ -139,7 +139,8 @@ double Surface::distance(const Vec3& point, double most) const {
   return std::sqrt(best);
 }
 
-Contact::Nearest Contact::nearest(const BoxMotion& box, double gap) const {
+Contact::Nearest Contact::nearest(const BoxMotion& box, double gap,
+                                  std::size_t most_steps) const {
   struct Open {
     double lower;
     std::uint32_t a, b;
@@ -168,7 +169,7 @@ Contact::Nearest Contact::nearest(const BoxMotion& box, double gap) const {
   look(0, 0, Vec3::Zero());
   const double touching = 0x1p-38 * gaps_.reach();
   std::size_t steps = 0;
-  while (!open.empty() && open.top().lower < out.upper - gap && ++steps < 200'000) {
+  while (!open.empty() && open.top().lower < out.upper - gap && ++steps < most_steps) {
     const Open at = open.top();
     open.pop();
     const bool cut_a = !ta[at.a].leaf() && (tb[at.b].leaf() || ta[at.a].reach > tb[at.b].reach);

@@ -55,7 +55,8 @@ class Contact {
   };
   /// @param box   of which only the middle is looked at
   /// @param gap   between lower and upper that will do [length]
-  [[nodiscard]] Nearest nearest(const BoxMotion& box, double gap) const;
+  /// @param most_steps  after which it is given up; the bracket is wider then
+  [[nodiscard]] Nearest nearest(const BoxMotion& box, double gap, std::size_t most_steps) const;
 
   /// How deep the solids are certainly in each other: no translation by less parts them. 0: not
   /// known to meet. Rounding is taken off.

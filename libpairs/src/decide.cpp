@@ -81,6 +81,7 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const LinkSurf
   }
   const Shapes of_a = shapes_of(outer_a, inner_a), of_b = shapes_of(outer_b, inner_b);
   Search search(robot, a.link, b.link, of_a, of_b, options.samples);
+  search.begin(stop);
   search.look_for_contacts(stop);
   search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
   out.verdict = search.verdict();
@@ -173,8 +174,9 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   round([&](Pair& pair) {
     pair.search = std::make_unique<Search>(robot, surfaces[pair.a]->link, surfaces[pair.b]->link,
                                            shapes[pair.a], shapes[pair.b], options.samples);
-    pair.search->look_for_contacts(stop);
+    pair.search->begin(stop);
   });
+  round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
   // More and more boxes, so that what is easy is decided before the time is up.
   for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
     const bool last = boxes >= options.most_boxes;

@@ -18,6 +18,8 @@ namespace {
 constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                 23, 29, 31, 37, 41, 43, 47, 53};
 constexpr std::size_t kClimbs = 10;        ///< from the best places
+constexpr std::size_t kMostSteps = 20'000;  ///< of a search for the nearest triangles
+constexpr std::size_t kFirstBoxes = 30;     ///< before contacts are looked for
 constexpr std::size_t kMostItems = 6'000;  ///< of a box; then clusters are not cut any more
 
 }  // namespace
@@ -32,7 +34,7 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
       tree_b_(&of_b.outer->tree()),
       motion_(chain_) {
   if (!chain_.limits() || chain_.joints().size() > BoxMotion::Linear::kMost) {
-    exhausted_ = true;  // joints without limits that do not turn
+    exhausted_ = searched_ = true;  // joints without limits that do not turn
     return;
   }
   const auto& [low, high] = *chain_.limits();
@@ -50,10 +52,11 @@ Bracket Search::nearest() const {
   return {std::clamp(lower, 0.0, nearest_), nearest_};
 }
 
-Contact::Nearest Search::measure(const std::vector<double>& values, double gap) {
+Contact::Nearest Search::measure(const std::vector<double>& values, double gap,
+                                 std::size_t most_steps) {
   const std::vector<double> still(values.size(), 0);
   motion_.set(values, still);
-  const Contact::Nearest out = inner_.nearest(motion_, gap);
+  const Contact::Nearest out = inner_.nearest(motion_, gap, most_steps);
   if (out.upper < nearest_) {
     nearest_ = out.upper;
     best_values_ = values;
@@ -64,7 +67,7 @@ Contact::Nearest Search::measure(const std::vector<double>& values, double gap) 
 bool Search::climb(std::vector<double> values) {
   const double touching = 1e-11 * inner_.gaps().reach();
   const auto& [low, high] = *chain_.limits();
-  Contact::Nearest at = measure(values, 0);
+  Contact::Nearest at = measure(values, 0, kMostSteps);
   for (int step = 0; step < 60 && at.upper > touching; ++step) {
     // Derivative of the distance: all joints move b.
     motion_.set(values, std::vector<double>(values.size(), 0));
@@ -94,7 +97,7 @@ bool Search::climb(std::vector<double> values) {
       std::vector<double> next = values;
       for (std::size_t v = 0; v < values.size(); ++v)
         next[v] = std::clamp(values[v] - scale * gradient[v], low[v], high[v]);
-      const Contact::Nearest there = measure(next, 0);
+      const Contact::Nearest there = measure(next, 0, kMostSteps);
       if (there.upper >= at.upper * (1 - 1e-4)) continue;
       values = std::move(next);
       at = there;
@@ -149,6 +152,7 @@ void Search::show_contact(std::vector<double> values) {
 
 void Search::look_for_contacts(const std::function<bool()>& stop) {
   if (decided()) return;
+  searched_ = true;
   const auto& [low, high] = *chain_.limits();
   const std::size_t samples = middle_.empty() ? 1 : samples_;
   std::vector<std::pair<double, std::vector<double>>> near;
@@ -158,7 +162,7 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
     std::vector<double> values = middle_;
     for (std::size_t v = 0; v < values.size() && i > 0; ++v)
       values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
-    const Contact::Nearest at = measure(values, 0.3 * std::min(nearest_, 1e3));
+    const Contact::Nearest at = measure(values, 0.3 * std::min(nearest_, 1e3), kMostSteps / 10);
     if (at.upper <= touching) {
       if (depth_.lower == 0) show_contact(values);
     } else {
@@ -292,8 +296,14 @@ void Search::end_proof() {
   verdict_ = outer_.holds_part(motion_) ? Verdict::Always : Verdict::Never;
 }
 
+void Search::begin(const std::function<bool()>& stop) {
+  next_climb_ = std::numeric_limits<std::size_t>::max();
+  go_on(kFirstBoxes, stop);
+  next_climb_ = 64;
+}
+
 void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
-  if (decided()) return;
+  if (verdict_ != Verdict::Open || exhausted_) return;
   if (!begun_) {
     begun_ = true;
     look_at(middle_, half_, {{0, 0, Vec3::Zero()}});

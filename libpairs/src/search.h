@@ -24,13 +24,18 @@ class Search {
   Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, const Shapes& of_a,
          const Shapes& of_b, std::size_t samples);
 
+  /// Whether the whole box of the limits, or few parts of it, are enough for a proof.
+  void begin(const std::function<bool()>& stop);
   /// Looks at places all over the limits, and goes on to others from those where the links are
   /// near.
   void look_for_contacts(const std::function<bool()>& stop);
   /// Goes on with the proof for so many boxes.
   void go_on(std::size_t boxes, const std::function<bool()>& stop);
 
-  [[nodiscard]] bool decided() const { return verdict_ != Verdict::Open || exhausted_; }
+  /// Nothing more comes of it.
+  [[nodiscard]] bool decided() const {
+    return verdict_ != Verdict::Open || (exhausted_ && searched_);
+  }
   [[nodiscard]] std::size_t boxes() const { return looked_; }
   [[nodiscard]] Verdict verdict() const { return verdict_; }
   [[nodiscard]] Bracket nearest() const;
@@ -71,7 +76,7 @@ class Search {
   /// it. @return whether they touch
   bool climb(std::vector<double> values);
   /// Keeps the values if the links are nearest there so far.
-  Contact::Nearest measure(const std::vector<double>& values, double gap);
+  Contact::Nearest measure(const std::vector<double>& values, double gap, std::size_t most_steps);
   /// From values that touch, to such that do so deeply.
   void show_contact(std::vector<double> values);
   /// Whether the links meet in all of the box: deeper than they move.
@@ -86,7 +91,9 @@ class Search {
   mutable BoxMotion motion_;
   std::vector<double> middle_, half_;  ///< of the limits
   std::priority_queue<Box> open_;
-  bool begun_ = false, exhausted_ = false;
+  bool begun_ = false;
+  bool exhausted_ = false;  ///< no proof is possible
+  bool searched_ = false;   ///< contacts were looked for
   std::uint64_t order_ = 0;
   std::size_t looked_ = 0, next_climb_ = 32;
   double proved_ = std::numeric_limits<double>::infinity();  ///< least bound of boxes that are done

@@ -6,9 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <mutex>
+#include <optional>
 
+#include "judgement.h"
 #include "options.h"
 #include "results.h"
 #include "surfaces.h"
@@ -40,27 +44,75 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
   return pairs::decide_pairs(file.robot, surfaces, options);
 }
 
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string out{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw Error(ErrorCode::InvalidInput, path + ": cannot be read");
+  return out;
+}
+
+template <typename Text>
+void write(const std::string& path, const Text& text) {
+  if (path.empty()) return;
+  const std::string written = text();
+  io::write_file(path, {written.data(), written.size()});
+}
+
+void say_judgement(const tools::JudgedMatrix& judged) {
+  for (const pairs::JudgedPair& pair : judged.pairs) {
+    std::cout << tools::line_of(pair) << '\n';
+    const std::string replay = tools::replay_of(judged, pair);
+    if (!replay.empty()) std::cout << "  " << replay << '\n';
+  }
+  for (const pairs::MatrixFault& fault : judged.matrix.faults)
+    std::cout << "line " << fault.line << ": " << fault.text << '\n';
+}
+
 int run(const PairsOptions& o) {
-  tools::require_apart({{"--srdf", o.srdf}, {"--report", o.common.report}}, {o.robot});
+  tools::require_valid(o);
+  tools::require_apart({{"--srdf", o.srdf},
+                        {"--output", o.output},
+                        {"--junit", o.junit},
+                        {"--sarif", o.sarif},
+                        {"--report", o.common.report}},
+                       {o.robot, o.judge});
   const auto begin = std::chrono::steady_clock::now();
   const robot::RobotFile file = robot::read_robot(o.robot);
+  std::optional<pairs::Matrix> matrix;
+  if (!o.judge.empty()) matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
   const std::vector<pairs::DecidedPair> pairs = decide(file, o);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const tools::Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
-                              {"pairs", tools::pairs_json(file.robot, pairs)}};
+  tools::Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
+                        {"pairs", tools::pairs_json(file.robot, pairs)}};
+  std::optional<tools::JudgedMatrix> judged;
+  if (matrix) {
+    judged = tools::JudgedMatrix{o.robot, o.judge, std::move(*matrix), {}};
+    judged->pairs = pairs::judge(judged->matrix, file.robot, pairs);
+    report["matrix"] = tools::matrix_json(*judged);
+  }
   if (o.json) {
     std::cout << report.dump(2, ' ', false, tools::Json::error_handler_t::replace) << '\n';
+  } else if (judged) {
+    say_judgement(*judged);
   } else if (!o.common.quiet) {
     for (const pairs::DecidedPair& pair : pairs)
       std::cout << tools::line_of(file.robot, pair) << '\n';
   }
   tools::log(o.common.quiet, tools::summary_of(pairs, seconds));
-  if (!o.srdf.empty()) {
-    const std::string text = tools::to_srdf(file.robot, pairs);
-    io::write_file(o.srdf, {text.data(), text.size()});
+  if (judged) tools::log(o.common.quiet, tools::summary_of(*judged));
+  write(o.srdf, [&] { return tools::to_srdf(file.robot, pairs); });
+  if (judged) {
+    write(o.junit, [&] { return tools::to_junit(*judged, o.fail_on_open); });
+    write(o.sarif, [&] { return tools::to_sarif(*judged).dump(2) + "\n"; });
+    write(o.output, [&] { return pairs::corrected(judged->matrix, judged->pairs); });
   }
   tools::write_report(o.common, "kaboum-pairs", report);
+  if (judged) {
+    const bool open_pair = judged->count(pairs::Judgement::Open) > 0;
+    const bool no = judged->count(pairs::Judgement::Refuted) > 0 || (open_pair && o.fail_on_open);
+    return no ? tools::kNo : open_pair ? tools::kLimit : tools::kDone;
+  }
   const bool open = std::ranges::any_of(pairs, [](const pairs::DecidedPair& pair) {
     return pair.verdict == pairs::Verdict::Open;
   });

@@ -2,6 +2,7 @@
 
 #include "options.h"
 
+#include <kaboum/base/error.h>
 #include <kaboum/pairs/decide_options.h>
 #include <kaboum/robot/shape_options.h>
 
@@ -19,6 +20,27 @@ void describe(CLI::App& app, PairsOptions& o) {
                  "Write the pairs that need no check as SRDF: those that never touch, and those "
                  "that are connected")
       ->type_name("FILE");
+  CLI::Option* judge =
+      app.add_option("--judge", o.judge,
+                     "Judge the pairs that this file disables: SRDF, MJCF (exclude), Drake's filter "
+                     "groups, XRDF, cuRobo's YAML")
+          ->type_name("FILE");
+  app.add_option("-o,--output", o.output,
+                 "Write that file without the pairs that are refuted; all else of it stays")
+      ->type_name("FILE")
+      ->needs(judge);
+  app.add_option("--junit", o.junit, "Write the judgement as JUnit XML")
+      ->type_name("FILE")
+      ->needs(judge);
+  app.add_option("--sarif", o.sarif, "Write what is wrong as SARIF 2.1.0")
+      ->type_name("FILE")
+      ->needs(judge);
+  app.add_option_function<std::string>(
+         "--fail-on", [&o](const std::string& what) { o.fail_on_open = what == "open"; },
+         "Whether an open pair of the file is a no, as a refuted one is [refuted]")
+      ->type_name("refuted|open")
+      ->check(CLI::IsMember({"refuted", "open"}))
+      ->needs(judge);
   add_request_options(app, robot::shape_options(), o.choice, o.stated);
   add_request_options(app, pairs::decide_options(), o.decide, o.stated);
   app.add_flag("--json", o.json, "Print JSON instead of a line for each pair");
@@ -26,8 +48,15 @@ void describe(CLI::App& app, PairsOptions& o) {
   app.footer(
       "Never and always are proved over all of the joints' limits; a contact is shown by a "
       "configuration. What is open has a bracket of the smallest distance.\n"
-      "Exit codes: 0 all pairs are decided; 2 usage; 3 bad input; 4 output failed; 6 internal "
-      "error; 7 some pairs stay open (--timeout, --max-boxes).");
+      "Exit codes: 0 all pairs are decided; with --judge: none that the file disables is refuted, "
+      "nor with --fail-on open left open; 1 with --judge: one is; 2 usage; 3 bad input; 4 output "
+      "failed; 6 internal error; 7 some pairs stay open (--timeout, --max-boxes).");
+}
+
+void require_valid(const PairsOptions& o) {
+  if (!o.judge.empty() && !o.choice.links.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--links: a file is judged of all links; see --srdf for some");
 }
 
 }  // namespace kaboum::tools

@@ -18,6 +18,9 @@ namespace kaboum::tools {
 struct PairsOptions {
   std::string robot;  ///< a file
   std::string srdf;   ///< to write
+  std::string judge;  ///< a matrix
+  std::string output, junit, sarif;  ///< to write, of the judged matrix
+  bool fail_on_open = false;
   robot::ShapeChoice choice;
   pairs::DecideOptions decide;
   std::set<std::string> stated;
@@ -26,5 +29,8 @@ struct PairsOptions {
 };
 
 void describe(CLI::App& app, PairsOptions& o);
+
+/// @throws Error{InvalidArgument} for what only means something of a judged matrix
+void require_valid(const PairsOptions& o);
 
 }  // namespace kaboum::tools

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <kaboum/pairs/matrix.h>
+
+#include <string>
+#include <vector>
+
+#include "common/cli.h"
+
+namespace kaboum::tools {
+
+/// A judged matrix, and what it was judged by.
+struct JudgedMatrix {
+  std::string robot, file;  ///< names of files
+  pairs::Matrix matrix;
+  std::vector<pairs::JudgedPair> pairs;
+
+  [[nodiscard]] std::size_t count(pairs::Judgement judgement) const;
+};
+
+/// "line 12: panda_link2 panda_link6 (Never): refuted, 0.0541 to 0.0812 deep at 0,0,…".
+std::string line_of(const pairs::JudgedPair& pair);
+/// Commands that show the contact of a refuted pair by other means; empty: it is none.
+std::string replay_of(const JudgedMatrix& judged, const pairs::JudgedPair& pair);
+std::string summary_of(const JudgedMatrix& judged);
+/// For reports and --json.
+Json matrix_json(const JudgedMatrix& judged);
+/// A test case for each pair: refuted ones fail, open ones are skipped, or fail as well.
+std::string to_junit(const JudgedMatrix& judged, bool open_fails);
+/// SARIF 2.1.0: what is refuted, open or a fault of the file, each at its line.
+Json to_sarif(const JudgedMatrix& judged);
+
+}  // namespace kaboum::tools
