@@ -118,13 +118,18 @@ Surface::Surface(Mesh mesh)
     if (edge.first != 0) closed_[edge.second] = 0;
 }
 
-bool Surface::winds_about(const Vec3& point) const {
+Surface::Winding Surface::winding(const Vec3& point) const {
   std::map<std::uint32_t, int> numbers;
   winding_.crossings(point, [&](std::uint32_t triangle, int sign) {
     const std::uint32_t part = part_of_[triangle];
     if (closed_[part] != 0) numbers[part] += sign;
   });
-  return std::ranges::any_of(numbers, [](const auto& part) { return part.second != 0; });
+  Winding out;
+  for (const auto& [part, number] : numbers) {
+    out.sum += number;
+    out.any = out.any || number != 0;
+  }
+  return out;
 }
 
 double Surface::distance(const Vec3& point, double most) const {
@@ -256,7 +261,7 @@ double Contact::inside(const BoxMotion& box, std::size_t most_corners) const {
     const std::size_t step = found.size() / most_corners + 1;
     for (std::size_t i = 0; i < found.size(); i += step) {
       const double distance = in.distance(found[i], root.reach * 2);
-      if (distance > best && in.winds_about(found[i])) best = distance;
+      if (distance > best && in.winding(found[i]).sum >= 1) best = distance;
     }
   };
   look(*a_, *b_, at);
@@ -296,17 +301,25 @@ double Contact::depth_above(const BoxMotion& box) const {
   return std::max(0.0, best);
 }
 
-bool Contact::holds_part(const BoxMotion& box) const {
+Contact::Held Contact::held(const BoxMotion& box) const {
   const Transform& at = box.placed().b;
   const Transform back{at.linear.transpose(), -(at.linear.transpose() * at.translation)};
   // Hulls that are apart hold nothing of each other.
-  if (gaps_.at_middle(a_->tree()[0], b_->tree()[0], box, Vec3::Zero(), 0).lower > 0) return false;
-  const auto holds = [](const Surface& in, const Surface& of, const Transform& to) {
-    return std::ranges::any_of(of.parts(), [&](std::uint32_t v) {
-      return in.winds_about(to * of.mesh().vertices[v]);
-    });
+  if (gaps_.at_middle(a_->tree()[0], b_->tree()[0], box, Vec3::Zero(), 0).lower > 0)
+    return Held::Nothing;
+  Held out = Held::Nothing;
+  const auto look = [&](const Surface& in, const Surface& of, const Transform& to) {
+    for (const std::uint32_t v : of.parts()) {
+      const Surface::Winding winding = in.winding(to * of.mesh().vertices[v]);
+      if (winding.sum >= 1)
+        out = Held::Part;
+      else if (winding.any && out == Held::Nothing)
+        out = Held::Unclear;
+    }
   };
-  return holds(*a_, *b_, at) || holds(*b_, *a_, back);
+  look(*a_, *b_, at);
+  look(*b_, *a_, back);
+  return out;
 }
 
 }  // namespace kaboum::pairs::detail

@@ -25,8 +25,12 @@ class Surface {
   [[nodiscard]] const std::vector<std::uint32_t>& parts() const { return parts_; }
   /// Vertices of triangles.
   [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
-  /// Whether a closed part winds about the point.
-  [[nodiscard]] bool winds_about(const Vec3& point) const;
+  /// How often closed parts wind about a point.
+  struct Winding {
+    int sum = 0;       ///< 1 and more: the point is of the solid, whatever the other parts are
+    bool any = false;  ///< one of them does, be it a cavity's
+  };
+  [[nodiscard]] Winding winding(const Vec3& point) const;
   /// The distance of a point from the triangles, rounded; searched below `most`.
   [[nodiscard]] double distance(const Vec3& point, double most) const;
 
@@ -68,9 +72,14 @@ class Contact {
   /// frames of a and b
   [[nodiscard]] double farthest_meeting(const BoxMotion& box, const Vec3& in_a,
                                         const Vec3& in_b) const;
-  /// Whether a part of one surface begins inside the other solid; a proof together with one that
-  /// the surfaces do not meet, and that they are so far apart here that rounding does not matter.
-  [[nodiscard]] bool holds_part(const BoxMotion& box) const;
+  /// Whether a part of one mesh is in the other one's solid; a proof together with one that the
+  /// surfaces do not meet here, by more than rounding.
+  enum class Held {
+    Nothing,  ///< no part of the other one winds about any
+    Part,     ///< one is in the solid
+    Unclear,  ///< one is where parts wind against each other: in a cavity, or a mesh is inside out
+  };
+  [[nodiscard]] Held held(const BoxMotion& box) const;
 
  private:
   /// Calls look(triangle of a, triangle of b) for pairs that are not clearly apart, as many as

@@ -82,7 +82,7 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const LinkSurf
   const Shapes of_a = shapes_of(outer_a, inner_a), of_b = shapes_of(outer_b, inner_b);
   Search search(robot, a.link, b.link, of_a, of_b, options.samples);
   search.begin(stop);
-  search.look_for_contacts(stop);
+  for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
   search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
   out.verdict = search.verdict();
   out.nearest = search.nearest();
@@ -180,6 +180,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   // More and more boxes, so that what is easy is decided before the time is up.
   for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
     const bool last = boxes >= options.most_boxes;
+    if (boxes > 500) round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
     round([&](Pair& pair) {
       const std::size_t most = std::min(boxes, options.most_boxes);
       if (pair.search->boxes() / 2 < most) pair.search->go_on(most - pair.search->boxes() / 2, stop);

@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                 23, 29, 31, 37, 41, 43, 47, 53};
-constexpr std::size_t kClimbs = 10;        ///< from the best places
-constexpr std::size_t kMostSteps = 20'000;  ///< of a search for the nearest triangles
+constexpr std::size_t kFirstSamples = 50;
+constexpr std::size_t kClimbs = 4;  ///< from the best places of each time
+constexpr std::size_t kMostSteps = 5'000;  ///< of a search for the nearest triangles
 constexpr std::size_t kFirstBoxes = 30;     ///< before contacts are looked for
 constexpr std::size_t kMostItems = 6'000;  ///< of a box; then clusters are not cut any more
 
@@ -154,11 +155,12 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   if (decided()) return;
   searched_ = true;
   const auto& [low, high] = *chain_.limits();
-  const std::size_t samples = middle_.empty() ? 1 : samples_;
+  const std::size_t samples =
+      middle_.empty() ? 1 : std::min(samples_, std::max(kFirstSamples, 2 * sampled_));
   std::vector<std::pair<double, std::vector<double>>> near;
   const double touching = 1e-11 * inner_.gaps().reach();
-  bool always = true;
-  for (std::size_t i = 0; i < samples && !stop(); ++i) {
+  for (; sampled_ < samples && !stop(); ++sampled_) {
+    const std::size_t i = sampled_;
     std::vector<double> values = middle_;
     for (std::size_t v = 0; v < values.size() && i > 0; ++v)
       values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
@@ -166,13 +168,12 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
     if (at.upper <= touching) {
       if (depth_.lower == 0) show_contact(values);
     } else {
-      always = false;
+      always_ = false;
       near.emplace_back(at.upper, std::move(values));
     }
-    if (!always && verdict_ == Verdict::CanTouch) return;
-    if (always && i >= 40) break;
+    if (!always_ && verdict_ == Verdict::CanTouch) return;
   }
-  if (always && verdict_ == Verdict::CanTouch) {
+  if (always_ && verdict_ == Verdict::CanTouch) {
     std::size_t left = 3'000;
     if (meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
     return;
@@ -293,7 +294,21 @@ void Search::look_at(std::vector<double> middle, std::vector<double> half, const
 void Search::end_proof() {
   // No surfaces meet anywhere; so what one solid holds of the other it holds everywhere.
   motion_.set(middle_, std::vector<double>(middle_.size(), 0));
-  verdict_ = outer_.holds_part(motion_) ? Verdict::Always : Verdict::Never;
+  switch (outer_.held(motion_)) {
+    case Contact::Held::Nothing:
+      verdict_ = Verdict::Never;
+      break;
+    case Contact::Held::Part:
+      // The outer meshes' solids may be larger than the shapes: the inner ones have to say so.
+      if (inner_.held(motion_) == Contact::Held::Part) {
+        verdict_ = Verdict::Always;
+        break;
+      }
+      [[fallthrough]];
+    default:
+      exhausted_ = true;
+      proved_ = 0;
+  }
 }
 
 void Search::begin(const std::function<bool()>& stop) {

@@ -26,8 +26,8 @@ class Search {
 
   /// Whether the whole box of the limits, or few parts of it, are enough for a proof.
   void begin(const std::function<bool()>& stop);
-  /// Looks at places all over the limits, and goes on to others from those where the links are
-  /// near.
+  /// Looks at some more places all over the limits, and goes on to others from those where the
+  /// links are near. Each time at as many as before.
   void look_for_contacts(const std::function<bool()>& stop);
   /// Goes on with the proof for so many boxes.
   void go_on(std::size_t boxes, const std::function<bool()>& stop);
@@ -86,7 +86,8 @@ class Search {
 
   Chain chain_;
   Contact outer_, inner_;
-  std::size_t samples_;
+  std::size_t samples_, sampled_ = 0;
+  bool always_ = true;  ///< so far all places were contacts
   const HullTree *tree_a_, *tree_b_;
   mutable BoxMotion motion_;
   std::vector<double> middle_, half_;  ///< of the limits

@@ -1,0 +1,192 @@
+// Pairs decided against exact meshes by other code, in configurations at random.
+
+#include <gtest/gtest.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/judge/solid.h>
+#include <kaboum/pairs/decide.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "robots.h"
+
+namespace kaboum::pairs {
+namespace {
+
+using geom::Vec3;
+using test::box_mesh;
+using test::TestRobot;
+
+class Oracle {
+ public:
+  explicit Oracle(const TestRobot& of) : robot_(of.robot) {
+    for (const LinkSurface& s : of.surfaces)
+      solids_[s.link] = std::make_unique<judge::Solid>(s.outer);
+  }
+  [[nodiscard]] std::vector<geom::Transform> places(const std::vector<double>& q) const {
+    return judge::places(robot_, {}, q);
+  }
+  [[nodiscard]] bool meet(const std::vector<geom::Transform>& at, const DecidedPair& pair) const {
+    return solids_.at(pair.a)->meets(at[pair.a], *solids_.at(pair.b), at[pair.b]);
+  }
+  /// The second link moved by a vector.
+  [[nodiscard]] bool meet_moved(std::vector<geom::Transform> at, const DecidedPair& pair,
+                                const Vec3& by) const {
+    at[pair.b].translation += by;
+    return meet(at, pair);
+  }
+
+ private:
+  const robot::Robot& robot_;
+  std::map<std::uint32_t, std::unique_ptr<judge::Solid>> solids_;
+};
+
+TEST(DecidedPairs, AgreeWithMeshesInConfigurationsAtRandom) {
+  std::size_t never = 0, always = 0, touch = 0, open = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const TestRobot of = test::random_robot(seed);
+    const std::vector<DecidedPair> pairs =
+        decide_pairs(of.robot, of.surfaces, {.most_boxes = 3'000, .samples = 60});
+    ASSERT_EQ(pairs.size(), 15U);
+    const Oracle oracle(of);
+    Random random(seed);
+    for (const DecidedPair& pair : pairs) {
+      never += pair.verdict == Verdict::Never ? 1 : 0;
+      always += pair.verdict == Verdict::Always ? 1 : 0;
+      touch += pair.verdict == Verdict::CanTouch ? 1 : 0;
+      open += pair.verdict == Verdict::Open ? 1 : 0;
+      EXPECT_LE(pair.nearest.lower, pair.nearest.upper);
+      if (pair.verdict != Verdict::CanTouch && pair.verdict != Verdict::Always) continue;
+      const auto at = oracle.places(pair.q);
+      EXPECT_TRUE(oracle.meet(at, pair)) << seed << ": " << pair.a << " " << pair.b;
+      if (pair.depth.lower > 0) {
+        EXPECT_LE(pair.depth.lower, pair.depth.upper);
+        // No translation by less than the lower bound parts them.
+        for (int i = 0; i < 20; ++i) {
+          const Vec3 by = 0.999 * pair.depth.lower *
+                          (test::random_vector(random, 1) + Vec3(0, 1e-3, 0)).normalized();
+          EXPECT_TRUE(oracle.meet_moved(at, pair, by)) << seed << ": " << pair.a << " " << pair.b;
+        }
+      }
+    }
+    for (int i = 0; i < 400; ++i) {
+      const std::vector<double> q = test::random_configuration(of.robot, random);
+      const auto at = oracle.places(q);
+      for (const DecidedPair& pair : pairs) {
+        if (pair.verdict == Verdict::Never) {
+          ASSERT_FALSE(oracle.meet(at, pair)) << seed << ": " << pair.a << " " << pair.b;
+        } else if (pair.verdict == Verdict::Always) {
+          ASSERT_TRUE(oracle.meet(at, pair)) << seed << ": " << pair.a << " " << pair.b;
+        }
+      }
+    }
+  }
+  // The test is about something, and little is left.
+  EXPECT_GT(never, 100U);
+  EXPECT_GT(always, 10U);
+  EXPECT_GT(touch, 50U);
+  EXPECT_LT(open, 30U);
+}
+
+/// A box at the end of a turning arm, over a fixed box: how near it comes is known.
+TestRobot arm_over_table(double gap) {
+  TestRobot out;
+  out.robot.name = "arm";
+  out.robot.links = {{"table", {}, {}}, {"post", {}, {}}, {"arm", {}, {}}};
+  robot::Joint shoulder, elbow;
+  shoulder.name = "shoulder";
+  shoulder.type = elbow.type = robot::JointType::Revolute;
+  shoulder.axis = Vec3::UnitZ();
+  elbow.name = "elbow";
+  elbow.parent = 1;
+  elbow.axis = Vec3::UnitY();
+  elbow.variable = 1;
+  elbow.origin.translation = Vec3(0, 0, 1);
+  out.robot.joints = {shoulder, elbow};
+  out.robot.variables = {{"shoulder", -3.0, 3.0}, {"elbow", -2.0, 2.0}};
+  // The corner of the arm's box that comes lowest is at (0.5, ±0.1, −0.1) turned down.
+  const double reach = std::hypot(0.5, 0.1);
+  const double top = 1 - reach - gap;
+  out.surfaces = {{0, box_mesh({-1, -1, top - 0.2}, {1, 1, top}), {}},
+                  {1, box_mesh({-0.02, -0.02, 0.9}, {0.02, 0.02, 0.95}), {}},
+                  {2, box_mesh({0.1, -0.1, -0.1}, {0.5, 0.1, 0.1}), {}}};
+  return out;
+}
+
+const DecidedPair& pair_of(const std::vector<DecidedPair>& pairs, std::uint32_t a, std::uint32_t b) {
+  return *std::ranges::find_if(pairs, [&](const DecidedPair& p) { return p.a == a && p.b == b; });
+}
+
+TEST(DecidedPairs, ATenthOfAMillimetreApartIsNeverAndIntoEachOtherIsShown) {
+  for (const double gap : {1e-2, 1e-3, 1e-4}) {
+    const TestRobot apart = arm_over_table(gap), deep = arm_over_table(-gap);
+    const auto never = decide_pairs(apart.robot, apart.surfaces, {});
+    EXPECT_EQ(pair_of(never, 0, 2).verdict, Verdict::Never) << gap;
+    EXPECT_LE(pair_of(never, 0, 2).nearest.lower, gap);
+    EXPECT_GE(pair_of(never, 0, 2).nearest.upper, gap * (1 - 1e-9));
+    const auto touch = decide_pairs(deep.robot, deep.surfaces, {});
+    EXPECT_EQ(pair_of(touch, 0, 2).verdict, Verdict::CanTouch) << gap;
+    EXPECT_GT(pair_of(touch, 0, 2).depth.lower, 0);
+    EXPECT_LE(pair_of(touch, 0, 2).depth.lower, gap);
+    EXPECT_GE(pair_of(touch, 0, 2).depth.upper, pair_of(touch, 0, 2).depth.lower);
+  }
+}
+
+TEST(DecidedPairs, WhatIsInsideAlwaysTouchesAndWhatIsInACavityIsNotSaidTo) {
+  TestRobot of;
+  of.robot.name = "nut";
+  of.robot.links = {{"outer", {}, {}}, {"middle", {}, {}}, {"inner", {}, {}}};
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    robot::Joint joint;
+    joint.name = "j" + std::to_string(i);
+    joint.type = robot::JointType::Revolute;
+    joint.parent = i;
+    joint.variable = i;
+    of.robot.joints.push_back(joint);
+    of.robot.variables.push_back({joint.name, -1.0, 1.0});
+  }
+  const geom::Mesh small = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
+  of.surfaces = {{0, box_mesh({-1, -1, -1}, {1, 1, 1}), {}}, {2, small, {}}};
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Always);
+  test::append(of.surfaces[0].outer, box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, true));
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Open);
+}
+
+TEST(DecidedPairs, OuterMeshesProveAndInnerOnesShow) {
+  TestRobot of = arm_over_table(0.001);
+  // Outer meshes meet; inner ones do not: neither can be said.
+  of.surfaces[2].inner = of.surfaces[2].outer;
+  of.surfaces[2].outer = box_mesh({0.1, -0.1, -0.1}, {0.51, 0.1, 0.1});
+  EXPECT_EQ(pair_of(decide_pairs(of.robot, of.surfaces, {.most_boxes = 2'000}), 0, 2).verdict,
+            Verdict::Open);
+}
+
+TEST(DecidedPairs, TheSameForAnyOrderAndTwoSurfacesOfALinkAreRefused) {
+  TestRobot of = test::random_robot(3);
+  const auto first = decide_pairs(of.robot, of.surfaces, {.most_boxes = 1'000, .samples = 40});
+  std::ranges::reverse(of.surfaces);
+  const auto second = decide_pairs(of.robot, of.surfaces, {.most_boxes = 1'000, .samples = 40});
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].verdict, second[i].verdict);
+    EXPECT_EQ(first[i].q, second[i].q);
+    EXPECT_EQ(first[i].nearest.lower, second[i].nearest.lower);
+    EXPECT_EQ(first[i].depth.lower, second[i].depth.lower);
+  }
+  of.surfaces.push_back(of.surfaces.front());
+  EXPECT_ANY_THROW(decide_pairs(of.robot, of.surfaces, {}));
+}
+
+TEST(DecidedPairs, WhenTheTimeIsUpTheRestIsOpen) {
+  const TestRobot of = test::random_robot(5);
+  const auto pairs = decide_pairs(of.robot, of.surfaces, {.most_seconds = 1e-9});
+  EXPECT_EQ(pairs.size(), 15U);
+  for (const DecidedPair& pair : pairs) {
+    EXPECT_LE(pair.nearest.lower, pair.nearest.upper);
+    EXPECT_NE(pair.verdict, Verdict::CanTouch);
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::pairs
