@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kaboum::bcd {
 namespace {
 
 /// Relative allowance for rounding of lengths.
 constexpr double kFitRounding = 1e-11;
-constexpr int kCircleSteps = 60;   ///< towards the centre of a smallest circle
+constexpr int kCircleSteps = 40;   ///< towards the centre of a smallest circle
 constexpr int kSectionSteps = 24;  ///< of a golden section: leaves 1e-5 of the length
 
 double distance_from_segment(const Vec3& from, const Vec3& to, const Vec3& p) {
@@ -115,16 +116,18 @@ double room(const ParallelBody& body, const AxesBox& box, int k, bool high, doub
                       box.high.cwiseAbs().maxCoeff() + h);
   const Eigen::Matrix3d turn = box.axes.transpose();
   const Eigen::Matrix3d size = turn.cwiseAbs();
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   double best = most;
-  const auto descend = [&](const geom::Box3& node) {
-    if (best < 0) return false;  // it meets one
+  const auto bound = [&](const geom::Box3& node) {
+    if (best < 0) return kNever;  // it meets one
     const Vec3 c = turn * (node.center() - box.center);
     const Vec3 half = size * (0.5 * (node.max - node.min)) + Vec3::Constant(h + rounding);
     for (const int j : {u, v})
-      if (c[j] - half[j] > box.high[j] || c[j] + half[j] < box.low[j]) return false;
-    return sign * c[k] + half[k] >= begin && sign * c[k] - half[k] <= face + best;
+      if (c[j] - half[j] > box.high[j] || c[j] + half[j] < box.low[j]) return kNever;
+    if (sign * c[k] + half[k] < begin) return kNever;
+    return sign * c[k] - half[k] - face;
   };
-  body.visit_caps(descend, [&](const ParallelBody::Cap& cap) {
+  body.visit_caps(best, bound, [&](const ParallelBody::Cap& cap) {
     const Vec3 c = turn * (cap.center - box.center), n = turn * cap.normal;
     double side = 0;  // the most that the other two axes add
     for (const int j : {u, v}) {
@@ -155,9 +158,9 @@ void grow(const ParallelBody& body, AxesBox& box, std::span<const int> order, do
     for (const int face : order) {
       const int k = face / 2;
       const bool high = face % 2 != 0;
-      const double most =
-          share < 1 ? std::max(share * (box.high - box.low).maxCoeff(), body.distance())
-                    : 1e3 * far;
+      const double most = share < 1
+                              ? std::max(share * (box.high - box.low).maxCoeff(), body.distance())
+                              : 1e3 * far;
       const double way = room(body, box, k, high, most);
       if (!(way > least)) continue;
       (high ? box.high : box.low)[k] += high ? way : -way;
@@ -167,25 +170,26 @@ void grow(const ParallelBody& body, AxesBox& box, std::span<const int> order, do
   }
 }
 
-double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, double most) {
+double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, double least) {
   const double h = body.cap_reach();
   const Vec3 middle = 0.5 * (from + to);
   const double half = 0.5 * (to - from).norm();
   const double rounding = kFitRounding * (middle.cwiseAbs().maxCoeff() + half + h);
-  double best = most;
-  const auto descend = [&](const geom::Box3& node) {
+  double best = std::numeric_limits<double>::infinity();
+  const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
+  const auto bound = [&](const geom::Box3& node) {
+    if (best < least) return std::numeric_limits<double>::infinity();
     // From the segment to the ball round the box, and from its box to the box.
-    const Vec3 c = node.center();
-    const Vec3 reach = 0.5 * (node.max - node.min);
-    if (distance_from_segment(from, to, c) - reach.norm() - h >= best) return false;
-    const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
-    return (low - node.max).cwiseMax(node.min - high).cwiseMax(0.0).norm() - h < best;
+    const double to_ball =
+        distance_from_segment(from, to, node.center()) - 0.5 * (node.max - node.min).norm();
+    const double to_box = (low - node.max).cwiseMax(node.min - high).cwiseMax(0.0).norm();
+    return std::max(to_ball, to_box) - h - rounding;
   };
-  body.visit_caps(descend, [&](const ParallelBody::Cap& cap) {
+  body.visit_caps(best, bound, [&](const ParallelBody::Cap& cap) {
     if (distance_from_segment(from, to, cap.center) - h >= best) return;
     best = std::min(best, distance_from_cap(cap, h, from, to) - rounding);
   });
-  return std::max(best, 0.0);
+  return best < least || !std::isfinite(best) ? 0.0 : std::max(best, 0.0);
 }
 
 AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,9 +43,8 @@ inline bool fits(const ParallelBody& body, const AxesBox& box) {
 }
 
 /// The distance of a segment with a point in the body to the nearest cap, or less; 0 where it meets
-/// one; at most `most`. [length]
-double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to,
-                 double most = std::numeric_limits<double>::infinity());
+/// one, or where it is less than `least`. [length]
+double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, double least = 0);
 
 /// The box along the axes round points, enlarged by `spare` on all sides.
 AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare);

@@ -4,8 +4,10 @@
 #include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
+#include <array>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -54,12 +56,32 @@ class ParallelBody {
   };
   [[nodiscard]] double cap_reach() const { return h_; }
 
-  /// Calls visit(cap) for caps whose centres lie in boxes for which descend(box) is true. All that
-  /// is beyond the distance, and near the boundary, is in a cap: a connected set that has a point
-  /// nearer than that, and meets no cap, lies in the body.
-  template <class Descend, class Visit>
-  void visit_caps(const Descend& descend, const Visit& visit) const {
-    tree_.traverse(descend, [&](std::uint32_t i) { visit(caps_[i]); });
+  /// Calls visit(cap) for caps whose centres lie in boxes for which bound(box) is at most `limit`,
+  /// which visit may change; boxes of small bounds come first. All that is beyond the distance, and
+  /// near the boundary, is in a cap: a connected set that has a point nearer than that, and meets
+  /// no cap, lies in the body.
+  template <class Bound, class Visit>
+  void visit_caps(const double& limit, const Bound& bound, const Visit& visit) const {
+    if (caps_.empty()) return;
+    const auto nodes = tree_.nodes();
+    std::array<std::pair<double, std::uint32_t>, geom::Bvh::kMaxDepth> stack;
+    int size = 0;
+    stack[size++] = {bound(nodes[0].box), 0};
+    while (size > 0) {
+      const auto [known, index] = stack[--size];
+      if (known > limit) continue;
+      const geom::Bvh::Node& node = nodes[index];
+      if (node.leaf()) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+          visit(caps_[tree_.order()[i]]);
+        continue;
+      }
+      std::pair<double, std::uint32_t> near{bound(nodes[index + 1].box), index + 1};
+      std::pair<double, std::uint32_t> far{bound(nodes[node.first].box), node.first};
+      if (far.first < near.first) std::swap(near, far);
+      if (far.first <= limit) stack[size++] = far;
+      if (near.first <= limit) stack[size++] = near;
+    }
   }
 
  private:

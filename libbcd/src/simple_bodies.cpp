@@ -28,11 +28,11 @@ using geom::Mesh;
 /// Shares of ε: what capsules and boxes leave of it, so that polytopes round the bodies are within
 /// it; by which triangles, and by which points, are held with room to spare; the size of caps.
 constexpr double kLeft = 5e-3, kTriangleSpare = 2e-3, kPointSpare = 0.02, kCaps = 0.15;
-constexpr int kPatches = 60;                    ///< rounds of points added where no body is
-constexpr std::size_t kAddedPoints = 200;       ///< in a round
-constexpr int kTriangleCuts = 24;               ///< of a triangle
-constexpr std::size_t kMostSurface = 10'000, kMostCorners = 3'000, kInside = 20'000;
-constexpr std::size_t kInsideShown = 29;        ///< every so manieth is to be held at first
+constexpr int kPatches = 60;               ///< rounds of points added where no body is
+constexpr std::size_t kAddedPoints = 200;  ///< in a round
+constexpr int kTriangleCuts = 24;          ///< of a triangle
+constexpr std::size_t kMostSurface = 6'000, kMostCorners = 3'000, kInside = 20'000;
+constexpr std::size_t kInsideShown = 29;  ///< every so manieth is to be held at first
 constexpr std::size_t kMostFrames = 4;
 
 struct SimpleBody {
@@ -68,13 +68,13 @@ struct SimpleEffort {
 SimpleEffort effort_for(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {1000, 250, 300, 1, 3'000};
+      return {800, 120, 300, 1, 2'000};
     case Effort::Normal:
       break;
     case Effort::Best:
       return {4000, 1500, 5000, 6, 100'000};
   }
-  return {2000, 500, 1000, 3, 15'000};
+  return {1500, 300, 1000, 2, 8'000};
 }
 
 class SimpleBodySearch {
@@ -97,7 +97,8 @@ class SimpleBodySearch {
     std::vector<SimpleBody> bodies;
     if (options_.max_bodies) {
       bodies = within_count(*options_.max_bodies);
-      if (options_.epsilon && epsilon_ <= *options_.epsilon) bodies = cover(*options_.epsilon, kAny);
+      if (options_.epsilon && epsilon_ <= *options_.epsilon)
+        bodies = cover(*options_.epsilon, kAny);
     } else {
       bodies = cover(*options_.epsilon, kAny);
     }
@@ -221,8 +222,24 @@ class SimpleBodySearch {
         for (int k = 0; k < 3; ++k)
           if (std::abs(surface_[i].inwards.dot(frames_.back().col(k))) > 0.999) taken[i] = 1;
     }
-    if (const auto principal = principal_box(points_)) frames_.push_back(principal->axes);
+    const auto principal = principal_box(points_);
+    if (principal && std::ranges::none_of(frames_, [&](const Eigen::Matrix3d& frame) {
+          return are_alike(frame, principal->axes);
+        }))
+      frames_.push_back(principal->axes);
     if (frames_.empty()) frames_.push_back(Eigen::Matrix3d::Identity());
+    for (const Eigen::Matrix3d& frame : frames_)
+      for (int k = 0; k < 3; ++k) add_direction(frame.col(k), directions_);
+  }
+
+  /// Frames of the same boxes, nearly.
+  static bool are_alike(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+    return ((a.transpose() * b).cwiseAbs().colwise().maxCoeff().array() > 0.9999).all();
+  }
+
+  static void add_direction(const Vec3& d, std::vector<Vec3>& to) {
+    if (std::ranges::none_of(to, [&](const Vec3& e) { return std::abs(e.dot(d)) > 0.9999; }))
+      to.push_back(d);
   }
 
   static Eigen::Matrix3d frame_of(const Vec3& first, const Vec3& second) {
@@ -264,17 +281,17 @@ class SimpleBodySearch {
       }
       end = from + 64 * spacing_ * Vec3::UnitX();
     }
-    const double radius = clearance(*body_, from, end, 2 * box_.diagonal());
+    const double radius = clearance(*body_, from, end, least);
     if (!(radius >= least)) return std::nullopt;
     return SimpleBody{SimpleBody::Kind::Capsule, {from, end, radius}, {}};
   }
 
   /// How far a ball of a radius may roll along a direction.
   [[nodiscard]] Vec3 rolled(Vec3 at, const Vec3& direction, double radius) const {
-    constexpr int kRolls = 40;
+    constexpr int kRolls = 16;
     for (int step = 0; step < kRolls; ++step) {
       const double way = body_->radius_about(at) - radius;
-      if (!(way > 0.02 * epsilon_)) break;
+      if (!(way > 0.05 * epsilon_)) break;
       at += way * direction;
     }
     return at;
@@ -285,9 +302,7 @@ class SimpleBodySearch {
   [[nodiscard]] std::pair<Vec3, Vec3> centres_at(const SurfacePoint& p) const {
     constexpr double kHeld = 0.98;
     constexpr int kHalvings = 8, kPlaces = 6;
-    const auto radius = [&](double depth) {
-      return body_->radius_about(p.at + depth * p.inwards);
-    };
+    const auto radius = [&](double depth) { return body_->radius_about(p.at + depth * p.inwards); };
     double low = 0, high = 0.5 * box_.diagonal() + 2 * epsilon_;
     for (int turn = 0; turn < kHalvings; ++turn) {
       const double middle = 0.5 * (low + high);
@@ -308,13 +323,11 @@ class SimpleBodySearch {
       const double radius = body_->radius_about(c);
       if (!(radius > 0)) continue;
       if (options_.kinds.balls) out.push_back(ball(c, radius));
-      for (const Eigen::Matrix3d& frame : frames_)
-        for (int k = 0; k < 3; ++k)
-          for (const double share : {0.98, 0.85}) {
-            const Vec3 d = frame.col(k);
-            const Vec3 from = rolled(c, -d, share * radius), to = rolled(c, d, share * radius);
-            if (const auto found = capsule(from, to, 0.5 * radius)) out.push_back(*found);
-          }
+      for (const Vec3& d : directions_)
+        for (const double share : {0.97, 0.85}) {
+          const Vec3 from = rolled(c, -d, share * radius), to = rolled(c, d, share * radius);
+          if (const auto found = capsule(from, to, 0.5 * radius)) out.push_back(*found);
+        }
     }
   }
 
@@ -452,22 +465,20 @@ class SimpleBodySearch {
     if (points.empty()) return std::nullopt;
     std::vector<Eigen::Matrix3d> axes = frames_;
     std::vector<Vec3> directions;
-    if (const auto principal = principal_box(points)) axes.push_back(principal->axes);
+    const auto add_axes = [&](const Eigen::Matrix3d& frame) {
+      if (std::ranges::none_of(axes, [&](const Eigen::Matrix3d& a) { return are_alike(a, frame); }))
+        axes.push_back(frame);
+    };
+    const auto principal = principal_box(points);
+    if (principal) add_axes(principal->axes);
     for (const SimpleBody& one : like) {
-      if (one.kind == SimpleBody::Kind::Box) {
-        axes.push_back(one.box.axes);
-      } else if (const Vec3 along = one.capsule.to - one.capsule.from; along.norm() > 100 * spacing_) {
-        directions.push_back(along.normalized());
-        axes.push_back(frame_of(along, Vec3::Zero()));
-      }
+      if (one.kind == SimpleBody::Kind::Box)
+        add_axes(one.box.axes);
+      else if (const Vec3 along = one.capsule.to - one.capsule.from; along.norm() > 100 * spacing_)
+        add_direction(along.normalized(), directions);
     }
-    for (const Eigen::Matrix3d& frame : axes)
-      for (int k = 2; k >= 0; --k) {
-        const Vec3 d = frame.col(k);
-        if (std::ranges::none_of(directions,
-                                 [&](const Vec3& e) { return std::abs(e.dot(d)) > 0.9999; }))
-          directions.push_back(d);
-      }
+    if (principal) add_direction(principal->axes.col(2), directions);
+    for (const Vec3& d : directions_) add_direction(d, directions);
     using Kind = SimpleBody::Kind;
     const SimpleKinds& kinds = options_.kinds;
     if (kinds.balls && cost_of(Kind::Ball) < below)
@@ -570,6 +581,30 @@ class SimpleBodySearch {
     }
   }
 
+  /// Leaves bodies out whose points others can hold beside their own, those with fewest such points
+  /// first.
+  void leave_out_replaceable(std::vector<SimpleBody>& bodies, std::size_t& tries) const {
+    bool fewer = true;
+    while (fewer && bodies.size() > 1) {
+      fewer = false;
+      const Holders holders = holders_of(bodies);
+      std::vector<std::pair<std::size_t, std::size_t>> order;
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        order.emplace_back(only_of(holders, {b}).size(), b);
+      std::ranges::sort(order);
+      for (const auto& [count, b] : order) {
+        if (tries == 0) return;
+        --tries;
+        std::vector<SimpleBody> rest = bodies;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(b));
+        if (!given_to(rest, only_of(holders, {b})).empty()) continue;
+        bodies = std::move(rest);
+        fewer = true;
+        break;
+      }
+    }
+  }
+
   /// Bodies of cheaper kinds where these hold what only the dear ones do.
   void make_cheaper(std::vector<SimpleBody>& bodies) const {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -593,8 +628,7 @@ class SimpleBodySearch {
     out.capsule.to = geom::to_float32(one.capsule.to);
     const double most = one.kind == SimpleBody::Kind::Ball
                             ? body_->radius_about(out.capsule.from)
-                            : clearance(*body_, out.capsule.from, out.capsule.to,
-                                        2 * box_.diagonal());
+                            : clearance(*body_, out.capsule.from, out.capsule.to);
     double radius = geom::to_float32(most);
     if (radius > most) radius -= geom::float32_spacing(radius * (1 - 1e-7));
     out.capsule.radius = radius;
@@ -716,24 +750,32 @@ class SimpleBodySearch {
   [[nodiscard]] std::vector<Vec3> given_to(std::vector<SimpleBody>& bodies,
                                            std::vector<Vec3> free) const {
     constexpr std::size_t kNear = 3;
-    for (std::size_t turn = 0; turn < 2 * bodies.size() && !free.empty(); ++turn) {
-      const Vec3 p = free[turn % free.size()];
+    std::size_t failed = 0;
+    for (std::size_t turn = 0; turn < 2 * bodies.size() + 4 && failed < 3 && !free.empty();
+         ++turn) {
+      const std::size_t before = free.size();
+      const Vec3 p = free[7919 * turn % free.size()];
       std::vector<std::pair<double, std::size_t>> near;
       for (std::size_t b = 0; b < bodies.size(); ++b) near.emplace_back(bodies[b].beyond(p), b);
       std::ranges::sort(near);
       near.resize(std::min(near.size(), kNear));
       const Holders holders = holders_of(bodies);
       for (const auto& [away, b] : near) {
-        std::vector<Vec3> wanted = only_of(holders, {b});
-        for (const Vec3& q : free)
-          if ((q - p).norm() <= epsilon_) wanted.push_back(q);
-        wanted.push_back(p);
-        const auto one = body_for(wanted, {bodies[b]}, 1e9);
+        const std::vector<Vec3> own = only_of(holders, {b});
+        std::optional<SimpleBody> one;
+        for (const double reach : {1e9, 1.0, 0.2}) {
+          std::vector<Vec3> wanted = own;
+          for (const Vec3& q : free)
+            if ((q - p).norm() <= reach * epsilon_) wanted.push_back(q);
+          one = body_for(wanted, {bodies[b]}, 1e9);
+          if (one) break;
+        }
         if (!one) continue;
         bodies[b] = *one;
         std::erase_if(free, [&](const Vec3& q) { return one->beyond(q) <= -spare_; });
         break;
       }
+      failed += free.size() == before ? 1U : 0U;
     }
     return free;
   }
@@ -747,8 +789,8 @@ class SimpleBodySearch {
       if (free.empty()) return bodies;
       points_.insert(points_.end(), free.begin(), free.end());
       std::erase_if(free, [&](const Vec3& p) {
-        return std::ranges::any_of(
-            bodies, [&](const SimpleBody& b) { return b.beyond(p) <= -spare_; });
+        return std::ranges::any_of(bodies,
+                                   [&](const SimpleBody& b) { return b.beyond(p) <= -spare_; });
       });
       // What is held, but not with enough to spare, counts as free.
       if (3 * round < kPatches) free = given_to(bodies, std::move(free));
@@ -790,6 +832,8 @@ class SimpleBodySearch {
       if (bodies.empty()) break;
       std::size_t tries = effort_.merges;
       merge(bodies, tries);
+      tries = effort_.merges / 20;
+      leave_out_replaceable(bodies, tries);
       bodies = completed(std::move(bodies), most);
       if (bodies.empty()) continue;
       // Points where gaps were are known by now.
@@ -797,6 +841,8 @@ class SimpleBodySearch {
         std::vector<SimpleBody> fewer = bodies;
         tries = effort_.merges;
         merge(fewer, tries);
+        tries = effort_.merges / 20;
+        leave_out_replaceable(fewer, tries);
         if (options_.kinds.balls) make_cheaper(fewer);
         fewer = completed(std::move(fewer), most);
         leave_out_unneeded(fewer);
@@ -819,9 +865,8 @@ class SimpleBodySearch {
   }
 
   static double cost(const std::vector<SimpleBody>& bodies) {
-    return std::accumulate(bodies.begin(), bodies.end(), 0.0, [](double sum, const SimpleBody& b) {
-      return sum + cost_of(b.kind);
-    });
+    return std::accumulate(bodies.begin(), bodies.end(), 0.0,
+                           [](double sum, const SimpleBody& b) { return sum + cost_of(b.kind); });
   }
 
   /// The least ε found with so many bodies.
@@ -853,12 +898,11 @@ class SimpleBodySearch {
   /// The farthest of some points of the bodies. [length]
   [[nodiscard]] double farthest(const std::vector<SimpleBody>& bodies) const {
     double out = 0;
-    const auto look = [&](const Vec3& p) {
-      out = std::max(out, body_->signed_distance(p).lower);
-    };
+    const auto look = [&](const Vec3& p) { out = std::max(out, body_->signed_distance(p).lower); };
     for (const SimpleBody& one : bodies) {
       if (one.kind == SimpleBody::Kind::Box) {
-        for (const Vec3& p : one.box.corners()) look(one.box.center + (1 - 1e-6) * (p - one.box.center));
+        for (const Vec3& p : one.box.corners())
+          look(one.box.center + (1 - 1e-6) * (p - one.box.center));
         continue;
       }
       for (const Vec3& end : {one.capsule.from, one.capsule.to})
@@ -884,6 +928,7 @@ class SimpleBodySearch {
   std::vector<Vec3> points_;  ///< to be held
   std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
   std::vector<Eigen::Matrix3d> frames_;
+  std::vector<Vec3> directions_;  ///< the axes of all frames
   std::vector<SimpleBody> candidates_;
 };
 

@@ -385,7 +385,8 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   if (request.body_kind != SetRequest::BodyKind::Polytopes)
     throw Error(ErrorCode::LimitReached,
                 "no " + std::string(plural_of(request.body_kind)) +
-                    " were found that pass the exact check (" + wrong + "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
+                    " were found that pass the exact check (" + wrong +
+                    "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
 }

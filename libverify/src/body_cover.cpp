@@ -171,8 +171,8 @@ class TriangleCover {
   }
 
   [[nodiscard]] bool is_held(const Corner& c, const std::vector<std::uint32_t>& near) const {
-    return std::ranges::any_of(
-        near, [&](std::uint32_t b) { return holds(bodies_[b], t_, c, error_); });
+    return std::ranges::any_of(near,
+                               [&](std::uint32_t b) { return holds(bodies_[b], t_, c, error_); });
   }
 
   [[nodiscard]] bool in_one_body(const Part& part) const {
@@ -240,7 +240,8 @@ std::vector<TriangleAnswer> decide_triangles(const geom::Mesh& mesh,
       std::vector<std::uint32_t> near;
       for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         const geom::Box3& own = bodies[b].box;
-        if ((box.min.array() <= own.max.array()).all() && (own.min.array() <= box.max.array()).all())
+        if ((box.min.array() <= own.max.array()).all() &&
+            (own.min.array() <= box.max.array()).all())
           near.push_back(b);
       }
       out[t] = TriangleCover(corners, bodies).decide(std::move(near));
@@ -349,8 +350,8 @@ class VoidSearch {
       all.push_back(nearest_of_core(bodies_[b], cell.center));
       least = std::min(least, all.back().upper - bodies_[b].body->radius);
     }
-    const double most = (least + 2 * reach_of(cell)) +
-                        4 * kUnit * (std::abs(least) + 2 * reach_of(cell));
+    const double most =
+        (least + 2 * reach_of(cell)) + 4 * kUnit * (std::abs(least) + 2 * reach_of(cell));
     std::vector<Near> near;
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -368,8 +369,7 @@ class VoidSearch {
       const geom::ConvexBody& body = *bodies_[cell.active[i]].body;
       // Else the farthest corner is not in it, or not all are.
       if (near[i].lower > body.radius) continue;
-      if (near[i].upper + reach_of(cell) + 4 * kUnit * (near[i].upper + body.radius) <=
-          body.radius)
+      if (near[i].upper + reach_of(cell) + 4 * kUnit * (near[i].upper + body.radius) <= body.radius)
         return true;
       bool all = true;
       for (int c = 0; c < 8 && all; ++c) {
@@ -409,9 +409,8 @@ class VoidSearch {
     const std::vector<Vec3>& v = core.vertices;
     for (const geom::Triangle& t : core.triangles) {
       const Triple<Approx> a = numbers<Approx>(v[t[0]]);
-      const Triple<Approx> n =
-          membership::cross(membership::minus(numbers<Approx>(v[t[1]]), a),
-                            membership::minus(numbers<Approx>(v[t[2]]), a));
+      const Triple<Approx> n = membership::cross(membership::minus(numbers<Approx>(v[t[1]]), a),
+                                                 membership::minus(numbers<Approx>(v[t[2]]), a));
       const Vec3 normal(n[0].value, n[1].value, n[2].value);
       const double length = (normal.norm() + n[0].error + n[1].error + n[2].error) * kGrowth;
       const Approx height = dot(n, membership::minus(a, numbers<Approx>(near.at)));
@@ -436,9 +435,8 @@ class VoidSearch {
       for (const geom::Triangle& t : core.triangles) {
         const std::vector<Vec3>& v = core.vertices;
         const Triple<Approx> a = numbers<Approx>(v[t[0]]);
-        const Triple<Approx> n =
-            membership::cross(membership::minus(numbers<Approx>(v[t[1]]), a),
-                              membership::minus(numbers<Approx>(v[t[2]]), a));
+        const Triple<Approx> n = membership::cross(membership::minus(numbers<Approx>(v[t[1]]), a),
+                                                   membership::minus(numbers<Approx>(v[t[2]]), a));
         if (Vec3(n[0].value, n[1].value, n[2].value) != normal) continue;
         found = true;
         if (sign_of(dot(n, numbers<Approx>(direction))) != std::optional(Sign::Positive))

@@ -98,8 +98,7 @@ std::optional<bool> near_triangle(const Vec3& a, const Vec3& b, const Vec3& c,
 template <class Number>
 std::optional<bool> is_below(const Vec3& a, const Vec3& b, const Vec3& c, const Triple<Number>& p) {
   const Triple<Number> na = numbers<Number>(a);
-  const Triple<Number> n =
-      cross(minus(numbers<Number>(b), na), minus(numbers<Number>(c), na));
+  const Triple<Number> n = cross(minus(numbers<Number>(b), na), minus(numbers<Number>(c), na));
   return is_not_negative(dot(n, minus(na, p)));
 }
 

@@ -48,7 +48,8 @@ CoverCandidate cover(const Mesh& mesh, const SimpleKinds& kinds, double epsilon)
   geom::ConvexSet set;
   set.bodies = out.bodies;
   const verify::Cover found = verify::verify_cover(mesh, set);
-  EXPECT_EQ(found.convexity.convex.answer, verify::Answer::Verified) << found.convexity.convex.reason;
+  EXPECT_EQ(found.convexity.convex.answer, verify::Answer::Verified)
+      << found.convexity.convex.reason;
   EXPECT_EQ(found.inclusion.solid.answer, verify::Answer::Verified) << found.inclusion.solid.reason;
   EXPECT_EQ(found.inclusion.surface.answer, verify::Answer::Verified)
       << found.inclusion.surface.reason;
@@ -70,7 +71,7 @@ TEST(SimpleBodies, ABarIsOneBox) {
 }
 
 TEST(SimpleBodies, AnLIsTwoBoxes) {
-  const Mesh l = test::merged({bar({4, 1, 1}), bar({1, 4, 1})});
+  const Mesh l = kaboum::test::merged({bar({4, 1, 1}), bar({1, 4, 1})});
   EXPECT_EQ(cover(l, {.boxes = true}, 0.1).bodies.size(), 2U);
 }
 
@@ -86,8 +87,7 @@ TEST(SimpleBodies, ByNumber) {
   options.kinds.boxes = true;
   options.max_bodies = 1;
   options.effort = Effort::Fast;
-  const CoverCandidate one =
-      find_simple_bodies(geom::prepare(bar({4, 1, 2}), {}).solid, options);
+  const CoverCandidate one = find_simple_bodies(geom::prepare(bar({4, 1, 2}), {}).solid, options);
   EXPECT_EQ(one.bodies.size(), 1U);
   EXPECT_LT(one.excess_upper, 0.3);
 }

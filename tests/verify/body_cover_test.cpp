@@ -58,9 +58,8 @@ bool oracle_holds(const geom::ConvexBody& body, const Kernel::Point_3& p) {
 }
 
 bool oracle_holds(const ConvexSet& set, const Vec3& p) {
-  return std::ranges::any_of(set.bodies, [&](const geom::ConvexBody& body) {
-    return oracle_holds(body, exact(p));
-  });
+  return std::ranges::any_of(
+      set.bodies, [&](const geom::ConvexBody& body) { return oracle_holds(body, exact(p)); });
 }
 
 // The corners of a bar and the least capsule that holds them: they decide.
@@ -74,7 +73,8 @@ TEST(BodyCover, OneUlpDecides) {
         to(2 + near(random), near(random), near(random));
     double radius = 0;
     for (const Vec3& v : original.vertices) {
-      const double share = std::clamp((v - from).dot(to - from) / (to - from).squaredNorm(), 0., 1.);
+      const double share =
+          std::clamp((v - from).dot(to - from) / (to - from).squaredNorm(), 0., 1.);
       radius = std::max(radius, (v - from - share * (to - from)).norm());
     }
     for (int k = 0; k < 2; ++k) radius = std::nextafter(radius, 0);

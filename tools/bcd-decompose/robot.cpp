@@ -204,9 +204,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                 "--bodies spheres of a robot: end --output in .yaml (cuRobo), .xrdf, .srdf "
                 "(link_sphere_approximation) or .urdf (spheres as collision shapes)");
   if (o.srdf || !o.preview.empty() || !o.robot.html.empty())
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--srdf, --preview and --html-report need --bodies polytopes of a robot");
+    throw Error(ErrorCode::InvalidArgument,
+                "--srdf, --preview and --html-report need --bodies polytopes of a robot");
   if (o.robot_vertices > 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
@@ -246,16 +245,16 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   } else {
     const SimpleShapes shapes = simple_shapes(bodies.artefact());
     distance += shapes.beyond;
-    io::write_file(o.output, urdf_of_shapes(run.robot, bodies, shapes, run.request.parameters(),
-                                            o.output));
+    io::write_file(o.output,
+                   urdf_of_shapes(run.robot, bodies, shapes, run.request.parameters(), o.output));
   }
-  log(o.common.quiet,
-      o.output + ": " +
-          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
-                   : counted(bodies.artefact().size(), "body", "bodies")) +
-          ", no point farther from its link's shapes than " + number_up(distance) +
-          ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
-          o.input + (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
+  log(o.common.quiet, o.output + ": " +
+                          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
+                                   : counted(bodies.artefact().size(), "body", "bodies")) +
+                          ", no point farther from its link's shapes than " + number_up(distance) +
+                          ", on the mean of links " + number_up(mean_distance(bodies)) +
+                          "; bound-verify robot " + o.input +
+                          (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
   for (const std::string& note : run.notes.lines()) log(o.common.quiet, "note: " + note);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",

@@ -144,9 +144,9 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "and --prepare=wrap where that was; their --html-report has the command.",
       [&o, &app] {
         require_none(contradiction(o.robot.how));
-        const auto given = std::ranges::count_if(
-            std::array{&o.robot.result, &o.robot.spheres, &o.robot.bodies},
-            [](const std::string* file) { return !file->empty(); });
+        const auto given =
+            std::ranges::count_if(std::array{&o.robot.result, &o.robot.spheres, &o.robot.bodies},
+                                  [](const std::string* file) { return !file->empty(); });
         if (given == 0)
           throw Error(ErrorCode::InvalidArgument,
                       "robot: RESULT or --spheres FILE or --bodies FILE is needed");

@@ -1,4 +1,5 @@
-// `bound-verify robot ROBOT --bodies FILE`: whether capsules, boxes and spheres hold a robot's links.
+// `bound-verify robot ROBOT --bodies FILE`: whether capsules, boxes and spheres hold a robot's
+// links.
 #include "robot_bodies.h"
 
 #include <kaboum/base/error.h>
@@ -66,8 +67,7 @@ std::optional<geom::Mesh> prism_in(const Geometry& g, double error) {
   for (int i = 0; i < kSides; ++i) {
     const double angle = 2 * std::acos(-1.0) * i / kSides;
     for (const double z : {-half, half})
-      points.emplace_back(g.origin *
-                          Vec3(radius * std::cos(angle), radius * std::sin(angle), z));
+      points.emplace_back(g.origin * Vec3(radius * std::cos(angle), radius * std::sin(angle), z));
   }
   return geom::convex_hull(points);
 }
@@ -77,8 +77,7 @@ void add_cylinder(const Geometry& g, double error, const std::vector<Geometry>& 
   const double half = 0.5 * g.size.y();
   const Vec3 low = g.origin * Vec3(0, 0, -half), high = g.origin * Vec3(0, 0, half);
   // What the balls at its ends and the cylinder hold.
-  const double radius =
-      std::min({g.size.x(), ball_at(low, shapes), ball_at(high, shapes)}) - error;
+  const double radius = std::min({g.size.x(), ball_at(low, shapes), ball_at(high, shapes)}) - error;
   const bool is_segment = low != high;
   if (is_segment && radius > kLeastCapsule * g.size.x())
     add(out.inside, {{low, high}, {}}, radius);
@@ -153,8 +152,8 @@ std::string open_shape(const std::vector<Geometry>& round, const Bounds& bounds)
     if (robot::is_point(g)) continue;
     if (g.shape == Geometry::Shape::Sphere &&
         std::ranges::any_of(bounds.inside.bodies, [&](const geom::ConvexBody& body) {
-          return body.core.vertices.size() == 1 &&
-                 body.core.vertices[0] == g.origin.translation && body.radius >= g.size.x();
+          return body.core.vertices.size() == 1 && body.core.vertices[0] == g.origin.translation &&
+                 body.radius >= g.size.x();
         }))
       continue;
     const geom::Mesh polytope = *geom::convex_hull(robot::bounding_points(g));
@@ -213,7 +212,7 @@ LinkAnswer judge(const std::string& name, const geom::Mesh& mesh,
   return out;
 }
 
-Json claim_json(const verify::Claim& claim) {
+Json json_of_claim(const verify::Claim& claim) {
   Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
   if (claim.witness) {
     const Vec3& p = claim.witness->point;
@@ -269,8 +268,8 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                      {"shapes", now.shapes},
                      {"triangles", now.triangles},
                      {"claims",
-                      {{"surface", claim_json(now.inclusion.surface)},
-                       {"solid", claim_json(now.inclusion.solid)}}}});
+                      {{"surface", json_of_claim(now.inclusion.surface)},
+                       {"solid", json_of_claim(now.inclusion.solid)}}}});
     if (!common.quiet)
       out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
           << std::endl;

@@ -49,8 +49,7 @@ double largest_of(const std::vector<Vec3>& points) {
 
 SimpleShape sphere_of(const robot::LinkBody& body) {
   const double error = kPoseRounding * (body.points[0].norm() + body.margin);
-  return {Kind::Sphere, body.link, body.points[0], Vec3::Zero(),
-          Vec3(body.margin + error, 0, 0)};
+  return {Kind::Sphere, body.link, body.points[0], Vec3::Zero(), Vec3(body.margin + error, 0, 0)};
 }
 
 SimpleShape capsule_of(const robot::LinkBody& body) {
@@ -102,10 +101,9 @@ double beyond_of(const SimpleShape& box, const robot::LinkBody& body) {
   double out = 0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 half = 0.5 * box.size;
-    const Vec3 corner =
-        box.center + turn * Vec3((i & 1) != 0 ? half.x() : -half.x(),
-                                 (i & 2) != 0 ? half.y() : -half.y(),
-                                 (i & 4) != 0 ? half.z() : -half.z());
+    const Vec3 corner = box.center + turn * Vec3((i & 1) != 0 ? half.x() : -half.x(),
+                                                 (i & 2) != 0 ? half.y() : -half.y(),
+                                                 (i & 4) != 0 ? half.z() : -half.z());
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vec3& p : body.points) nearest = std::min(nearest, (p - corner).norm());
     out = std::max(out, nearest);

@@ -84,8 +84,8 @@ std::string shortfall_of(const certify::SetCertificate& c) {
 
 std::string summary_of(const certify::SetCertificate& c) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
-  std::string bodies = (c.bodies == 1 ? " body, " : " bodies, ") + std::to_string(c.vertices) +
-                       " vertices";
+  std::string bodies =
+      (c.bodies == 1 ? " body, " : " bodies, ") + std::to_string(c.vertices) + " vertices";
   if (c.largest_body_vertices == 1) bodies = c.bodies == 1 ? " sphere" : " spheres";
   if (c.largest_body_vertices == 2) bodies = c.bodies == 1 ? " capsule" : " capsules";
   return std::to_string(c.bodies) + bodies +

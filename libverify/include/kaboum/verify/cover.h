@@ -36,8 +36,9 @@ struct Cover {
 /// of them. Where its distance is m but for rounding, or where it would take too long, the answer
 /// is undecided.
 ///
-/// Of bodies of several radii, or with segments and points as cores, it is verify_body_cover, or
-/// verify_ball_cover.
+/// Of bodies of several radii, or with segments and points as cores, it is verify_body_cover or
+/// verify_ball_cover: exact, with polytopes for none of them
+/// (docs/algorithms/capsules-and-boxes.md).
 ///
 /// @throws as verify_inclusion
 Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,

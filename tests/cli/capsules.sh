@@ -1,0 +1,110 @@
+# Covers by capsules, boxes and mixed bodies: made, decided, and mutants of them.
+. "$(dirname "$0")/common.sh"
+B=$BIN/bcd-decompose
+V=$BIN/bound-verify
+
+# json FILE CONDITION: of the report r.
+json() {
+  python3 -c "import json, sys; r = json.load(open(sys.argv[1])); sys.exit(not ($2))" "$1" || fail "$1: not $2"
+}
+
+printf 'OFF\n8 12 0\n0 0 0\n4 0 0\n0 1 0\n4 1 0\n0 0 1\n4 0 1\n0 1 1\n4 1 1\n' >bar.off
+for t in '0 2 1' '1 2 3' '4 5 6' '5 7 6' '0 1 4' '1 5 4' '2 6 3' '3 6 7' '0 4 2' '2 4 6' '1 3 5' '3 7 5'; do
+  echo "3 $t" >>bar.off
+done
+
+# Within epsilon, and by a number of them; the same bytes for any number of threads.
+for kind in capsules boxes mixed; do
+  expect 0 '' "$B" bar.off -o $kind.glb --bodies $kind --epsilon 0.4 --effort fast --no-cache --report $kind.json
+  json $kind.json "1 <= r['bodies'] <= 4 and r['reach']['upper'] <= 0.4"
+  shows 0 '^verified' "$V" cover bar.off $kind.glb --epsilon 0.4
+  expect 0 '' "$B" bar.off -o again.glb --bodies $kind --epsilon 0.4 --effort fast --no-cache --threads 1
+  cmp $kind.glb again.glb
+done
+json boxes.json "r['bodies'] == 1"
+expect 0 '' "$B" bar.off -o three.glb --bodies capsules --max-bodies 3 --effort fast --no-cache --report three.json
+json three.json "r['bodies'] <= 3"
+shows 0 '^verified' "$V" cover bar.off three.glb
+
+# From the cache, the second time.
+expect 0 '' "$B" bar.off -o capsules.glb --bodies capsules --epsilon 0.4 --effort fast
+"$B" bar.off -o again.glb --bodies capsules --epsilon 0.4 --effort fast 2>&1 | grep -q 'from the cache' || fail "not from the cache"
+cmp capsules.glb again.glb
+
+# A capsule that is a little thinner holds it no more.
+python3 - <<'P' || fail "no radius to change"
+import json, struct
+data = bytearray(open("three.glb", "rb").read())
+length = struct.unpack_from("<I", data, 12)[0]
+text = data[20:20 + length].decode()
+scene = json.loads(text)
+def shrink(node):
+    found = 0
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if key == "radius" and isinstance(value, (int, float)):
+                node[key] = value * 0.8
+                found += 1
+            elif key == "radii" and isinstance(value, list):
+                node[key] = [0.8 * x for x in value]
+                found += 1
+            else:
+                found += shrink(value)
+    elif isinstance(node, list):
+        for value in node:
+            found += shrink(value)
+    return found
+assert shrink(scene) > 0
+out = json.dumps(scene).encode()
+out += b" " * (-len(out) % 4)
+rest = bytes(data[20 + length:])
+open("thin.glb", "wb").write(struct.pack("<III", 0x46546C67, 2, 20 + len(out) + len(rest)) + struct.pack("<II", len(out), 0x4E4F534A) + out + rest)
+P
+shows 1 '^refuted' "$V" cover bar.off thin.glb
+
+# What means nothing beside them.
+expect 2 'bodies' "$B" bar.off -o x.glb --bodies capsules --direction inner
+expect 2 'min-thickness' "$B" bar.off -o x.glb --bodies boxes --min-thickness 0.1
+expect 2 'only .glb states radii' "$B" bar.off -o x.obj --bodies capsules
+expect 0 '' "$B" bar.off -o boxes.obj --bodies boxes --epsilon 0.4 --effort fast
+shows 0 '^verified' "$V" cover bar.off boxes.obj --epsilon 0.4
+
+# A robot: its shapes, written, judged, and judged with one digit less.
+cat >arm.urdf <<'U'
+<robot name="arm">
+  <link name="base"><collision><origin xyz="0.1 0.2 0.3" rpy="0.3 0.2 0.1"/><geometry><mesh filename="bar.off"/></geometry></collision></link>
+  <link name="hand"><collision><origin xyz="0 0 1" rpy="0.1 0 0.7"/><geometry><box size="0.1 0.1 1"/></geometry></collision><collision><geometry><sphere radius="0.5"/></geometry></collision></link>
+  <joint name="j" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>
+U
+expect 2 '.urdf' "$B" arm.urdf -o arm.yaml --bodies capsules --epsilon 0.4
+for kind in capsules boxes mixed; do
+  expect 0 '' "$B" arm.urdf -o $kind.urdf --bodies $kind --epsilon 0.4 --effort fast --no-cache --report robot.json
+  json robot.json "r['bodies'] >= 2 and r['reach_upper'] <= 0.4001"
+  shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --bodies $kind.urdf --report judged.json
+  json judged.json "r['verdict'] == 'verified' and r['links_held'] == 2"
+done
+shows 0 '^verified' "$V" robot arm.urdf --bodies boxes.urdf --links base
+# Every size of every shape, one after the other, made 5 % smaller: one at least is refuted, none is an error.
+python3 - "$V" <<'P' || fail "mutants of boxes"
+import re, subprocess, sys
+text = open("boxes.urdf").read()
+places = list(re.finditer(r'size="([^"]*)"', text))
+refuted = 0
+for place in places:
+    smaller = " ".join(repr(0.5 * float(x)) for x in place.group(1).split())
+    open("mutant.urdf", "w").write(text[:place.start(1)] + smaller + text[place.end(1):])
+    code = subprocess.run([sys.argv[1], "robot", "arm.urdf", "--bodies", "mutant.urdf"], capture_output=True).returncode
+    assert code in (0, 1, 7), code
+    refuted += code == 1
+assert refuted == len(places), (refuted, len(places))
+P
+# A link whose shapes are gone; a mesh; a stranger.
+sed '/<link name="hand"/,/<\/link>/{/collision/,/\/collision/d}' boxes.urdf >gone.urdf
+shows 1 "link 'hand': refuted" "$V" robot arm.urdf --bodies gone.urdf
+expect 3 'this is a mesh' "$V" robot arm.urdf --bodies arm.urdf
+sed 's/"base"/"bsae"/g' boxes.urdf >stranger.urdf
+expect 3 "no link 'bsae'" "$V" robot arm.urdf --bodies stranger.urdf
+expect 2 'state one' "$V" robot arm.urdf arm.urdf --bodies boxes.urdf
+expect 2 'epsilon' "$V" robot arm.urdf --bodies boxes.urdf --epsilon 1%
+finish
