@@ -4,12 +4,15 @@
 #include <kaboum/base/parallel.h>
 #include <kaboum/base/random.h>
 #include <kaboum/bcd/balls.h>
+#include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -73,6 +76,32 @@ class BallSearch {
     sample();
     points_.insert(points_.end(), options.held.begin(), options.held.end());
     inner_.insert(inner_.end(), options.held.begin(), options.held.end());
+  }
+
+  /// repair_balls.
+  std::vector<Ball> repair(const std::vector<Ball>& given, const std::vector<bool>& within) {
+    begin(*options_.epsilon);
+    allow_work(0);  // balls are not moved together
+    std::vector<Ball> balls;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      balls.push_back(i < within.size() && within[i] ? given[i] : fitted(given[i]));
+    std::vector<Vec3> free = not_held(balls, points_);
+    for (int round = 0; round < kPatchRounds; ++round) {
+      show("repairing", static_cast<double>(round) / kPatchRounds);
+      grow(balls, free);
+      move_single(balls, free);
+      add(balls, free, round == 0 ? effort_.steps : 0);
+      if (balls.size() > options_.most)
+        throw Error(ErrorCode::LimitReached,
+                    "more than " + std::to_string(options_.most) +
+                        " spheres would be needed; allow a larger epsilon");
+      const std::size_t known = points_.size();
+      if (add_free_points(balls)) return balls;
+      free.assign(points_.begin() + static_cast<std::ptrdiff_t>(known), points_.end());
+    }
+    throw Error(ErrorCode::LimitReached,
+                "no changes of the spheres were found that hold all triangles within epsilon; "
+                "allow a larger one");
   }
 
   CoverCandidate run() {
@@ -355,10 +384,11 @@ class BallSearch {
     const auto holds = [](const Ball& b, const Vec3& p) {
       return (p - b.center).squaredNorm() <= b.radius * b.radius;
     };
-    std::vector<Piece> open{{triangle, 0, std::move(smaller)}};
+    // The largest pieces first, so that the points found are spread over the triangle.
+    std::deque<Piece> open{{triangle, 0, std::move(smaller)}};
     while (!open.empty() && out.size() < most) {
-      const Piece piece = std::move(open.back());
-      open.pop_back();
+      const Piece piece = std::move(open.front());
+      open.pop_front();
       bool held = false;
       std::array<bool, 3> some{};
       for (const Ball& b : piece.near) {
@@ -503,6 +533,156 @@ class BallSearch {
     }
   }
 
+  // --- balls that somebody has ---
+
+  [[nodiscard]] static bool is_held(const Ball& b, const Vec3& p, double slack) {
+    return (p - b.center).norm() <= b.radius * (1 - slack);
+  }
+
+  [[nodiscard]] static std::vector<Vec3> not_held(const std::vector<Ball>& balls,
+                                                  const std::vector<Vec3>& points) {
+    std::vector<char> free(points.size());
+    kaboum::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+      free[i] = std::ranges::none_of(
+          balls, [&](const Ball& b) { return is_held(b, points[i], kBallSlack); });
+    });
+    std::vector<Vec3> out;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (free[i] != 0) out.push_back(points[i]);
+    return out;
+  }
+
+  [[nodiscard]] static double rounded_down(double radius) {
+    const double out = geom::to_float32(radius);
+    return out > radius ? out - geom::float32_spacing(out * (1 - 1e-7)) : out;
+  }
+
+  /// The largest radius that is known to be allowed about a point.
+  [[nodiscard]] double most_about(const Vec3& c) const {
+    return rounded_down(body_->refined_radius_about(c, kFineCaps));
+  }
+
+  /// The ball, no larger than is allowed; put to the surface where its centre is too far.
+  [[nodiscard]] Ball fitted(const Ball& b) const {
+    constexpr double kLeast = 0.1;  // of epsilon: smaller ones are put elsewhere
+    const double most = most_about(b.center);
+    if (b.radius <= most) return b;
+    if (most > kLeast * body_->distance()) return {b.center, most};
+    const auto& [p, q, r] = query_.corners(query_.nearest(b.center).triangle);
+    const Vec3 at = geom::to_float32(geom::closest_point(b.center, p, q, r));
+    return {at, std::min(rounded_down(b.radius), most_about(at))};
+  }
+
+  /// A radius that holds a point at this distance with something to spare.
+  [[nodiscard]] double radius_for(double distance, double most) const {
+    const double wanted = distance * (1 + kPointSlack) + 0.02 * body_->distance();
+    return std::min(most, rounded_down(wanted));
+  }
+
+  /// Makes few balls larger that then hold many of the points; leaves the rest.
+  void grow(std::vector<Ball>& balls, std::vector<Vec3>& free) const {
+    std::vector<double> most(balls.size());
+    kaboum::parallel_for(std::size_t{0}, balls.size(),
+                         [&](std::size_t i) { most[i] = most_about(balls[i].center); });
+    while (!free.empty()) {
+      std::size_t best = 0, count = 0;
+      double farthest = 0;
+      for (std::size_t i = 0; i < balls.size(); ++i) {
+        if (!(most[i] > balls[i].radius)) continue;
+        std::size_t own = 0;
+        double reach = 0;
+        for (const Vec3& p : free) {
+          const double away = (p - balls[i].center).norm();
+          if (away > most[i] * (1 - kPointSlack)) continue;
+          ++own;
+          reach = std::max(reach, away);
+        }
+        if (own <= count) continue;
+        count = own;
+        best = i;
+        farthest = reach;
+      }
+      if (count == 0) return;
+      balls[best].radius = std::max(balls[best].radius, radius_for(farthest, most[best]));
+      const std::size_t before = free.size();
+      std::erase_if(free, [&](const Vec3& p) { return is_held(balls[best], p, kPointSlack); });
+      if (free.size() == before) most[best] = 0;  // by rounding
+    }
+  }
+
+  /// Moves single balls to points that none holds, where these hold from there what they alone
+  /// hold; leaves the rest.
+  void move_single(std::vector<Ball>& balls, std::vector<Vec3>& free) const {
+    constexpr std::size_t kNearest = 4;
+    constexpr std::array<double, 6> kWays{1.02, 1.2, 1.5, 2, 3, 5};
+    for (std::size_t k = 0; k < free.size();) {
+      const Vec3 p = free[k];
+      std::vector<std::pair<double, std::size_t>> near;
+      for (std::size_t i = 0; i < balls.size(); ++i)
+        near.emplace_back((p - balls[i].center).norm() - balls[i].radius, i);
+      std::ranges::sort(near);
+      near.resize(std::min(near.size(), kNearest));
+      bool is_moved = false;
+      for (const auto& [gap, i] : near) {
+        const Vec3 along = (p - balls[i].center).normalized();
+        if (!along.allFinite()) continue;
+        const std::vector<Vec3> own = held_alone(balls, i);
+        for (const double way : kWays) {
+          const Vec3 at = geom::to_float32(balls[i].center + way * gap * along);
+          double reach = (p - at).norm();
+          for (const Vec3& q : own) reach = std::max(reach, (q - at).norm());
+          const double most = most_about(at);
+          if (reach > most * (1 - kPointSlack)) continue;
+          balls[i] = {
+              at, std::max(std::min(rounded_down(balls[i].radius), most), radius_for(reach, most))};
+          is_moved = true;
+          break;
+        }
+        if (is_moved) break;
+      }
+      if (is_moved)
+        std::erase_if(free, [&](const Vec3& q) {
+          return std::ranges::any_of(balls,
+                                     [&](const Ball& b) { return is_held(b, q, kPointSlack); });
+        });
+      else
+        ++k;
+    }
+  }
+
+  /// Points known that one ball alone holds.
+  [[nodiscard]] std::vector<Vec3> held_alone(const std::vector<Ball>& balls, std::size_t i) const {
+    std::vector<std::size_t> near;
+    for (std::size_t k = 0; k < balls.size(); ++k)
+      if (k != i && (balls[k].center - balls[i].center).norm() < balls[k].radius + balls[i].radius)
+        near.push_back(k);
+    std::vector<Vec3> out;
+    for (const Vec3& p : points_)
+      if (is_held(balls[i], p, kBallSlack) && std::ranges::none_of(near, [&](std::size_t k) {
+            return is_held(balls[k], p, kBallSlack);
+          }))
+        out.push_back(p);
+    return out;
+  }
+
+  /// Other balls that hold the points.
+  void add(std::vector<Ball>& balls, const std::vector<Vec3>& free, std::size_t steps) {
+    if (free.empty()) return;
+    std::vector<SurfacePoint> at;
+    for (const Vec3& p : free) {
+      add_ball_at(p);
+      const auto& [a, b, c] = query_.corners(query_.nearest(p).triangle);
+      const Vec3 inwards = -(b - a).cross(c - a).normalized();
+      if (inwards.allFinite()) at.push_back({p, inwards});
+    }
+    add_candidates(at);
+    std::erase_if(candidates_, [&](const Ball& b) {
+      return std::ranges::none_of(free, [&](const Vec3& p) { return is_held(b, p, kPointSlack); });
+    });
+    for (const Ball& b : choose(free, steps))
+      balls.push_back({geom::to_float32(b.center), most_about(geom::to_float32(b.center))});
+  }
+
   /// The least ε found with so many balls.
   std::vector<Ball> within_count(std::size_t count) {
     constexpr double kNear = 1.02;
@@ -564,6 +744,17 @@ class BallSearch {
 };
 
 }  // namespace
+
+std::vector<Ball> repair_balls(const geom::SolidMesh& input, const std::vector<Ball>& given,
+                               const std::vector<bool>& within, const BallOptions& options) {
+  if (!options.epsilon || !(*options.epsilon > 0))
+    throw Error(ErrorCode::InvalidArgument, "balls are repaired within an epsilon above 0");
+  const geom::SolidMesh closed = geom::close_holes(input);
+  BallOptions asked = options;
+  asked.max_bodies.reset();
+  asked.epsilon = std::min(*asked.epsilon, 0.6 * geom::bounding_box(closed.mesh()).diagonal());
+  return BallSearch(closed.mesh(), asked).repair(given, within);
+}
 
 CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& options) {
   if (!options.epsilon && !options.max_bodies)

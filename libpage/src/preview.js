@@ -15,6 +15,12 @@
 
   for (const [name, words] of data.facts) $('facts').append(element('dt', name), element('dd', words));
   $('note').textContent = data.note;
+  if (data.table)
+    for (const [i, cells] of [data.table.head, ...data.table.rows].entries()) {
+      const row = document.createElement('tr');
+      row.append(...cells.map((cell) => element(i === 0 ? 'th' : 'td', cell)));
+      $('table').append(row);
+    }
   if (data.largest !== null) {
     $('meaning').textContent = data.meaning + (data.unit ? ` [${data.unit}]` : ", in the file's unit");
     $('scale').style.background = `linear-gradient(to right, ${V.heat.map((c) => `rgb(${c.map((x) => Math.round(255 * x))})`)})`;
@@ -65,8 +71,8 @@
       const paint = colours === 'distance' && layer.distances ? 'value' : colours === 'bodies' && layer.bodies ? 'body' : 'colour';
       for (const {link, buffers} of layer.parts)
         items.push({buffers, pose: link === undefined ? S.identity : links[link], paint, glass: index,
-                    colour: paint === 'value' || !layer.result ? grey : V.palette[index % V.palette.length],
-                    alpha: mode === 'clear' ? 0.45 : 1, explode: layer.bodies ? Number($('explode').value) : 0, edges: $('edges').checked});
+                    colour: layer.colour || (paint === 'value' || !layer.result ? grey : V.palette[index % V.palette.length]),
+                    alpha: mode === 'clear' ? 0.45 : 1, explode: layer.bodies ? Number($('explode').value) : 0, edges: $('edges').checked && layer.edges !== 'none'});
     });
     view.draw(items);
   }

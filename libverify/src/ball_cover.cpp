@@ -563,6 +563,38 @@ class OutsideSearch {
     return out_;
   }
 
+  /// Parts in one ball or outside, for certain; of smaller ones than `size` their middles decide.
+  [[nodiscard]] SplitMesh split(double size, std::size_t most) const {
+    const auto less = [](const OpenPart& a, const OpenPart& b) { return a.area < b.area; };
+    std::priority_queue<OpenPart, std::vector<OpenPart>, decltype(less)> open(less);
+    SplitMesh out;
+    const auto take = [&](const Corners& c, geom::Mesh& to) {
+      const auto first = static_cast<std::uint32_t>(to.vertices.size());
+      to.vertices.insert(to.vertices.end(), c.begin(), c.end());
+      to.triangles.push_back({first, first + 1, first + 2});
+    };
+    const auto by_middle = [&](const Corners& c) {
+      take(c, height(middle_of(c)) > slack_ ? out.outside : out.held);
+    };
+    const auto look = [&](const OpenPart& part) {
+      if (in_one_ball(part.corner)) return take(part.corner, out.held);
+      const Vec3 middle = middle_of(part.corner);
+      const double reach = reach_of(part.corner, middle);
+      if (height(middle) - reach > slack_) return take(part.corner, out.outside);
+      if (reach > size) return open.push(part);
+      by_middle(part.corner);
+    };
+    for (const OpenPart& part : parts_) look(part);
+    while (!open.empty() &&
+           open.size() + out.held.triangles.size() + out.outside.triangles.size() < most) {
+      const OpenPart part = open.top();
+      open.pop();
+      halve(part, look);
+    }
+    for (; !open.empty(); open.pop()) by_middle(open.top().corner);
+    return out;
+  }
+
  private:
   static constexpr std::size_t kMostParts = std::size_t{1} << 20U;
 
@@ -675,6 +707,14 @@ OutsideBalls measure_outside_balls(const geom::Mesh& mesh, const geom::ConvexSet
   out.depth_lower = out.depth_upper = std::numeric_limits<double>::infinity();
   out.at = mesh.vertices[mesh.triangles[0][0]];
   return out;
+}
+
+SplitMesh split_by_balls(const geom::Mesh& mesh, const geom::ConvexSet& set, double size,
+                         std::size_t most) {
+  geom::require_valid(mesh);
+  if (set.bodies.empty()) return {{}, mesh};
+  const std::vector<Ball> balls = balls_of(set);
+  return OutsideSearch(mesh, balls).split(size, most);
 }
 
 bool is_set_of_balls(const geom::ConvexSet& set) {

@@ -131,5 +131,62 @@ TEST(Balls, SameForAnyNumberOfThreads) {
   }
 }
 
+// Changed as little as suffices: what holds stays, one that is left out or too small is made up for
+// by its neighbours or by one other, and what reaches too far does so no more.
+TEST(Balls, RepairedOnesKeepWhatHolds) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  const geom::SolidMesh solid = geom::prepare(bar).solid;
+  std::vector<Ball> given;
+  for (const geom::ConvexBody& body : balls_of(bar, within(0.4)).bodies)
+    given.push_back({body.core.vertices[0], body.radius});
+  ASSERT_GE(given.size(), 3U);
+  const auto repaired = [&](const std::vector<Ball>& balls) {
+    std::vector<Ball> out = repair_balls(solid, balls, {}, within(0.42));
+    CoverCandidate found;
+    for (const Ball& ball : out) {
+      geom::ConvexBody body;
+      body.core.vertices = {ball.center};
+      body.radius = ball.radius;
+      found.bodies.push_back(body);
+    }
+    const geom::ConvexSet set{found.bodies, {}};
+    EXPECT_EQ(verify::verify_ball_cover(bar, set).solid.answer, Answer::Verified);
+    EXPECT_EQ(verify::verify_ball_excess(set, bar, 0.42).answer, Answer::Verified);
+    return out;
+  };
+  const auto unchanged = [](const std::vector<Ball>& was, const std::vector<Ball>& is) {
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < was.size(); ++i)
+      out += was[i].center == is[i].center && was[i].radius == is[i].radius ? 1 : 0;
+    return out;
+  };
+  EXPECT_EQ(unchanged(given, repaired(given)), given.size());
+  EXPECT_EQ(repaired(given).size(), given.size());
+  std::vector<Ball> less = given;
+  less[0].radius *= 0.6;
+  EXPECT_GE(unchanged(given, repaired(less)) + 1, given.size() - 1);
+  EXPECT_LE(repaired(less).size(), given.size() + 1);
+  less.erase(less.begin());
+  EXPECT_GE(unchanged(less, repaired(less)) + 1, less.size());
+  EXPECT_LE(repaired(less).size(), given.size() + 1);
+  std::vector<Ball> far = given;
+  far[0].radius *= 5;
+  far.push_back({{50, 0, 0}, 1});
+  EXPECT_LE(repaired(far)[0].radius, 1.1);
+  EXPECT_EQ(repaired(far).size(), far.size());
+  EXPECT_FALSE(repaired({}).empty());
+  EXPECT_THROW(repair_balls(solid, given, {}, {}), Error);
+}
+
+// Faces far larger than what a ball holds of them: gaps are filled all over them.
+TEST(Balls, LargeFacesWithinASmallDistance) {
+  const Mesh bar = kaboum::test::box({4, 1, 1}, 1);
+  const CoverCandidate found = balls_of(bar, within(0.02));
+  EXPECT_EQ(found.stop, Stop::Done);
+  EXPECT_LE(found.excess_upper, 0.02);
+  EXPECT_LE(found.bodies.size(), 2000U);
+  EXPECT_EQ(verify::verify_ball_cover(bar, {found.bodies, {}}).surface.answer, Answer::Verified);
+}
+
 }  // namespace
 }  // namespace kaboum::bcd

@@ -93,6 +93,11 @@ expect 3 'cut.yaml:3' "$V" robot arm.urdf --spheres cut.yaml
 printf 'collision_spheres:\n  base:\n    - center: [0, 0]\n      radius: 1\n' >two.yaml
 expect 3 'two.yaml:3: .*three numbers' "$V" robot arm.urdf --spheres two.yaml
 expect 2 'RESULT or --spheres' "$V" robot arm.urdf
+shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf arm.yaml  # known by its name
+# Names of such files without --bodies spheres.
+expect 2 'bodies spheres' "$B" arm.urdf -o foo.yaml --epsilon 0.4
+expect 2 'of a mesh' "$B" bar.off -o foo.yaml --epsilon 0.4
+[ ! -e foo.yaml ] || fail "foo.yaml was made"
 expect 2 'state one' "$V" robot arm.urdf arm.urdf --spheres one.yaml
 # Nothing that was asked for is passed over.
 for option in '--epsilon 1%' --prepare --raw '--max-work 1'; do

@@ -365,6 +365,29 @@ TEST(BallCover, ManyBalls) {
   EXPECT_EQ(verify_ball_cover(original, set).solid.answer, Answer::Refuted);
 }
 
+// Parts for pictures: all of the area, and outside no more and no less than what is measured.
+TEST(BallCover, SplitPartsAddUp) {
+  const Mesh original = cube(1);
+  ConvexSet set;
+  add_ball(set, Vec3(0.2, 0.1, 0), 1.3);
+  const auto area_of = [](const Mesh& mesh) {
+    double out = 0;
+    for (const auto& [i, j, k] : mesh.triangles)
+      out +=
+          0.5 *
+          (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
+    return out;
+  };
+  const OutsideBalls measured = measure_outside_balls(original, set);
+  const SplitMesh parts = split_by_balls(original, set, 0.02, 100'000);
+  EXPECT_NEAR(area_of(parts.held) + area_of(parts.outside), measured.area, 1e-9);
+  EXPECT_NEAR(area_of(parts.outside) / measured.area, measured.share_lower, 0.01);
+  EXPECT_GT(measured.share_lower, 0.1);
+  EXPECT_EQ(split_by_balls(original, {}, 0.1, 1000).outside.triangles.size(),
+            original.triangles.size());
+  EXPECT_TRUE(split_by_balls(original, {}, 0.1, 1000).held.triangles.empty());
+}
+
 }  // namespace
 }  // namespace ball_cover_test
 }  // namespace kaboum::verify

@@ -5,6 +5,7 @@
 #include <kaboum/page/set_page.h>
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
+#include <kaboum/robot_folder/sphere_text.h>
 
 #include <CLI/CLI.hpp>
 
@@ -42,6 +43,11 @@ std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& ce
 }
 
 int decompose_mesh(const DecomposeOptions& o) {
+  if (o.output_format.empty() && robot_folder::sphere_format_of(o.output))
+    throw Error(ErrorCode::InvalidArgument,
+                o.output +
+                    ": such files hold the spheres of a robot's links; the bodies of a mesh "
+                    "go into a .glb, an .obj or a folder");
   const io::SetFormat format = set_format_for(o.output, o.output_format);
   using Kind = certify::SetRequest::BodyKind;
   const Kind kind = o.set.request.body_kind;
@@ -85,6 +91,7 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
   apply_preset(app, o);
   std::vector<std::string> inputs{o.input};
   if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+  if (!o.repair.empty()) inputs.push_back(o.repair);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},
                  {"--html-report", o.robot.html},

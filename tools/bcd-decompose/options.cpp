@@ -53,6 +53,17 @@ void add_share(CLI::App& app, DecomposeOptions& o) {
       ->type_name("farthest|mean");
 }
 
+void add_repair(CLI::App& app, DecomposeOptions& o) {
+  app.add_option(
+         "--repair", o.repair,
+         "Spheres of the robot's links, as bound-verify robot --spheres reads them: instead "
+         "of new ones, these are changed as little as is found to suffice (grown, moved, "
+         "others added; made smaller where they reach farther than --epsilon) until each "
+         "link's hold its shapes, and written to --output in the format that they have")
+      ->needs("--epsilon")
+      ->type_name("FILE");
+}
+
 void add_output(CLI::App& app, DecomposeOptions& o) {
   app.add_option(
          "--preview", o.preview,
@@ -82,6 +93,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_budget(app, "--robot-bodies", o.robot_bodies, "bodies");
   add_budget(app, "--robot-vertices", o.robot_vertices, "vertices");
   add_share(app, o);
+  add_repair(app, o);
   app.add_flag(
       "--srdf", o.srdf,
       "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
@@ -130,6 +142,18 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   if (app.count("--share") != 0 &&
       o.set.request.body_kind != certify::SetRequest::BodyKind::Spheres)
     throw Error(ErrorCode::InvalidArgument, "--share is for --bodies spheres");
+  if (!o.repair.empty()) {
+    if (!is_robot(o.input))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--repair is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
+    std::vector<std::string> others{"--bodies", "--epsilons", "--robot-bodies", "--robot-vertices",
+                                    "--srdf",   "--preview",  "--html-report",  "--robot-format",
+                                    "--for",    "--no-cache"};
+    for (const auto& option : certify::set_options())
+      if (option.name != "epsilon" && option.name != "effort" && option.name != "geometry")
+        others.push_back("--" + std::string(option.name));
+    require_absent(app, "--repair", others);
+  }
   if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
   if (!is_robot(o.input) && app.count("--from") != 0)
     throw Error(ErrorCode::InvalidArgument,

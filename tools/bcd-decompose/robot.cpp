@@ -6,12 +6,15 @@
 #include <kaboum/base/number_text.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/robot_budget.h>
+#include <kaboum/certify/sphere_repair.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/io/mesh_io.h>
 #include <kaboum/page/robot_page.h>
 #include <kaboum/page/set_page.h>
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
 #include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/robot_folder/sphere_text.h>
 #include <kaboum/scene/robot_pairs.h>
 
 #include <algorithm>
@@ -23,13 +26,13 @@
 #include "robots/check.h"
 #include "robots/output.h"
 #include "robots/simple_output.h"
-#include "robots/sphere_output.h"
 #include "words.h"
 
 namespace kaboum::tools {
 namespace {
 
 using robot_folder::RobotWriter;
+using robot_folder::sphere_format_of;
 
 certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::RobotFile& robot,
                                     const robot::ShapeChoice& choice) {
@@ -195,8 +198,8 @@ void write_page(const Run& run, const RobotWriter& output) {
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
 int decompose_into_shapes(const DecomposeOptions& o) {
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
-  const std::optional<SphereFormat> format = sphere_format_of(o.output);
-  if (!spheres && format != SphereFormat::Urdf)
+  const std::optional<robot_folder::SphereFormat> format = sphere_format_of(o.output);
+  if (!spheres && format != robot_folder::SphereFormat::Urdf)
     throw Error(ErrorCode::InvalidArgument,
                 "--bodies capsules, boxes or mixed of a robot: end --output in .urdf");
   if (!format)
@@ -241,7 +244,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   double distance = bodies.certificate().distance;
   if (spheres) {
     io::write_file(o.output,
-                   sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
+                   robot_folder::sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
   } else {
     const SimpleShapes shapes = simple_shapes(bodies.artefact());
     distance += shapes.beyond;
@@ -275,14 +278,87 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   return reached ? kDone : kNo;
 }
 
+std::string text_of(const certify::RepairedLink& link) {
+  std::string out = std::to_string(link.kept) + " kept";
+  for (const auto& [count, what] :
+       {std::pair(link.grown, " grown"), std::pair(link.moved, " moved"),
+        std::pair(link.shrunk, " made smaller"), std::pair(link.added, " added")})
+    if (count > 0) out += ", " + std::to_string(count) + what;
+  return out;
+}
+
+/// Somebody's spheres, changed until they hold.
+int repair(const DecomposeOptions& o) {
+  if (sphere_format_of(o.output) != sphere_format_of(o.repair) || !sphere_format_of(o.repair))
+    throw Error(ErrorCode::InvalidArgument,
+                "--repair: spheres are written in the format that they have: end --output as " +
+                    o.repair + " does (.yaml, .yml, .xrdf, .srdf or .urdf)");
+  const robot::RobotFile robot = robot::read_robot(o.input);
+  robot::require_links(robot, o.robot.shapes.links);
+  const std::vector<char> text = io::read_file(o.repair);
+  Progress progress(o.common.quiet);
+  certify::RobotHooks hooks;
+  hooks.progress = [&](const std::string& stage) { progress.show(stage); };
+  const certify::RepairedSpheres made = certify::repair_spheres(
+      robot, o.repair, std::string(text.begin(), text.end()),
+      {*certify::request_of(o.set).epsilon, o.robot.shapes, o.set.request.effort}, hooks);
+  progress.show("");
+  io::write_file(o.output, made.text);
+  certify::RepairedLink all;
+  Json links = Json::array();
+  for (const certify::RepairedLink& link : made.links) {
+    log(o.common.quiet, "link '" + link.link + "': " + text_of(link));
+    links.push_back({{"link", link.link},
+                     {"kept", link.kept},
+                     {"grown", link.grown},
+                     {"moved", link.moved},
+                     {"shrunk", link.shrunk},
+                     {"added", link.added},
+                     {"reach_upper", link.epsilon}});
+    all.kept += link.kept;
+    all.grown += link.grown;
+    all.moved += link.moved;
+    all.shrunk += link.shrunk;
+    all.added += link.added;
+    all.epsilon = std::max(all.epsilon, link.epsilon);
+  }
+  log(o.common.quiet, o.output + ": " + counted(made.spheres, "sphere", "spheres") + " (" +
+                          text_of(all) + ") hold every link; none reaches farther than " +
+                          number_up(all.epsilon) + "; decided exactly");
+  for (const std::string& note : made.notes) log(o.common.quiet, "note: " + note);
+  if (!o.common.report.empty())
+    write_report(o.common, "bcd-decompose",
+                 {{"spheres", made.spheres},
+                  {"kept", all.kept},
+                  {"grown", all.grown},
+                  {"moved", all.moved},
+                  {"shrunk", all.shrunk},
+                  {"added", all.added},
+                  {"reach_upper", all.epsilon},
+                  {"links", std::move(links)},
+                  {"stop", "done"},
+                  {"input", {{"file", o.input}, {"sha256", robot.sha256}}},
+                  {"repaired", {{"file", o.repair}}},
+                  {"output", {{"file", o.output}}},
+                  {"notes", made.notes}});
+  if (!o.depfile.empty()) write_depfile(o.depfile, {o.output}, {o.input, o.repair});
+  return kDone;
+}
+
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
+  if (!o.repair.empty()) return repair(o);
   if (o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
     return decompose_into_shapes(o);
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
+  if (sphere_format_of(o.output))
+    throw Error(ErrorCode::InvalidArgument,
+                o.output +
+                    ": such files hold spheres: state --bodies spheres, or name a folder "
+                    "for the robot");
   require_robot_folder(o.output, o.output_format);
   Run run{o, robot::read_robot(o.input)};
   const std::vector<std::string> included =

@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/robot/sphere_file.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -153,6 +154,10 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
         if (given > 1)
           throw Error(ErrorCode::InvalidArgument,
                       "robot: RESULT, --spheres and --bodies are results to be judged: state one");
+        // Files of spheres are known by their names.
+        if (robot::is_sphere_file(o.robot.result)) o.robot.spheres.swap(o.robot.result);
+        if (o.robot.spheres.empty() && !o.robot.page.empty())
+          throw Error(ErrorCode::InvalidArgument, "robot: --page shows spheres: state --spheres");
         if (!o.robot.result.empty()) return verify_robot(o.robot, o.common);
         std::vector<std::string> others{"--raw"};
         for (const auto& option : verify::robot_verdict_options())
@@ -163,7 +168,9 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
         return spheres ? verify_spheres(o.robot, o.common) : verify_bodies(o.robot, o.common);
       });
   add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
-  c->add_option("RESULT", o.robot.result, "The robot whose shapes hold those of the first (URDF)")
+  c->add_option("RESULT", o.robot.result,
+                "The robot whose shapes hold those of the first (URDF); or a file of spheres "
+                "(.yaml, .yml, .xrdf, .srdf), as for --spheres")
       ->type_name("FILE");
   c->add_option(
        "--spheres", o.robot.spheres,
@@ -172,8 +179,13 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
        "spheres as collision shapes. Decides of each "
        "link whether its own spheres hold its triangles, as the files have them, and the "
        "solid that they bound; else says how much of its surface is outside, and how "
-       "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links "
-       "and --package-path may be stated")
+       "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links, "
+       "--package-path and --page may be stated")
+      ->type_name("FILE");
+  c->add_option("--page", o.robot.page,
+                "With spheres: write a page (.html) that shows the robot with them in a browser, "
+                "what sticks out in red, and a row for each link")
+      ->check(page_name())
       ->type_name("FILE");
   c->add_option("--bodies", o.robot.bodies,
                 "Instead of RESULT, a URDF whose collision shapes are spheres, boxes and cylinders "

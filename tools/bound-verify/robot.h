@@ -13,6 +13,7 @@ struct VerifyRobotOptions {
   std::string original, result;  ///< URDF files
   std::string spheres;           ///< instead of the result: spheres of the links
   std::string bodies;            ///< instead of it: a URDF with capsules, boxes and spheres
+  std::string page;              ///< with these: shows them; empty: none
   verify::RobotVerdictOptions how;
 };
 

@@ -48,4 +48,22 @@ struct BallOptions : SearchRun {
 ///   more balls than options.most, or none were found that hold all
 CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& options);
 
+/// Balls that somebody has, changed as little as was found to suffice, so that they contain the
+/// solid and every triangle of it, none of them reaching farther than epsilon.
+///
+/// Those that reach farther are made smaller, or put nearer where even their centres are too far.
+/// Where points are left out, few balls are made larger; else one near them moves, if it can hold
+/// what it alone holds from there; else there is another ball. Of what is changed, centres and
+/// radii are float32 numbers.
+///
+/// No claim that they cover, nor about how far they reach, as for find_balls.
+///
+/// @param within   of each one given, whether it is known to reach no farther; empty: of none
+/// @param options  epsilon is needed; only it, effort, held, most and progress count
+/// @return those given, in their order, then the ones added
+/// @throws Error{InvalidArgument} without epsilon; Error{LimitReached} where it takes more than
+///   options.most, or none were found that hold all
+std::vector<Ball> repair_balls(const geom::SolidMesh& input, const std::vector<Ball>& given,
+                               const std::vector<bool>& within, const BallOptions& options);
+
 }  // namespace kaboum::bcd

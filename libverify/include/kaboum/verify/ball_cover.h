@@ -48,4 +48,16 @@ struct OutsideBalls {
 /// @throws as verify_ball_cover
 OutsideBalls measure_outside_balls(const geom::Mesh& mesh, const geom::ConvexSet& set);
 
+/// Parts of a mesh's triangles.
+struct SplitMesh {
+  geom::Mesh held, outside;
+};
+
+/// A mesh, cut where it leaves a union of balls; for pictures.
+/// @param size  parts that a ball of this radius holds are not cut further [length]
+/// @param most  about so many parts at the most
+/// @pre as measure_outside_balls
+SplitMesh split_by_balls(const geom::Mesh& mesh, const geom::ConvexSet& set, double size,
+                         std::size_t most);
+
 }  // namespace kaboum::verify

@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 #include <kaboum/robot/path.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -34,6 +35,8 @@ struct Layer {
   bool result = true;      ///< else what it was made of
   bool bodies = false;     ///< the shapes are convex bodies, with colours of their own
   bool all_edges = false;  ///< edges are drawn wherever it is not flat, not only sharp ones
+  bool no_edges = false;   ///< none are drawn
+  std::optional<std::array<double, 3>> colour = std::nullopt;  ///< of all shapes, 0 to 1
   std::vector<Shape> shapes = {};
 };
 
@@ -43,11 +46,18 @@ struct Motion {
   robot::Path path;  ///< of one waypoint at least
 };
 
+/// A table that stands below the facts.
+struct Table {
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;  ///< each as long as the head
+};
+
 struct Preview {
   std::string title;
   std::string unit = {};  ///< of length; empty: that of the file
   /// What stands beside: names and words.
   std::vector<std::pair<std::string, std::string>> facts = {};
+  Table table = {};
   std::string meaning = {};  ///< of the distances, in a few words
   std::vector<Layer> layers = {};
   std::optional<Motion> motion = std::nullopt;  ///< where shapes are fixed to links

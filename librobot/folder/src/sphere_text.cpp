@@ -1,5 +1,5 @@
 // Spheres of robots in the formats of planners.
-#include "sphere_output.h"
+#include <kaboum/robot_folder/sphere_text.h>
 
 #include <kaboum/base/error.h>
 #include <kaboum/geom/float32.h>
@@ -12,9 +12,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/cli.h"
-
-namespace kaboum::tools {
+namespace kaboum::robot_folder {
 namespace {
 
 constexpr int kDigits = 17;  ///< so that readers of float32 and of float64 read the same number
@@ -83,7 +81,7 @@ std::string yaml_of(const robot::RobotFile& robot, const std::vector<LinkSphere>
 std::string origin_of(const robot::RobotFile& robot, const std::string& parameters) {
   return "Spheres of the links of " + robot.path.filename().string() +
          ", in their frames. Each link's hold the link's shapes.\n" + "bcd-decompose " +
-         std::string(version()) + " " + parameters + "\nsha256 " + robot.sha256;
+         std::string(KABOUM_VERSION) + " " + parameters + "\nsha256 " + robot.sha256;
 }
 
 std::string yaml_comment(const std::string& text) {
@@ -138,8 +136,7 @@ void move_references(tinyxml2::XMLElement& element, const std::filesystem::path&
        child = child->NextSiblingElement()) {
     if (const char* name = child->Attribute("filename");
         name != nullptr && std::string_view(child->Name()) == "mesh")
-      child->SetAttribute("filename",
-                          robot_folder::moved_reference(std::string(name), from, to).c_str());
+      child->SetAttribute("filename", moved_reference(std::string(name), from, to).c_str());
     move_references(*child, from, to);
   }
 }
@@ -219,4 +216,4 @@ std::string sphere_text(SphereFormat format, const robot::RobotFile& robot,
   return yaml_comment(origin) + "collision_spheres:\n" + yaml_of(robot, spheres, "  ");
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot_folder

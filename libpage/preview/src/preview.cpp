@@ -76,10 +76,12 @@ Json layer_json(const Layer& layer, const Placing& placing, double largest) {
     shapes.push_back(shape_json(shape, placing, largest));
     distances = distances || !shape.distances.empty();
   }
-  return {{"name", layer.name},         {"view", name_of(layer.view)},
-          {"result", layer.result},     {"bodies", layer.bodies},
-          {"distances", distances},     {"edges", layer.all_edges ? "all" : "sharp"},
-          {"shapes", std::move(shapes)}};
+  const char* edges = layer.no_edges ? "none" : layer.all_edges ? "all" : "sharp";
+  Json out = {{"name", layer.name},         {"view", name_of(layer.view)}, {"result", layer.result},
+              {"bodies", layer.bodies},     {"distances", distances},      {"edges", edges},
+              {"shapes", std::move(shapes)}};
+  if (layer.colour) out["colour"] = *layer.colour;
+  return out;
 }
 
 constexpr const char* kNote =
@@ -102,6 +104,8 @@ std::string preview_page(const Preview& preview) {
   Json layers = Json::array();
   for (const Layer& layer : preview.layers) layers.push_back(layer_json(layer, placing, largest));
   data["layers"] = std::move(layers);
+  if (!preview.table.rows.empty())
+    data["table"] = {{"head", preview.table.head}, {"rows", preview.table.rows}};
   if (preview.motion) {
     data["robot"] = {{"base", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}},
                      {"joints", Json::parse(robot::joints_json(preview.motion->robot))}};

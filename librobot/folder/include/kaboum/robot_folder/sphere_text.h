@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace kaboum::tools {
+namespace kaboum::robot_folder {
 
 /// Formats that hold the spheres of a robot's links.
 enum class SphereFormat {
@@ -28,4 +28,4 @@ std::string sphere_text(SphereFormat format, const robot::RobotFile& robot,
                         const certify::CertifiedBodies& bodies, const std::string& parameters,
                         const std::string& file);
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot_folder

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/robot/robot.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace kaboum::tools {
+namespace kaboum::robot {
 
 /// The spheres that a file gives a link, in its frame.
 struct LinkSpheres {
@@ -19,6 +21,7 @@ struct SphereFile {
   std::vector<LinkSpheres> links;
   std::string format;              ///< in words
   std::vector<std::string> notes;  ///< what a user should know
+  std::optional<Robot> robot;      ///< whose shapes they are, where the file has a robot
 };
 
 /// Reads spheres of cuRobo's YAML (`collision_spheres`, alone or under `robot_cfg: kinematics:`,
@@ -30,4 +33,21 @@ struct SphereFile {
 ///   yaml-cpp
 SphereFile read_spheres(const std::string& file);
 
-}  // namespace kaboum::tools
+/// The same of a text; a URDF is no xacro.
+/// @param file  its name: the format by the extension; for messages
+SphereFile parse_spheres(const std::string& file, const std::string& text);
+
+/// The text of a file with other spheres; all else stays, in YAML letter by letter. Numbers have
+/// all digits.
+/// @param wanted  of each link all spheres that it is to have: first those read, in their order,
+///   changed or not, then others; links that are not among them stay as they are
+/// @throws as parse_spheres; Error{InvalidInput} where a buffer is larger than a radius, or YAML is
+///   written in a way that is not edited (aliases)
+std::string edited_spheres(const std::string& file, const std::string& text,
+                           const std::vector<LinkSpheres>& wanted);
+
+/// True if a file holds spheres of links, and nothing else could be meant by it: cuRobo's YAML,
+/// XRDF and SRDF by the extension.
+bool is_sphere_file(const std::string& file);
+
+}  // namespace kaboum::robot
