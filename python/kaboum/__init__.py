@@ -57,6 +57,7 @@ from ._kaboum import (
     read,
     read_robot,
     read_set,
+    repair_spheres,
     replay,
     run_batch,
     run_plan,
@@ -66,11 +67,13 @@ from ._kaboum import (
     verify_cover,
     verify_mesh,
     verify_robot,
+    verify_spheres,
     verify_sweep,
     wrap,
     write,
     write_heatmap,
     write_plan_page,
+    write_spheres,
 )
 
 __all__ = [
@@ -119,6 +122,7 @@ __all__ = [
     "read",
     "read_robot",
     "read_set",
+    "repair_spheres",
     "replay",
     "run_batch",
     "run_plan",
@@ -128,9 +132,11 @@ __all__ = [
     "verify_cover",
     "verify_mesh",
     "verify_robot",
+    "verify_spheres",
     "verify_sweep",
     "wrap",
     "write",
     "write_heatmap",
     "write_plan_page",
+    "write_spheres",
 ]

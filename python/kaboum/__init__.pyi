@@ -859,6 +859,50 @@ def verify_robot(
     threads: int = 0,
     progress: _Progress | None = None,
 ) -> Verdict: ...
+def verify_spheres(
+    robot: _Robot,
+    spheres: _Path,
+    *,
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> Verdict: ...
+def write_spheres(
+    robot: _Robot,
+    file: _Path,
+    *,
+    epsilon: _Length | None = None,
+    robot_bodies: int | None = None,
+    share: Literal["farthest", "mean"] = "farthest",
+    effort: Literal["fast", "normal", "best"] = "normal",
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    no_cache: bool = False,
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> dict[str, Any]: ...
+def repair_spheres(
+    robot: _Robot,
+    spheres: _Path,
+    file: _Path,
+    *,
+    epsilon: _Length,
+    effort: Literal["fast", "normal", "best"] = "normal",
+    # options of shapes
+    links: str | Sequence[str] | None = None,
+    geometry: Literal["collision", "visual"] = "collision",
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    threads: int = 0,
+    progress: _Progress | None = None,
+) -> dict[str, Any]: ...
 def certify_robot(
     robot: _Robot,
     *,

@@ -22,6 +22,7 @@ void bind_sweeps(py::module_& module);
 void bind_verification(py::module_& module);
 void bind_sweep_verification(py::module_& module);
 void bind_robot_verification(py::module_& module);
+void bind_spheres(py::module_& module);
 void bind_pictures(py::module_& module);
 void bind_planning(py::module_& module);
 void bind_inverse_kinematics(py::module_& module);

@@ -20,6 +20,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_verification(module);
   bind_sweep_verification(module);
   bind_robot_verification(module);
+  bind_spheres(module);
   bind_planning(module);
   bind_inverse_kinematics(module);
   bind_wraps(module);

@@ -343,3 +343,35 @@ def test_decimation_of_robots_refuses_and_ends(arm, tmp_path):
 
     with pytest.raises(Enough):
         kaboum.decimate_robot(arm, epsilon="5%", no_cache=True, progress=stop)
+
+
+def test_spheres_are_written_judged_and_repaired(arm, tmp_path):
+    """The same bytes as the program's; less of them is refuted, with a place; repaired they hold again."""
+    made = kaboum.write_spheres(arm, tmp_path / "arm.yaml", epsilon=0.05, effort="fast")
+    assert made["spheres"] > 2 and 0 < made["mean_reach"] <= made["reach"] <= 0.05
+    program("bcd-decompose", arm, "-o", tmp_path / "program.yaml", "--bodies", "spheres", "--epsilon", 0.05, "--effort", "fast")
+    assert (tmp_path / "arm.yaml").read_bytes() == (tmp_path / "program.yaml").read_bytes()
+    verdict = kaboum.verify_spheres(arm, tmp_path / "arm.yaml")
+    assert verdict and [link["link"] for link in verdict.claims["links"]] == ["base", "upper", "tool"]
+    assert verdict.claims["share_outside"] == (0, 0)
+
+    text = (tmp_path / "arm.yaml").read_text()
+    radius = re.search(r'radius"?: ([0-9.e-]+)', text)
+    (tmp_path / "less.yaml").write_text(text[: radius.start(1)] + str(0.5 * float(radius[1])) + text[radius.end(1):])
+    less = kaboum.verify_spheres(arm, tmp_path / "less.yaml")
+    assert less.answer == "refuted"
+    wrong = [link for link in less.claims["links"] if link["answer"] == "refuted"]
+    assert len(wrong) == 1 and len(wrong[0]["missed"]) == 3 and wrong[0]["depth"] > 0 and wrong[0]["share_outside"][1] > 0
+    mended = kaboum.repair_spheres(arm, tmp_path / "less.yaml", tmp_path / "mended.yaml", epsilon=0.05, effort="fast")
+    assert sum(link["kept"] for link in mended["links"]) >= made["spheres"] - 2
+    assert kaboum.verify_spheres(arm, tmp_path / "mended.yaml")
+
+    few = kaboum.write_spheres(arm, tmp_path / "few.xrdf", robot_bodies=12, share="mean", effort="fast")
+    assert few["spheres"] <= 12 and kaboum.verify_spheres(arm, tmp_path / "few.xrdf")
+    with pytest.raises(kaboum.Error, match="one of epsilon and robot_bodies"):
+        kaboum.write_spheres(arm, tmp_path / "x.yaml")
+    with pytest.raises(kaboum.Error, match="written to .yaml"):
+        kaboum.write_spheres(arm, tmp_path / "x.txt", epsilon=0.05)
+    with pytest.raises(kaboum.Error, match="no link 'nose'"):
+        (tmp_path / "nose.yaml").write_text("collision_spheres:\n  nose:\n    - center: [0, 0, 0]\n      radius: 1\n")
+        kaboum.verify_spheres(arm, tmp_path / "nose.yaml")
