@@ -63,9 +63,9 @@ std::vector<Geometry> held_shapes(const std::vector<Geometry>& shapes,
   beyond = 0;
   for (Geometry& g : out) {
     if (robot::is_point(g)) continue;
-    const double excess = g.shape == Geometry::Shape::Cylinder || g.shape == Geometry::Shape::Sphere
-                              ? robot::bounding_excess(g)
-                              : 0;
+    const double excess = g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box
+                              ? 0
+                              : robot::bounding_excess(g);
     if (g.shape == Geometry::Shape::Sphere && is_held(g, balls))
       g.size *= (1 - 1e-9) * g.size.x() / (g.size.x() + excess);
     else

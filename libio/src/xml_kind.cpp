@@ -40,9 +40,9 @@ XmlKind xml_kind(std::string_view text) {
 std::string describe(XmlKind kind) {
   switch (kind) {
     case XmlKind::Sdf:
-      return "SDF (Gazebo), which is not read";
+      return "a robot or a world (SDF, Gazebo)";
     case XmlKind::Mjcf:
-      return "MJCF (MuJoCo), which is not read";
+      return "a robot or a scene (MJCF, MuJoCo)";
     case XmlKind::Srdf:
       return "SRDF (MoveIt): groups of joints and pairs that may collide, no shapes";
     case XmlKind::RlScene:

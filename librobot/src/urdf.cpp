@@ -94,6 +94,7 @@ struct JointEntry {
   Variable variable;
   std::optional<Mimicry> mimicry;
   int line;
+  bool unmodelled = false;  ///< planar or floating: fixed here
 };
 
 /// Links and joints of a document, one element at a time.
@@ -233,6 +234,8 @@ class Elements {
       out.joint.type = JointType::Revolute;
     } else if (type == "prismatic") {
       out.joint.type = JointType::Prismatic;
+    } else if (type == "planar" || type == "floating") {
+      out.unmodelled = true;
     } else if (type != "fixed") {
       fail("joints of type " + type + " are not supported");
     }
@@ -365,6 +368,9 @@ class Assembly {
       robot_.variables.push_back(entry.variable);
     }
     place_[joint.name] = robot_.joints.size();
+    if (entry.unmodelled)
+      robot_.unmodelled.push_back(name_ + ":" + std::to_string(entry.line) + ": joint '" +
+                                  joint.name + "' is planar or floating");
     robot_.joints.push_back(std::move(joint));
     order_.push_back(&entry);
   }

@@ -79,8 +79,9 @@ expect 2 'need a folder' "$D" robot.urdf -o x.off --epsilon 1%
 expect 3 'bcd-decompose urdf.xml -o FOLDER' "$D" urdf.xml -o x.off --epsilon 1%
 expect 3 'xacro robot.urdf.xacro > robot.urdf' env PATH=/nowhere "$BIN/bcd-decompose" robot.urdf.xacro -o x
 for tool in "$D" "$BIN/bcd-decompose"; do
-  for f in world.sdf world.xml; do expect 3 "^[a-z-]*: $f: SDF .*give the meshes that it names" "$tool" $f -o x.obj --epsilon 1%; done
-  expect 3 'arm.xml: MJCF .*give the meshes that it names' "$tool" arm.xml -o x.obj --epsilon 1%
+  for f in world.sdf world.xml arm.xml; do expect 2 'need a folder' "$tool" $f -o x.obj --epsilon 1%; done
+  expect 3 'world.sdf:1: <sdf>: no <model>' "$tool" world.sdf -o x --epsilon 1%
+  expect 3 'arm.xml: no link has a ' "$tool" arm.xml -o x --epsilon 1%
   expect 3 'rl.xml: a robot of the Robotics Library.*sweep-approx' "$tool" rl.xml -o x.obj --epsilon 1%
   expect 3 'scene.xml: a scene of the Robotics Library.*href' "$tool" scene.xml -o x.obj --epsilon 1%
   expect 3 'robot.srdf: SRDF .*give the URDF' "$tool" robot.srdf -o x.obj --epsilon 1%

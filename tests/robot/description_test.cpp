@@ -84,6 +84,17 @@ TEST(Urdf, NewVersions) {
   EXPECT_EQ(parse(limited("1.2", "continuous", both)).variables[0].upper, 1);
 }
 
+/// What a joint cannot say is fixed, and named with its line.
+TEST(Urdf, JointsThatAreNotModelled) {
+  for (const char* type : {"planar", "floating"}) {
+    const Robot robot =
+        parse(robot_of("<link name='a'/>\n<link name='b'/>" + joint("j", type, "a", "b")));
+    EXPECT_EQ(robot.variables.size(), 0U);
+    ASSERT_EQ(robot.unmodelled.size(), 1U);
+    EXPECT_EQ(robot.unmodelled[0], "r.urdf:2: joint 'j' is planar or floating");
+  }
+}
+
 /// The hull of its points holds a capsule or an ellipsoid, and reaches little beyond.
 TEST(Primitives, RoundShapesAreBounded) {
   for (const Geometry::Shape shape : {Geometry::Shape::Capsule, Geometry::Shape::Ellipsoid}) {
@@ -222,9 +233,6 @@ TEST(Urdf, BadFilesAreRefused) {
   has("<robot", "r.urdf:1");
   has("<mesh/>", "expected <robot>");
   has(robot_of(""), "r.urdf");
-  has(robot_of("\n" + kLinks + joint("j", "planar", "a", "b")),
-      ":2: joint 'j': joints of type planar");
-  has(robot_of(kLinks + joint("j", "floating", "a", "b")), "floating");
   has(robot_of(kLinks + joint("j", "spring", "a", "b")), "");
   has(robot_of(kLinks + joint("j", "fixed", "a", "b") + joint("k", "fixed", "c", "b")), "already");
   has(robot_of(kLinks + joint("j", "fixed", "a", "b")), "");  // c is alone: two roots

@@ -213,7 +213,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
                 "state --robot-bodies");
-  Run run{o, robot::read_robot(o.input)};
+  Run run{o, robot::read_robot(o.input, robot::Motions::None)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
   const certify::SetCache kept(certify::SetCache::default_folder());
@@ -360,7 +360,7 @@ int decompose_robot(const DecomposeOptions& o) {
                     ": such files hold spheres: state --bodies spheres, or name a folder "
                     "for the robot");
   require_robot_folder(o.output, o.output_format);
-  Run run{o, robot::read_robot(o.input)};
+  Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   RobotWriter output(folder_options(o.robot), o.output, run.robot, "bodies", "");

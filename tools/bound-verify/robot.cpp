@@ -111,8 +111,8 @@ class RobotVerifier {
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
-        original_(robot::read_robot(o_.original)),
-        result_(robot::read_robot(o_.result)),
+        original_(robot::read_robot(o_.original, robot::Motions::None)),
+        result_(robot::read_robot(o_.result, robot::Motions::None)),
         meshes_(o_.how.shapes.packages, o_.how.exact_points),
         progress_(common.quiet) {}
 

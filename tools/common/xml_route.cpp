@@ -5,7 +5,6 @@
 namespace kaboum::tools {
 
 std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
-  const std::string meshes = "; give the meshes that it names, or the robot as URDF";
   switch (kind) {
     case io::XmlKind::Urdf:
       return "a robot (URDF), not a mesh: bcd-decompose " + path +
@@ -18,9 +17,9 @@ std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
     case io::XmlKind::Srdf:
       return describe(kind) + "; give the URDF that it belongs to";
     case io::XmlKind::Sdf:
-      return describe(kind) + meshes;
     case io::XmlKind::Mjcf:
-      return describe(kind) + meshes;
+      return describe(kind) + ", not a mesh: bcd-decompose and bmesh-decimate take robots called " +
+             "NAME.sdf or NAME.xml; other tools take the meshes one by one";
     case io::XmlKind::RlRobot:
       return "a robot of the Robotics Library (rlkin or rlmdl), not a mesh: sweep-approx and "
              "bound-verify sweep take it; other tools take its meshes one by one, the files "

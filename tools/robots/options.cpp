@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/xml_kind.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/loaders.h>
 
@@ -22,9 +23,10 @@ void add_formats(CLI::App& app, RobotOptions& o) {
   std::vector<std::string> names;
   for (const robot_folder::Loader& loader : robot_folder::loaders())
     names.emplace_back(loader.name);
-  app.add_option("--robot-format", o.formats,
-                 "Also write the robot as MJCF (NAME.xml) or SDF (NAME.sdf), beside the URDF, "
-                 "which is always written (repeatable)")
+  app.add_option(
+         "--robot-format", o.formats,
+         "Also write the robot as MJCF (NAME.xml) or SDF (NAME.sdf), beside the format that "
+         "it is in, which is always written (repeatable)")
       ->delimiter(',')
       ->check(CLI::IsMember({"urdf", "mjcf", "sdf"}).description(""))
       ->type_name("urdf|mjcf|sdf");
@@ -50,7 +52,12 @@ bool is_robot(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  return extension == ".urdf" || extension == ".xacro";
+  if (extension == ".urdf" || extension == ".xacro" || extension == ".sdf" || extension == ".mjcf")
+    return true;
+  if (extension != ".xml" || !std::filesystem::is_regular_file(path)) return false;
+  const std::vector<char> text = io::read_file(path);
+  const io::XmlKind kind = io::xml_kind({text.data(), text.size()});
+  return kind == io::XmlKind::Mjcf || kind == io::XmlKind::Sdf;
 }
 
 void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
@@ -88,8 +95,8 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input) {
                              "--epsilons", "--robot-format", "--for", "--html-report"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) +
-                                                  " is for robots (.urdf, .xacro); " + input +
-                                                  " is taken for a mesh");
+                                                  " is for robots (.urdf, .xacro, .xml, .sdf); " +
+                                                  input + " is taken for a mesh");
 }
 
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& o,

@@ -49,6 +49,10 @@ void say(const robot_folder::RobotWriter& writer, bool quiet, const Notes& notes
   log(quiet,
       how_meshes_are_found(folder.urdf(), folder.part(), robot_folder::with_slash(o.mesh_prefix)));
   for (const std::string& text : notes.lines()) log(quiet, text);
+  const robot::Robot& robot = writer.robot().robot;
+  for (const std::string& text : robot.notes) log(quiet, text);
+  for (const std::string& text : robot.unmodelled)
+    log(quiet, text + "; the shapes of links do not depend on it");
   for (const std::string& text :
        robot::notes_on_flat_shapes(writer.robot(), visual, o.shapes.links))
     log(quiet, text);

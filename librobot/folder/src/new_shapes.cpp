@@ -85,10 +85,10 @@ NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& ch
   return out;
 }
 
-robot::Model new_model(const robot::RobotFile& robot, std::string_view text,
-                       const robot::ShapeChoice& choice, const NewShapes& shapes,
-                       const fs::path& folder, const std::string& prefix, KeptNames kept) {
-  robot::Model out{robot.robot, robot::parse_dynamics(text, robot.path.string())};
+robot::Model new_model(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+                       const NewShapes& shapes, const fs::path& folder, const std::string& prefix,
+                       KeptNames kept) {
+  robot::Model out{robot.robot, robot::dynamics_of(robot)};
   const Keeper keeper(robot, choice, folder, kept);
   for (std::size_t l = 0; l < shapes.size(); ++l) {
     robot::Link& link = out.robot.links[l];

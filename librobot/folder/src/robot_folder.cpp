@@ -91,7 +91,7 @@ void refuse(const fs::path& place) {
                                            "program; remove it or name another folder");
 }
 
-/// The URDF's name in the new folder.
+/// The robot's name in the new folder.
 fs::path urdf_name(const fs::path& robot) {
   fs::path name = robot.filename();
   if (!robot::is_xacro(name)) return name;
@@ -148,7 +148,8 @@ void RobotFolder::require_replaceable(const fs::path& place) const {
 bool RobotFolder::has_other_documents(const RobotContents& contents) const {
   return std::ranges::any_of(kExtensions, [&](const char* extension) {
     const auto is_this = [&](const auto& d) { return d.first == extension; };
-    return std::ranges::none_of(contents.documents, is_this) && is_made_by_us(document(extension));
+    return document(extension) != urdf_ && std::ranges::none_of(contents.documents, is_this) &&
+           is_made_by_us(document(extension));
   });
 }
 

@@ -30,7 +30,8 @@ const char* tag_of(bool visual) { return visual ? "visual" : "collision"; }
 }  // namespace
 
 RobotUrdf::RobotUrdf(const robot::RobotFile& robot, fs::path folder)
-    : file_(robot.path.string()),
+    : robot_(robot.robot),
+      file_(robot.path.string()),
       from_(fs::absolute(robot.path).parent_path()),
       folder_(std::move(folder)),
       text_(robot.text) {
@@ -119,7 +120,13 @@ void RobotUrdf::move_references(XMLElement* element) {
   }
 }
 
-std::string RobotUrdf::text() {
+std::string RobotUrdf::text(const NewShapes& shapes, bool visual, const MeshNames& names) {
+  for (std::size_t l = 0; l < shapes.size(); ++l) {
+    if (shapes[l].empty())
+      keep(robot_.links[l].name);
+    else
+      replace(robot_.links[l].name, visual, shapes[l], names);
+  }
   move_references(document_.RootElement());
   let_mujoco_find_meshes(*document_.RootElement());
   tinyxml2::XMLPrinter printer;

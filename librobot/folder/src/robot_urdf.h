@@ -10,28 +10,23 @@
 #include <string_view>
 #include <vector>
 
+#include "robot_document.h"
+
 namespace kaboum::robot_folder {
 
-/// How new meshes are named in a URDF.
-struct MeshNames {
-  std::string prefix;           ///< put before them
-  bool declare_convex = false;  ///< for Drake, which takes them for convex then
-};
-
-/// A copy of a robot's URDF in which bodies stand for the links' shapes. Everything else stays;
-/// names of files relative to the robot's become relative to the new folder.
-class RobotUrdf {
+/// A copy of a robot's URDF in which bodies stand for the links' shapes.
+class RobotUrdf : public RobotDocument {
  public:
   /// @param folder  that the copy will be in
   /// @throws Error{InvalidInput} when the file is no URDF.
   RobotUrdf(const robot::RobotFile& robot, std::filesystem::path folder);
 
-  /// Stems of the names of all meshes.
-  [[nodiscard]] std::vector<std::string> mesh_stems() const;
+  [[nodiscard]] std::vector<std::string> mesh_stems() const override;
+  void require_shapes(const std::string& link, bool visual, std::size_t shapes) override;
+  std::string text(const NewShapes& shapes, bool visual, const MeshNames& names) override;
 
-  /// @throws Error{InvalidInput} when a link has another number of shapes here.
-  void require_shapes(const std::string& link, bool visual, std::size_t shapes);
-
+ private:
+  using Element = tinyxml2::XMLElement;
   /// Makes the <collision> elements of a link the bodies, each with the pose and scale of the shape
   /// that it stands for, so that the inclusion holds without rounding.
   /// @param visual  whether they stand for the shapes for drawing
@@ -40,18 +35,11 @@ class RobotUrdf {
   /// Keeps the <collision> elements of a link.
   void keep(const std::string& link);
 
-  /// The original's text.
-  [[nodiscard]] std::string_view original() const { return text_; }
-
-  /// The copy's text, the last thing to be asked for.
-  std::string text();
-
- private:
-  using Element = tinyxml2::XMLElement;
   Element* element_of(const std::string& link);
   Element* collision(const Element* original, const std::string& link, std::size_t number);
   void move_references(Element* element);
 
+  const robot::Robot& robot_;
   std::string file_;
   std::filesystem::path from_, folder_;
   std::string text_;

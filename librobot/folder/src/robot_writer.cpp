@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "robot_urdf.h"
+#include "robot_document.h"
 #include "written_files.h"
 
 namespace kaboum::robot_folder {
@@ -42,7 +42,7 @@ struct RobotWriter::State {
   FolderOptions o;
   const robot::RobotFile& robot;
   RobotFolder folder;
-  RobotUrdf urdf;
+  std::unique_ptr<RobotDocument> document;
   std::vector<std::string> links = {};
   std::vector<std::pair<std::string, std::string>> more = {};  ///< extension, text
   std::optional<certify::CacheFolder> cache = {};              ///< none: all is written
@@ -57,10 +57,13 @@ struct RobotWriter::State {
 
 RobotWriter::RobotWriter(FolderOptions options, const std::string& folder,
                          const robot::RobotFile& robot, std::string part, std::string extension)
-    : state_(new State{std::move(options),
-                       robot,
+    : state_(new State{std::move(options), robot,
                        RobotFolder(folder, robot, std::move(part), std::move(extension)),
-                       {robot, folder}}) {}
+                       document_of(robot, folder)}) {
+  // Its own format is written in any case.
+  if (robot.format == robot::RobotFile::Format::Mjcf) state_->o.mjcf = false;
+  if (robot.format == robot::RobotFile::Format::Sdf) state_->o.sdf = false;
+}
 
 RobotWriter::~RobotWriter() = default;
 
@@ -77,8 +80,8 @@ void RobotWriter::plan(const robot::LinkMeshes& meshes) {
   const robot::ShapeChoice& shapes = state_->o.shapes;
   for (const robot::Link& link : state_->robot.robot.links)
     if (shapes.has(link))
-      state_->urdf.require_shapes(link.name, shapes.visual, shapes.shapes_of(link).size());
-  state_->folder.name_meshes(meshes, shapes, state_->urdf.mesh_stems());
+      state_->document->require_shapes(link.name, shapes.visual, shapes.shapes_of(link).size());
+  state_->folder.name_meshes(meshes, shapes, state_->document->mesh_stems());
   if (state_->o.mjcf) state_->folder.require_own_document(kMjcf);
   if (state_->o.sdf) state_->folder.require_own_document(kSdf);
 }
@@ -93,12 +96,12 @@ std::vector<std::pair<std::string, std::string>> RobotWriter::State::other_forma
   };
   if (o.mjcf) {
     const robot::Model model =
-        new_model(robot, urdf.original(), o.shapes, shapes, folder.path(), {}, KeptNames::Files);
+        new_model(robot, o.shapes, shapes, folder.path(), {}, KeptNames::Files);
     if (note) note_unread(model.robot, folder.document(kMjcf).string(), note);
     add(kMjcf, robot::to_mjcf(model));
   }
   if (o.sdf)
-    add(kSdf, robot::to_sdf(new_model(robot, urdf.original(), o.shapes, shapes, folder.path(),
+    add(kSdf, robot::to_sdf(new_model(robot, o.shapes, shapes, folder.path(),
                                       with_slash(o.mesh_prefix), KeptNames::Moved)));
   return out;
 }
@@ -167,16 +170,9 @@ void RobotWriter::write(const NewShapes& shapes, decltype(RobotContents::write_m
   RobotContents contents{
       std::move(write_mesh), std::move(links), s.other_formats(shapes, note), {}};
   const MeshNames names{with_slash(state_->o.mesh_prefix), state_->o.declare_convex};
-  for (std::size_t l = 0; l < shapes.size(); ++l) {
-    const std::string& name = state_->robot.robot.links[l].name;
-    if (shapes[l].empty())
-      state_->urdf.keep(name);
-    else
-      state_->urdf.replace(name, state_->o.shapes.visual, shapes[l], names);
-  }
   contents.documents.insert(contents.documents.end(), state_->more.begin(), state_->more.end());
   for (auto& [extension, text] : contents.documents) text = marked(std::move(text));
-  contents.urdf = marked(state_->urdf.text());
+  contents.urdf = marked(s.document->text(shapes, s.o.shapes.visual, names));
   s.write_or_reuse(contents);
 }
 

@@ -134,10 +134,11 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
                          : ""));
   };
   const fs::path folder = robot.has_parent_path() ? robot.parent_path() : fs::path(".");
-  const std::string file = "file://", package = "package://";
+  const std::string file = "file://", model = "model://";
+  const std::string package = reference.starts_with(model) ? model : "package://";
   if (!reference.starts_with(package)) {
     if (reference.find("://") != std::string::npos && !reference.starts_with(file))
-      return fail("only package:// and file:// are known");
+      return fail("only package://, model:// and file:// are known");
     fs::path path =
         reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
     if (path.is_relative()) path = folder / path;
@@ -160,6 +161,8 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
   for (const fs::path& place : given) search.place(place, kDepth);
   for (const fs::path& place : ros) search.place(place, kDepth);
   for (const fs::path& place : ament) search.add(place / "share" / name);
+  for (const char* gazebo : {"GZ_SIM_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH"})
+    for (const fs::path& place : places_of(gazebo)) search.add(place / name);
   std::error_code error;
   std::vector<fs::path> above;
   for (fs::path up = fs::absolute(folder, error).lexically_normal();; up = up.parent_path()) {

@@ -6,6 +6,8 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/io/xml_kind.h>
+#include <kaboum/robot/mjcf.h>
+#include <kaboum/robot/sdf.h>
 
 #include <algorithm>
 #include <cctype>
@@ -39,20 +41,19 @@ void find_meshes(Robot& robot, const fs::path& folder) {
 /// What to do with a document of this kind where a robot is to come; empty for robots, and for
 /// None.
 std::string route_to_robot(io::XmlKind kind) {
-  const std::string urdf = "; give the robot as URDF, or as rlkin or rlmdl (Robotics Library)";
+  const std::string urdf =
+      "; give the robot as URDF, MJCF or SDF, or as rlkin or rlmdl (Robotics Library)";
   switch (kind) {
     case io::XmlKind::Srdf:
       return describe(kind) + "; give the URDF that it belongs to";
-    case io::XmlKind::Sdf:
-      return describe(kind) + urdf;
-    case io::XmlKind::Mjcf:
-      return describe(kind) + urdf;
     case io::XmlKind::RlScene:
       return describe(kind) + "; give the rlkin or rlmdl that moves it";
     case io::XmlKind::Other:
       return describe(kind) + urdf;
     case io::XmlKind::Urdf:
     case io::XmlKind::Xacro:  // its parser names the line
+    case io::XmlKind::Mjcf:
+    case io::XmlKind::Sdf:
     case io::XmlKind::RlRobot:
     case io::XmlKind::None:
       break;
@@ -69,7 +70,22 @@ bool is_xacro(const fs::path& path) {
   return extension == ".xacro";
 }
 
-RobotFile read_robot(const std::string& path) {
+void require_modelled(const RobotFile& robot) {
+  if (robot.robot.unmodelled.empty()) return;
+  throw Error(ErrorCode::InvalidInput,
+              robot.robot.unmodelled.front() +
+                  "; motions are known of joints that turn or slide. bcd-decompose, bmesh-decimate "
+                  "and bound-verify robot take it: shapes do not depend on joints");
+}
+
+Dynamics dynamics_of(const RobotFile& robot) {
+  const std::string name = robot.path.string();
+  if (robot.format == RobotFile::Format::Mjcf) return parse_mjcf(robot.text, name).dynamics;
+  if (robot.format == RobotFile::Format::Sdf) return parse_sdf(robot.text, name).dynamics;
+  return parse_dynamics(robot.text, name);
+}
+
+RobotFile read_robot(const std::string& path, Motions motions) {
   RobotFile out;
   out.path = path;
   std::string name = path;
@@ -86,15 +102,42 @@ RobotFile read_robot(const std::string& path) {
     throw Error(ErrorCode::InvalidInput, name + ": " + route);
   if (kind == io::XmlKind::RlRobot) {
     out.robot = robot::parse_rl(out.text, name);
+    out.format = RobotFile::Format::Rl;
     find_meshes(out.robot, out.path.parent_path());
+  } else if (kind == io::XmlKind::Mjcf) {
+    out.format = RobotFile::Format::Mjcf;
+    const std::string expanded = expand_mjcf(out.text, name, [&](const std::string& file) {
+      const std::vector<char> included = io::read_file(out.path.parent_path() / file);
+      return std::string(included.begin(), included.end());
+    });
+    if (expanded != out.text) name += " (expanded)";
+    out.text = expanded;
+    out.sha256 = io::sha256(out.text);
+    out.robot = parse_mjcf(out.text, name).robot;
+  } else if (kind == io::XmlKind::Sdf) {
+    out.format = RobotFile::Format::Sdf;
+    out.robot = parse_sdf(out.text, name).robot;
   } else {
     out.robot = robot::parse_urdf(out.text, name);
   }
+  if (motions == Motions::All) require_modelled(out);
   return out;
 }
 
 std::vector<std::string> included_files(const RobotFile& robot) {
-  return is_xacro(robot.path) ? xacro_includes(robot.path) : std::vector<std::string>();
+  if (is_xacro(robot.path)) return xacro_includes(robot.path);
+  std::vector<std::string> files;
+  if (robot.format == RobotFile::Format::Mjcf) {
+    const std::vector<char> bytes = io::read_file(robot.path);
+    const fs::path folder = robot.path.parent_path();
+    static_cast<void>(expand_mjcf(std::string(bytes.begin(), bytes.end()), robot.path.string(),
+                                  [&](const std::string& file) {
+                                    files.push_back((folder / file).string());
+                                    const std::vector<char> text = io::read_file(folder / file);
+                                    return std::string(text.begin(), text.end());
+                                  }));
+  }
+  return files;
 }
 
 void require_links(const RobotFile& robot, const std::vector<std::string>& links) {

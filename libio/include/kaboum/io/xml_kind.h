@@ -19,7 +19,7 @@ enum class XmlKind {
 };
 XmlKind xml_kind(std::string_view text);
 
-/// "SDF (Gazebo), which is not read"; empty for kinds that are read.
+/// "a robot or a world (SDF, Gazebo)"; empty for kinds that speak for themselves.
 std::string describe(XmlKind kind);
 
 }  // namespace kaboum::io

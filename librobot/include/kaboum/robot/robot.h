@@ -62,6 +62,10 @@ struct Robot {
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Variable> variables;
+  /// What moves in ways that no joint here says, and stands still here: "robot.xml:12: joint 'x' is
+  /// a ball joint". Shapes of links do not depend on it; whatever is said of motions does.
+  std::vector<std::string> unmodelled = {};
+  std::vector<std::string> notes = {};  ///< what was left out, with its place
 
   [[nodiscard]] std::optional<std::uint32_t> find_link(std::string_view link_name) const;
 };
@@ -78,7 +82,7 @@ void require_valid(const Robot& robot);
 /// that is silent, as urdfdom: 3.0, and 6.0 of what is new.
 /// @param name  appears in messages.
 /// @throws Error{InvalidInput} naming the line where known: XML that is not well-formed or has
-///   xacro in it; planar and floating joints; several or no roots, loops, links with two parents.
+///   xacro in it; several or no roots, loops, links with two parents.
 ///   Also names used twice, mimicry of absent joints, numbers that are not finite, shapes of
 ///   negative size or unknown kind, and two origins, axes or shapes where one is meant.
 Robot parse_urdf(std::string_view text, const std::string& name);

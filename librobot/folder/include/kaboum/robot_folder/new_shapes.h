@@ -44,12 +44,10 @@ enum class KeptNames {
 
 /// The robot with its new collision shapes, each with the pose and scale of the shape that it
 /// stands for.
-/// @param text  of its URDF
 /// @param folder  of the new files
 /// @throws Error naming a mesh that is not found, of KeptNames::Files
-robot::Model new_model(const robot::RobotFile& robot, std::string_view text,
-                       const robot::ShapeChoice& choice, const NewShapes& shapes,
-                       const std::filesystem::path& folder, const std::string& prefix,
-                       KeptNames kept);
+robot::Model new_model(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+                       const NewShapes& shapes, const std::filesystem::path& folder,
+                       const std::string& prefix, KeptNames kept);
 
 }  // namespace kaboum::robot_folder

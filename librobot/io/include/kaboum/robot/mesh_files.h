@@ -7,7 +7,8 @@
 namespace kaboum::robot {
 
 /// The files that a URDF's mesh reference may stand for, at least one: a path, absolute or relative
-/// to the robot's file, also as file://, or `package://NAME/rest`.
+/// to the robot's file, also as file://, `package://NAME/rest`, or `model://NAME/rest` (Gazebo's,
+/// looked up in the same way, and in the folders of its variables).
 ///
 /// Packages are looked for, in this order, in the folders given, those of $ROS_PACKAGE_PATH, the
 /// folders share/NAME of $AMENT_PREFIX_PATH, and the robot's folder and all above it. A folder is

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/robot/dynamics.h>
 #include <kaboum/robot/robot.h>
 
 #include <filesystem>
@@ -11,24 +12,40 @@ namespace kaboum::robot {
 
 /// A robot as read from its file.
 struct RobotFile {
+  enum class Format { Urdf, Rl, Mjcf, Sdf };
+
   Robot robot;
   std::filesystem::path path;
-  std::string text;    ///< of the file; of xacro, what it stands for
+  std::string text;  ///< of the file; of xacro, what it stands for; of MJCF, with what it includes
   std::string sha256;  ///< of the text
+  Format format = Format::Urdf;
+};
+
+/// What is said of a robot's motions.
+enum class Motions {
+  All,   ///< the joints are all there are: a robot with others (Robot::unmodelled) is refused
+  None,  ///< shapes only
 };
 
 /// True if a file is xacro by its name, NAME.xacro, NAME.urdf.xacro, which read_robot expands.
 bool is_xacro(const std::filesystem::path& path);
 
-/// Reads URDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element). Links of
-/// the latter get the mesh in the robot's folder that has their name; `bodyN` also that of `linkN`.
+/// Reads URDF, MJCF, SDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element).
+/// Links of the latter get the mesh in the robot's folder that has their name; `bodyN` also that of
+/// `linkN`.
 ///
 /// Of a file called NAME.xacro, what the program `xacro` makes of it without arguments; its names
 /// of files are relative to NAME.xacro. The program is run: such a file is trusted as a script is.
 /// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long.
-RobotFile read_robot(const std::string& path);
+RobotFile read_robot(const std::string& path, Motions motions = Motions::All);
 
-/// Files that read_robot read beside the robot's own: what xacro includes, as xacro says.
+/// @throws Error{InvalidInput} naming a joint that Robot does not model.
+void require_modelled(const RobotFile& robot);
+
+/// What a robot's file says of masses and forces.
+Dynamics dynamics_of(const RobotFile& robot);
+
+/// Files that read_robot read beside the robot's own: what xacro and MJCF include.
 /// @throws as read_robot
 std::vector<std::string> included_files(const RobotFile& robot);
 

@@ -1,0 +1,240 @@
+// MJCF documents with other collision geoms: the document is edited, so that all else stays.
+
+#include <kaboum/base/error.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <set>
+
+#include "mjcf_model.h"
+#include "model_words.h"
+#include "xml.h"
+
+namespace kaboum::robot {
+namespace {
+
+using tinyxml2::XMLElement;
+
+/// What a geom says of contacts.
+constexpr std::array kContact{"contype", "conaffinity", "condim", "priority", "friction",
+                              "solmix",  "solref",      "solimp", "margin",   "gap"};
+
+template <class Action>
+void visit(XMLElement& element, const Action& action) {
+  for (XMLElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    action(*e);
+    visit(*e, action);
+  }
+}
+
+class Editor {
+ public:
+  Editor(tinyxml2::XMLDocument& document, const std::string& name, const ShapeEdit& edit)
+      : document_(document),
+        root_(*document.RootElement()),
+        edit_(edit),
+        model_(read_mjcf(document, name)) {}
+
+  std::string edit() {
+    collect_names();
+    move_assets();
+    for (std::size_t l = 0; l < edit_.links.size() && l < model_.robot.links.size(); ++l)
+      if (!edit_.links[l].empty()) edit_link(l);
+    for (const auto& [old, fresh] : replaced_) replace_pairs(old, fresh);
+    for (XMLElement* e : removed_) document_.DeleteNode(e);
+    tinyxml2::XMLPrinter printer;
+    document_.Print(&printer);
+    return printer.CStr();
+  }
+
+ private:
+  void collect_names() {
+    visit(root_, [&](XMLElement& e) {
+      const std::string_view tag = e.Name();
+      const char* name = e.Attribute("name");
+      if (tag == "geom" && name != nullptr) geoms_.give(name);
+      if (tag == "geom") return;
+      for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next())
+        if (std::string_view(a->Name()) != "name" && tag != "pair") mentioned_.insert(a->Value());
+    });
+    for (const auto& [mesh, unused] : model_.meshes) meshes_.give(mesh);
+  }
+
+  /// Names of files as the new document has them.
+  void move_assets() {
+    bool strips = false;
+    for (XMLElement* e = root_.FirstChildElement("compiler"); e != nullptr;
+         e = e->NextSiblingElement("compiler")) {
+      if (const char* value = e->Attribute("strippath"); value != nullptr)
+        strips = std::string_view(value) == "true";
+      for (const char* key : {"assetdir", "meshdir", "texturedir", "strippath"})
+        e->DeleteAttribute(key);
+    }
+    for (XMLElement* assets = root_.FirstChildElement("asset"); assets != nullptr;
+         assets = assets->NextSiblingElement("asset"))
+      visit(*assets, [&](XMLElement& e) {
+        const bool texture = std::string_view(e.Name()) == "texture";
+        const std::string& folder = texture ? model_.texture_folder : model_.mesh_folder;
+        for (const char* key :
+             {"file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback"})
+          if (const char* file = e.Attribute(key); file != nullptr)
+            e.SetAttribute(key, edit_.moved(place_of(file, folder, strips)).c_str());
+      });
+  }
+
+  static std::string place_of(std::string file, const std::string& folder, bool strips) {
+    std::ranges::replace(file, '\\', '/');
+    if (strips) file = file.substr(file.find_last_of('/') + 1);
+    if (folder.empty() || file.starts_with('/')) return file;
+    return folder + (folder.ends_with('/') ? "" : "/") + file;
+  }
+
+  /// An element of the document, which is ours to change.
+  static XMLElement& mine(const XMLElement* e) { return *const_cast<XMLElement*>(e); }
+
+  void edit_link(std::size_t l) {
+    const auto& originals = (edit_.visual ? model_.visual : model_.collision)[l];
+    const std::vector<ShapeMeshes>& shapes = edit_.links[l];
+    const bool drawn_besides = model_.visual[l] != model_.collision[l];
+    std::vector<std::string> fresh;  // of the link
+    for (std::size_t i = 0; i < shapes.size() && i < originals.size(); ++i) {
+      if (!done_.insert(originals[i]).second) continue;  // replicated: the same element
+      if (!shapes[i] && !edit_.visual) continue;         // it stays
+      std::vector<std::string> names = add_geoms(l, i);
+      if (!edit_.visual) take_out(l, *originals[i], drawn_besides, names);
+      std::ranges::move(names, std::back_inserter(fresh));
+    }
+    if (!edit_.visual) return;
+    for (const XMLElement* old : model_.collision[l])
+      if (gone_.insert(old).second) take_out(l, *old, drawn_besides, fresh);
+  }
+
+  /// The geoms that stand for a shape, before it. @return their names
+  std::vector<std::string> add_geoms(std::size_t l, std::size_t i) {
+    const XMLElement& original = *(edit_.visual ? model_.visual : model_.collision)[l][i];
+    const ShapeMeshes& meshes = edit_.links[l][i];
+    const char* own = original.Attribute("name");
+    const std::string name = own != nullptr ? own : model_.robot.links[l].name;
+    std::vector<std::string> out;
+    const auto add = [&](const std::string* file) {
+      XMLElement* e = original.ShallowClone(&document_)->ToElement();
+      out.push_back(geoms_.give(name + "_" + std::to_string(out.size())));
+      e->SetAttribute("name", out.back().c_str());
+      if (file != nullptr) e->SetAttribute("mesh", mesh_of(l, i, *file).c_str());
+      if (edit_.visual) let_collide(l, *e);
+      if (model_.weighed_by_geoms[l]) e->SetAttribute("mass", "0");
+      auto* parent = mine(&original).Parent();
+      if (tinyxml2::XMLNode* before = mine(&original).PreviousSibling(); before != nullptr)
+        parent->InsertAfterChild(before, e);
+      else
+        parent->InsertFirstChild(e);
+    };
+    if (!meshes)
+      add(nullptr);
+    else
+      for (const std::string& file : *meshes) add(&file);
+    return out;
+  }
+
+  /// With what a shape for collisions of the link says of contacts; by default with everything.
+  void let_collide(std::size_t l, XMLElement& e) const {
+    std::map<std::string, std::string> like;
+    if (!model_.collision[l].empty()) like = model_.geoms.at(model_.collision[l].front());
+    like.emplace("contype", "1");
+    like.emplace("conaffinity", "1");
+    for (const char* key : kContact)
+      if (const auto found = like.find(key); found != like.end())
+        e.SetAttribute(key, found->second.c_str());
+    if (const auto group = like.find("group"); group != like.end())
+      e.SetAttribute("group", group->second.c_str());
+    e.DeleteAttribute("material");
+  }
+
+  /// The mesh of a new file, with the scale and reference of the one that it stands for; once.
+  std::string mesh_of(std::size_t l, std::size_t i, const std::string& file) {
+    const XMLElement* original = (edit_.visual ? model_.visual : model_.collision)[l][i];
+    const MjcfMesh& mesh = model_.meshes.at(model_.geoms.at(original).at("mesh"));
+    const auto [at, fresh] = new_meshes_.try_emplace({file, mesh.element});
+    if (!fresh) return at->second;
+    std::string stem = file.substr(file.find_last_of('/') + 1);
+    stem = stem.substr(0, stem.rfind('.'));
+    at->second = meshes_.give(stem.empty() ? "mesh" : stem);
+    XMLElement* e = assets().InsertNewChildElement("mesh");
+    e->SetAttribute("name", at->second.c_str());
+    e->SetAttribute("file", file.c_str());
+    e->SetAttribute("scale", digits(mesh.scale).c_str());
+    for (const char* key : {"refpos", "refquat"})
+      if (const char* value = mesh.element->Attribute(key); value != nullptr)
+        e->SetAttribute(key, value);
+    return at->second;
+  }
+
+  XMLElement& assets() {
+    XMLElement* e = root_.FirstChildElement("asset");
+    if (e == nullptr) {
+      e = document_.NewElement("asset");
+      root_.InsertFirstChild(e);
+    }
+    return *e;
+  }
+
+  /// Has a geom collide no more. It goes where nothing else needs it: what is drawn, the body's
+  /// mass, elements that name it.
+  void take_out(std::size_t l, const XMLElement& old, bool drawn_besides,
+                const std::vector<std::string>& fresh) {
+    const char* name = old.Attribute("name");
+    if (name != nullptr) replaced_[name].insert(replaced_[name].end(), fresh.begin(), fresh.end());
+    const bool named = name != nullptr && mentioned_.contains(name);
+    if (drawn_besides && !model_.weighed_by_geoms[l] && !named) {
+      removed_.push_back(&mine(&old));
+      return;
+    }
+    mine(&old).SetAttribute("contype", "0");
+    mine(&old).SetAttribute("conaffinity", "0");
+  }
+
+  /// Pairs of the old geom become pairs of the new ones.
+  void replace_pairs(const std::string& old, const std::vector<std::string>& fresh) {
+    for (XMLElement* contact = root_.FirstChildElement("contact"); contact != nullptr;
+         contact = contact->NextSiblingElement("contact"))
+      for (XMLElement* pair = contact->FirstChildElement("pair"); pair != nullptr;) {
+        XMLElement* next = pair->NextSiblingElement("pair");
+        for (const char* key : {"geom1", "geom2"}) {
+          const char* value = pair->Attribute(key);
+          if (value == nullptr || old != value) continue;
+          for (const std::string& name : fresh) {
+            XMLElement* e = pair->ShallowClone(&document_)->ToElement();
+            e->SetAttribute(key, name.c_str());
+            e->DeleteAttribute("name");
+            contact->InsertAfterChild(pair, e);
+          }
+          contact->DeleteChild(pair);
+          break;
+        }
+        pair = next;
+      }
+  }
+
+  tinyxml2::XMLDocument& document_;
+  XMLElement& root_;
+  const ShapeEdit& edit_;
+  MjcfModel model_;
+  UniqueNames geoms_, meshes_;
+  std::set<std::string> mentioned_;  // by other elements than geoms and pairs
+  std::map<std::pair<std::string, const XMLElement*>, std::string> new_meshes_;  // file, mesh
+  std::map<std::string, std::vector<std::string>> replaced_;  // geoms by the name of the old one
+  std::set<const XMLElement*> done_, gone_;
+  std::vector<XMLElement*> removed_;
+};
+
+}  // namespace
+
+std::string mjcf_with_shapes(std::string_view text, const std::string& name,
+                             const ShapeEdit& edit) {
+  tinyxml2::XMLDocument document;
+  parse_xml(document, text, name);
+  return Editor(document, name, edit).edit();
+}
+
+}  // namespace kaboum::robot

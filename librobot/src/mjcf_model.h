@@ -1,0 +1,36 @@
+#pragma once
+
+#include <kaboum/robot/mjcf.h>
+#include <tinyxml2.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+// MJCF documents and the elements that a robot's shapes come from. Internal to kaboum_robot.
+namespace kaboum::robot {
+
+/// A mesh asset.
+struct MjcfMesh {
+  const tinyxml2::XMLElement* element = nullptr;
+  std::string file;  ///< as stated, without meshdir
+  Vec3 scale = Vec3::Ones();
+  Transform reference;  ///< refpos and refquat
+};
+
+/// A robot with the elements of its shapes.
+struct MjcfModel : MjcfRobot {
+  using Elements = std::vector<std::vector<const tinyxml2::XMLElement*>>;
+  Elements collision, visual;  ///< of each link, in the order of its shapes
+  std::map<std::string, MjcfMesh> meshes;
+  std::string mesh_folder, texture_folder;  ///< of the compiler
+  /// Bodies whose mass is that of their geoms, by link.
+  std::vector<bool> weighed_by_geoms;
+  /// Attributes of a geom as its classes complete them.
+  std::map<const tinyxml2::XMLElement*, std::map<std::string, std::string>> geoms;
+};
+
+/// @throws as parse_mjcf
+MjcfModel read_mjcf(const tinyxml2::XMLDocument& document, const std::string& name);
+
+}  // namespace kaboum::robot
