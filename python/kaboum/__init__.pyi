@@ -491,6 +491,9 @@ class World:
         robot: str | None = None,
         # options of engines
         engine: Literal["own", "fcl", "bullet", "ode"] = "own",
+        engine_shapes: Literal["sets", "meshes"] = "sets",
+        engine_step: float = 0.01,
+        package_path: _Path | Sequence[_Path] | None = None,
         # end of options
         progress: _Progress | None = None,
     ) -> Any: ...
