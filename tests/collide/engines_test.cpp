@@ -29,11 +29,18 @@ TEST(Engines, SayWhatTheOracleSays) {
       {"tree, directions, libccd", make_ccd_directions}};
   std::mt19937_64 random(5);
   int meeting = 0, apart = 0;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 300; ++i) {
+    const double size = i % 2 == 0 ? 1 : 0.03;  // parts of centimetres in metres
+    const auto random_body = [&] {
+      geom::Mesh body = test::random_body(random, 1);
+      for (geom::Vec3& v : body.vertices) v *= size;
+      return body;
+    };
     Model model{"bodies", true, 0, {}, {}};
-    for (int k = 0; k < 3; ++k) model.robot.push_back({0, test::random_body(random, 1)});
-    for (int k = 0; k < 3; ++k) model.scene.push_back(test::random_body(random, 1));
-    const geom::Transform pose = test::random_pose(random, 1);
+    for (int k = 0; k < 3; ++k) model.robot.push_back({0, random_body()});
+    for (int k = 0; k < 3; ++k) model.scene.push_back(random_body());
+    geom::Transform pose = test::random_pose(random, 1);
+    pose.translation *= size;
     const auto any = [&](double factor) {
       for (const Part& part : model.robot)
         for (const geom::Mesh& body : model.scene)

@@ -17,9 +17,13 @@ int main(int argc, char** argv) {
   const CLI::App* run = tools::add_run_command(app, o);
   tools::add_convert_command(app, o);
   app.footer(
+      "With --engine fcl, bullet or ode nothing is certified: contacts are what that library says, "
+      "of motions at samples; unsolvable is no proof then "
+      "(docs/algorithms/collision-engines.md).\n"
       "Exit codes: 0 done; 1 unsolvable, or the plan is invalid, or its execution is not as it "
       "should be; 2 usage; 3 bad input; 4 output "
-      "failed; 6 internal error; 7 time, memory or size limit reached; 8 no plan with what the "
+      "failed; 5 the engine is not built; 6 internal error; 7 time, memory or size limit reached; "
+      "8 no plan with what the "
       "knowledge state can infer, which is no proof.");
   return tools::run(app, argc, argv, [&] {
     if (solve->parsed()) return tools::solve(o);

@@ -3,100 +3,73 @@
 #include <kaboum/base/error.h>
 #include <kaboum/engines/collider.h>
 
+#include <array>
+
 #include "adapters.h"
 
 namespace kaboum::engines {
 namespace {
 
-#ifdef KABOUM_HAS_FCL
-constexpr bool kFcl = true;
-#else
-constexpr bool kFcl = false;
-#endif
-#ifdef KABOUM_HAS_BULLET
-constexpr bool kBullet = true;
-#else
-constexpr bool kBullet = false;
-#endif
-#ifdef KABOUM_HAS_ODE
-constexpr bool kOde = true;
-#else
-constexpr bool kOde = false;
-#endif
+/// A library, and what the build has of it.
+struct Entry {
+  Library library;
+  const char *name, *title, *packages, *option;
+  std::unique_ptr<Collider> (*make)(std::size_t) = nullptr;  ///< null: not built
+  std::string (*version)() = nullptr;
+};
 
-[[noreturn]] void refuse(const char* library, const char* packages, const char* option) {
-  throw Error(ErrorCode::NotBuilt, std::string("«engine»: this build has no ") + library +
-                                       ": install " + packages + ", and build with -D" + option +
-                                       "=ON");
+constexpr std::array<Entry, 3> kEntries{{
+    {Library::Fcl, "fcl", "FCL", "libfcl-dev and libccd-dev", "KABOUM_WITH_FCL",
+#ifdef KABOUM_HAS_FCL
+     make_fcl_collider, fcl_version
+#endif
+    },
+    {Library::Bullet, "bullet", "Bullet", "libbullet-dev", "KABOUM_WITH_BULLET",
+#ifdef KABOUM_HAS_BULLET
+     make_bullet_collider, bullet_version
+#endif
+    },
+    {Library::Ode, "ode", "ODE", "libode-dev", "KABOUM_WITH_ODE",
+#ifdef KABOUM_HAS_ODE
+     make_ode_collider, ode_version
+#endif
+    },
+}};
+
+/// Null: own predicates.
+const Entry* entry_of(Library library) {
+  for (const Entry& entry : kEntries)
+    if (entry.library == library) return &entry;
+  return nullptr;
 }
 
 }  // namespace
 
 const char* name_of(Library library) {
-  switch (library) {
-    case Library::Fcl:
-      return "fcl";
-    case Library::Bullet:
-      return "bullet";
-    case Library::Ode:
-      return "ode";
-    case Library::Own:
-      break;
-  }
-  return "own";
+  const Entry* entry = entry_of(library);
+  return entry == nullptr ? "own" : entry->name;
 }
 
 bool is_built(Library library) {
-  switch (library) {
-    case Library::Fcl:
-      return kFcl;
-    case Library::Bullet:
-      return kBullet;
-    case Library::Ode:
-      return kOde;
-    case Library::Own:
-      break;
-  }
-  return true;
+  const Entry* entry = entry_of(library);
+  return entry == nullptr || entry->make != nullptr;
 }
 
 std::string title_of(Library library) {
-#ifdef KABOUM_HAS_FCL
-  if (library == Library::Fcl) return fcl_version();
-#endif
-#ifdef KABOUM_HAS_BULLET
-  if (library == Library::Bullet) return bullet_version();
-#endif
-#ifdef KABOUM_HAS_ODE
-  if (library == Library::Ode) return ode_version();
-#endif
-  return name_of(library);
+  const Entry* entry = entry_of(library);
+  if (entry == nullptr) return "own";
+  return entry->version == nullptr ? entry->title : entry->version();
 }
 
 std::unique_ptr<Collider> make_collider(Library library, std::size_t things) {
-  switch (library) {
-    case Library::Fcl:
-#ifdef KABOUM_HAS_FCL
-      return make_fcl_collider(things);
-#else
-      refuse("FCL", "libfcl-dev and libccd-dev", "KABOUM_WITH_FCL");
-#endif
-    case Library::Bullet:
-#ifdef KABOUM_HAS_BULLET
-      return make_bullet_collider(things);
-#else
-      refuse("Bullet", "libbullet-dev", "KABOUM_WITH_BULLET");
-#endif
-    case Library::Ode:
-#ifdef KABOUM_HAS_ODE
-      return make_ode_collider(things);
-#else
-      refuse("ODE", "libode-dev", "KABOUM_WITH_ODE");
-#endif
-    case Library::Own:
-      break;
-  }
-  throw Error(ErrorCode::InvalidArgument, "own predicates are no library of others");
+  const Entry* entry = entry_of(library);
+  if (entry == nullptr)
+    throw Error(ErrorCode::InvalidArgument, "own predicates are no library of others");
+  if (entry->make == nullptr)
+    throw Error(ErrorCode::NotBuilt, std::string("«engine»: this build has no ") + entry->title +
+                                         ": install " + entry->packages + ", and build with -D" +
+                                         entry->option + "=ON");
+  return entry->make(things);
 }
 
 }  // namespace kaboum::engines

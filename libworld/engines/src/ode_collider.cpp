@@ -2,6 +2,7 @@
 // and miss containment, so that bodies of sets are triangles, too: what lies wholly inside is not
 // seen.
 
+#include <kaboum/base/error.h>
 #include <kaboum/geom/body_polytopes.h>
 #include <ode/ode.h>
 
@@ -18,7 +19,6 @@ class OdeCollider : public Collider {
   explicit OdeCollider(std::size_t things) : things_(things) {
     static std::once_flag started;
     std::call_once(started, [] { dInitODE2(0); });
-    dAllocateODEDataForThread(dAllocateMaskAll);
   }
   ~OdeCollider() override {
     for (Thing& thing : things_) clear(thing);
@@ -52,6 +52,9 @@ class OdeCollider : public Collider {
   }
 
   bool meet(std::size_t a, std::size_t b) override {
+    // Each thread that asks has data of its own.
+    thread_local const int kJoined = dAllocateODEDataForThread(dAllocateMaskAll);
+    ensure(kJoined != 0, "ODE has memory for this thread");
     if (things_[a].shape == nullptr || things_[b].shape == nullptr) return false;
     dContactGeom contact;
     return dCollide(things_[a].shape, things_[b].shape, 1, &contact, sizeof contact) > 0;
