@@ -196,7 +196,7 @@ TEST(BodyCover, WhatHasNoRadiusIsNoCapsule) {
 // has a witness.
 TEST(BodyCover, AgreesWithPoints) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> at(-1.2, 1.2), size(0.3, 1.1);
+  std::uniform_real_distribution<double> at(-0.8, 0.8), size(0.6, 1.7);
   const Mesh original = cube(1);
   int verified = 0, refuted = 0;
   for (int i = 0; i < 150; ++i) {
