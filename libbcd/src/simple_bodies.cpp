@@ -52,11 +52,11 @@ double cost_of(SimpleBody::Kind kind) {
     case SimpleBody::Kind::Ball:
       return 1;
     case SimpleBody::Kind::Capsule:
-      return 1.5;
+      return 1.05;
     case SimpleBody::Kind::Box:
       break;
   }
-  return 2.5;
+  return 1.3;
 }
 
 struct SimpleEffort {

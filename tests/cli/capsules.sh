@@ -85,7 +85,7 @@ for kind in capsules boxes mixed; do
   json judged.json "r['verdict'] == 'verified' and r['links_held'] == 2"
 done
 shows 0 '^verified' "$V" robot arm.urdf --bodies boxes.urdf --links base
-# Every size of every shape, one after the other, made 5 % smaller: one at least is refuted, none is an error.
+# Every size of every shape, one after the other, made half as large: none is verified then.
 python3 - "$V" <<'P' || fail "mutants of boxes"
 import re, subprocess, sys
 text = open("boxes.urdf").read()
@@ -95,9 +95,10 @@ for place in places:
     smaller = " ".join(repr(0.5 * float(x)) for x in place.group(1).split())
     open("mutant.urdf", "w").write(text[:place.start(1)] + smaller + text[place.end(1):])
     code = subprocess.run([sys.argv[1], "robot", "arm.urdf", "--bodies", "mutant.urdf"], capture_output=True).returncode
-    assert code in (0, 1, 7), code
+    # Of a round shape without triangles it is not decided that it sticks out.
+    assert code in (1, 7), code
     refuted += code == 1
-assert refuted == len(places), (refuted, len(places))
+assert refuted >= 2, (refuted, len(places))
 P
 # A link whose shapes are gone; a mesh; a stranger.
 sed '/<link name="hand"/,/<\/link>/{/collision/,/\/collision/d}' boxes.urdf >gone.urdf
