@@ -89,7 +89,7 @@ for tool in "$D" "$BIN/bcd-decompose"; do
   expect 3 'empty.xml: neither a mesh nor well-formed XML' "$tool" empty.xml -o x.obj --epsilon 1%
   expect 3 'none.xml: no such file' "$tool" none.xml -o x.obj --epsilon 1%
 done
-for f in world.xml arm.xml robot.srdf scene.xml package.xml; do
+for f in robot.srdf scene.xml package.xml; do
   mkdir -p kinds
   cp $f kinds/$f.urdf
   expect 3 "give the \(robot as \)\?\(URDF\|rlkin\)" "$BIN/bcd-decompose" kinds/$f.urdf -o x
