@@ -54,6 +54,7 @@ class Document:
         """Rows of texts; columns whose cells are all numbers are set flush right. A table without rows is none."""
         if not rows:
             return
+        assert all(len(row) == len(header) for row in rows), f"a row has not the {len(header)} columns of {header}"
         numeric = [all(_is_number(row[i]) for row in rows) for i in range(len(header))]
         self._blocks.append(("table", header, rows, numeric))
 

@@ -17,8 +17,8 @@ from document import Document
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEPT, PAGE = ROOT / "docs/reproduction-results.json", ROOT / "docs/reproduction-results.md"
 WORSE = 0.02  # a figure that changes by more of itself is named
-SPENT = re.compile(r"\btimes?\b|\[µ?m?s\]|µs|\bms\b|CPU|MB|per second|/s\b|seconds|wall", re.I)
-MORE_IS_BETTER = re.compile(r"factor|fewer|within limits|inside|nearer|found|free|faster|diagonal here|its diagonal", re.I)
+SPENT = re.compile(r"\btimes?\b|\[µ?m?s\]|µs|\bms\b|CPU|MB|faster|per second|/s\b|seconds|wall", re.I)
+MORE_IS_BETTER = re.compile(r"factor|fewer|within limits|inside|nearer|found|free|diagonal here|its diagonal", re.I)
 NAMING = ("n", "by", "share", "the thesis's vertices")  # columns whose cells say what a row is of
 VERDICTS = ("verdict", "Proposition 1", "inside?", "collides?", "")  # columns whose cells are results, though texts
 GOOD = ("verified", "holds", "encloses", "covers", "yes")
@@ -166,8 +166,8 @@ def told(document, before, after):
                     sorted(found, key=lambda f: (f[-1] not in ("worse", "gone"), f[-1] != "better"))[:200]])
 
 
-def page(results, before):
-    """The page of docs/: all sections that are kept, whole where they were run whole."""
+def page(results, before, order):
+    """The page of docs/: all sections that are kept, whole where they were run whole, in an order of names."""
     document = Document("Results kept")
     document.paragraph(
         "Made by `make reproduce` (`scripts/reproduce-thesis --keep`); not to be edited. Questions, set-up and what the tables show: "
@@ -177,6 +177,7 @@ def page(results, before):
     chosen = {name: ("whole", kept) for name, kept in results["whole"].items()}
     for name, kept in results["quick"].items():
         chosen.setdefault(name, ("quick", kept))
+    chosen = {name: chosen[name] for name in order if name in chosen}
     rows = [[name, kind, kept["date"], kept["version"].split()[-1], kept["commit"] or "—", f"{kept['machine']['cpu']}, {kept['machine']['cores']} cores",
              kept.get("models", ""), *(f"{kept['seconds'][key]:,}" if kept["seconds"][key] else "—" for key in ("cpu", "wall"))] for name, (kind, kept) in chosen.items()]
     document.heading("What was run when")
@@ -192,5 +193,5 @@ def keep(new, order):
     before = read(KEPT)
     after = merged(before, new)
     after = {kind: {name: after[kind][name] for name in order if name in after[kind]} for kind in after}
-    PAGE.write_text(page(after, before), encoding="utf-8")
+    PAGE.write_text(page(after, before, order), encoding="utf-8")
     write(KEPT, after)
