@@ -42,15 +42,12 @@ CoverCandidate run(const Mesh& closed, const CoverOptions& options, double work,
   return result;
 }
 
-/// Numbers of bodies below `most` that no larger number is farther than: powers of two, and three
-/// times these; the largest first.
+/// The powers of two below `most`, the largest first: no larger number of bodies is farther than
+/// these.
 std::vector<std::size_t> rungs_below(std::size_t most) {
   std::vector<std::size_t> out;
-  for (std::size_t power = 1; power < most; power *= 2) {
-    out.push_back(power);
-    if (power > 1 && power + power / 2 < most) out.push_back(power + power / 2);
-  }
-  std::sort(out.rbegin(), out.rend());
+  for (std::size_t power = 1; power < most; power *= 2) out.push_back(power);
+  std::reverse(out.begin(), out.end());
   return out;
 }
 
@@ -62,7 +59,7 @@ CoverCandidate nearest(const Mesh& closed, const CoverOptions& options, Allowanc
   if (options.max_total_vertices || best.stop != Stop::Done || best.statistics.out_of_work ||
       *options.max_bodies == 1)
     return best;
-  const SolidField solid(closed, kMeasuringGrid, 0, false);
+  const SolidField solid(closed, kBoundGrid, 0, false);
   const std::size_t too_few =
       too_few_bodies(closed, solid, best.excess_upper, *options.max_bodies - 1);
   allowance.spend(solid.work().done());

@@ -141,6 +141,8 @@ constexpr std::size_t kQuickTriangles = 2000;
 constexpr std::uint64_t kLeastWorkShare = 4;
 /// Nodes of the grid where only certified distances are measured: they rest on none of it.
 constexpr std::size_t kMeasuringGrid = 2000;
+/// Nodes where it is guessed which points no body holds both of (body_bound.h).
+constexpr std::size_t kBoundGrid = 20000;
 
 /// What effort changes.
 struct Tuning {

@@ -3,13 +3,21 @@
 #include <kaboum/bcd/cover.h>
 #include <kaboum/geom/holes.h>
 #include <kaboum/io/convex_io.h>
+#include <kaboum/io/mesh_io.h>
 #include <tbb/global_control.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "body_bound.h"
 #include "part.h"
 #include "solid_field.h"
 #include "solids.h"
@@ -178,6 +186,85 @@ TEST(Cover, MoreBodiesOfEightVerticesAreNoFarther) {
       EXPECT_LE(reach, last) << i << ' ' << bodies;
       last = reach;
     }
+  }
+}
+
+/// Solids of many kinds; of the meshes at hand, some links as well.
+std::vector<std::pair<std::string, Mesh>> solids_to_cut() {
+  std::vector<std::pair<std::string, Mesh>> out{
+      {"torus", kaboum::test::torus(1, 0.3, 24, 12)},
+      {"ring", thin_ring(96, 0.995, 0.08)},
+      {"angle", prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}, 1)},
+      {"star", prism(test::ring(14, {1, 0.45}), 0.4)},
+      {"bracket", kaboum::examples::make_bracket(16)},
+      {"knot", kaboum::test::torus_knot(2, 3, 0.2, 40, 6)}};
+  for (const unsigned seed : {1U, 2U, 3U}) {  // unions and differences of boxes
+    std::mt19937 random(seed);
+    std::array<int, 64> filled{};
+    for (int& f : filled) f = random() % 3 == 0 ? 0 : 1;
+    out.emplace_back(
+        "boxes",
+        test::lattice_solid({{{0, 1, 2.5, 3, 4}, {0, 1, 2, 3.5, 4}, {0, 0.7, 2, 3, 4}}},
+                            [&](int x, int y, int z) {
+                              return filled[static_cast<std::size_t>(x + 4 * y + 16 * z)] != 0;
+                            }));
+  }
+  if (const char* folder = std::getenv("KABOUM_MESHES"))
+    for (const char* file : {"clean-joint.off", "clean-knot1.off"})
+      out.emplace_back(file, io::read_mesh(std::filesystem::path(folder) / file).mesh);
+  return out;
+}
+
+TEST(Cover, NoNumberOfBodiesIsFartherThanASmallerPowerOfTwo) {
+  for (const auto& [name, mesh] : solids_to_cut()) {
+    const geom::Prepared input = geom::prepare(mesh);
+    const bool small = input.solid.mesh().triangles.size() < 1000;
+    CoverOptions options;
+    options.effort = Effort::Fast;
+    std::vector<std::pair<std::size_t, double>> rungs;
+    for (std::size_t bodies = 1; bodies <= (small ? 9U : 4U); ++bodies) {
+      options.max_bodies = bodies;
+      const double reach = find_cover(input.solid, options).excess_upper;
+      for (const auto& [fewer, farthest] : rungs)
+        EXPECT_LE(reach, farthest) << name << ' ' << bodies << ' ' << fewer;
+      if (std::has_single_bit(bodies)) rungs.emplace_back(bodies, reach);
+    }
+  }
+  // Two bodies of a torus are farther than its hull, if they are looked for alone.
+  const geom::Prepared torus = geom::prepare(kaboum::test::torus(1, 0.3, 24, 12));
+  EXPECT_LE(reach_of(torus, 2, 64), reach_of(torus, 1, 64));
+}
+
+TEST(Cover, NoSetHasAsFewBodiesAsAreProvedTooFew) {
+  std::size_t most = 0;
+  for (const auto& [name, mesh] : solids_to_cut()) {
+    const geom::Prepared input = geom::prepare(mesh);
+    const Mesh& closed = input.solid.mesh();
+    if (!input.solid.closed() || closed.triangles.size() > 1000) continue;
+    const SolidField solid(closed, 20000, 0, false);
+    for (const std::size_t bodies : {1U, 3U, 8U}) {
+      CoverOptions options;
+      options.max_bodies = bodies;
+      options.effort = Effort::Fast;
+      const CoverCandidate result = find_cover(input.solid, options);
+      // Nearer by as much as the bracket is wide would be another set.
+      const std::size_t few =
+          too_few_bodies(closed, solid, 1.0001 * result.excess_upper, 2 * bodies);
+      EXPECT_LT(few, result.bodies.size()) << name << ' ' << bodies;
+      most = std::max(most, few);
+    }
+  }
+  EXPECT_GE(most, 5U);
+  // Of a convex solid, one body is enough; of a ring, n bodies are r (1 - cos pi / (n + 1)) away.
+  const Mesh ball = kaboum::test::icosphere(2);
+  EXPECT_EQ(too_few_bodies(ball, SolidField(ball, 20000, 0, false), 1e-3, 20), 0U);
+  const Mesh thin = thin_ring(96, 0.995, 0.08);
+  const SolidField field(thin, 20000, 0, false);
+  for (const double n : {4.0, 8.0, 16.0}) {
+    const std::size_t few =
+        too_few_bodies(thin, field, 0.995 * (1 - std::cos(M_PI / n)) - 0.005, 40);
+    EXPECT_GE(static_cast<double>(few), 0.6 * n);
+    EXPECT_LE(static_cast<double>(few), 1.5 * n);
   }
 }
 
