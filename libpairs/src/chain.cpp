@@ -88,8 +88,7 @@ void Chain::find_limits(const robot::Robot& robot) {
       if (multiplier != 0 && std::abs(joint.multiplier) != multiplier) return;
       multiplier = std::abs(joint.multiplier);
     }
-    const double period =
-        multiplier == 0 ? 0 : 2 * std::numbers::pi / multiplier * (1 + 0x1p-40);
+    const double period = multiplier == 0 ? 0 : 2 * std::numbers::pi / multiplier * (1 + 0x1p-40);
     out.low.push_back(
         variable.lower.value_or(variable.upper ? *variable.upper - period : -period / 2));
     out.high.push_back(out.low.back() + period);

@@ -21,8 +21,8 @@ class Chain {
   struct Joint {
     bool revolute = true;
     std::size_t variable = 0;  ///< of variables()
-    double multiplier = 1;     ///< of it; negative for those that are turned round, if not so before
-    double most = 0;           ///< largest |value| within the limits
+    double multiplier = 1;  ///< of it; negative for those that are turned round, if not so before
+    double most = 0;        ///< largest |value| within the limits
   };
   /// The robot's variables that drive a joint, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& variables() const { return variables_; }

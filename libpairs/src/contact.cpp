@@ -16,7 +16,7 @@
 namespace kaboum::pairs::detail {
 namespace {
 
-constexpr std::size_t kMostPierced = 3'000;   ///< pairs of triangles that are looked at
+constexpr std::size_t kMostPierced = 3'000;  ///< pairs of triangles that are looked at
 
 using Corners = std::array<Vec3, 3>;
 
@@ -27,8 +27,10 @@ double between_segments(const Vec3& p, const Vec3& p2, const Vec3& q, const Vec3
   const auto near = [&](double s, double t) { return (p + s * u - q - t * v).squaredNorm(); };
   const auto clamp = [](double x) { return std::clamp(x, 0.0, 1.0); };
   double best = kInfinite;
-  for (const double s : {0.0, 1.0}) best = std::min(best, near(s, e > 0 ? clamp((s * b + f) / e) : 0));
-  for (const double t : {0.0, 1.0}) best = std::min(best, near(a > 0 ? clamp((t * b - c) / a) : 0, t));
+  for (const double s : {0.0, 1.0})
+    best = std::min(best, near(s, e > 0 ? clamp((s * b + f) / e) : 0));
+  for (const double t : {0.0, 1.0})
+    best = std::min(best, near(a > 0 ? clamp((t * b - c) / a) : 0, t));
   const double determinant = a * e - b * b;
   if (determinant > 0) {
     const double s = (b * f - c * e) / determinant, t = (a * f - b * c) / determinant;
@@ -50,8 +52,7 @@ double margin(const Vec3& from, const Vec3& to, const Corners& t) {
   for (int i = 0; i < 3; ++i)
     if ((t[(i + 1) % 3] - t[i]).cross(at - t[i]).dot(n) <= 0) return 0;
   double out = std::min(std::abs(start), std::abs(end));
-  for (int i = 0; i < 3; ++i)
-    out = std::min(out, between_segments(from, to, t[i], t[(i + 1) % 3]));
+  for (int i = 0; i < 3; ++i) out = std::min(out, between_segments(from, to, t[i], t[(i + 1) % 3]));
   return out;
 }
 
@@ -132,20 +133,22 @@ Surface::Winding Surface::winding(const Vec3& point) const {
   return out;
 }
 
-double Surface::distance(const Vec3& point, double most) const {
+double Surface::distance(const Vec3& point, double most, double least) const {
   double best = most * most;
-  bvh_->traverse([&](const geom::Box3& box) { return square_to_box(point, box) < best; },
-                 [&](std::uint32_t i) {
-                   const geom::Triangle& t = mesh_.triangles[i];
-                   const Vec3 near = geom::closest_point(point, mesh_.vertices[t[0]],
-                                                         mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
-                   best = std::min(best, (near - point).squaredNorm());
-                 });
+  bvh_->traverse(
+      [&](const geom::Box3& box) {
+        return best > least * least && square_to_box(point, box) < best;
+      },
+      [&](std::uint32_t i) {
+        const geom::Triangle& t = mesh_.triangles[i];
+        const Vec3 near = geom::closest_point(point, mesh_.vertices[t[0]], mesh_.vertices[t[1]],
+                                              mesh_.vertices[t[2]]);
+        best = std::min(best, (near - point).squaredNorm());
+      });
   return std::sqrt(best);
 }
 
-Contact::Nearest Contact::nearest(const BoxMotion& box, double gap,
-                                  std::size_t most_steps) const {
+Contact::Nearest Contact::nearest(const BoxMotion& box, double gap, std::size_t most_steps) const {
   struct Open {
     double lower;
     std::uint32_t a, b;
@@ -260,7 +263,7 @@ double Contact::inside(const BoxMotion& box, std::size_t most_corners) const {
     // Spread over all of them where these are too many.
     const std::size_t step = found.size() / most_corners + 1;
     for (std::size_t i = 0; i < found.size(); i += step) {
-      const double distance = in.distance(found[i], root.reach * 2);
+      const double distance = in.distance(found[i], root.reach * 2, best);
       if (distance > best && in.winding(found[i]).sum >= 1) best = distance;
     }
   };

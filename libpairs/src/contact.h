@@ -31,8 +31,9 @@ class Surface {
     bool any = false;  ///< one of them does, be it a cavity's
   };
   [[nodiscard]] Winding winding(const Vec3& point) const;
-  /// The distance of a point from the triangles, rounded; searched below `most`.
-  [[nodiscard]] double distance(const Vec3& point, double most) const;
+  /// The distance of a point from the triangles, rounded; searched below `most`, and not on where
+  /// it is seen to be no more than `least`.
+  [[nodiscard]] double distance(const Vec3& point, double most, double least) const;
 
  private:
   Mesh mesh_;

@@ -33,9 +33,8 @@ Shapes shapes_of(const Mesh& outer, const std::optional<Mesh>& inner) {
 Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
   Mesh out{mesh.vertices, {}};
   for (const geom::Triangle& t : mesh.triangles)
-    if (std::ranges::any_of(t, [&](std::uint32_t v) {
-          return (mesh.vertices[v] - point).norm() > distance;
-        }))
+    if (std::ranges::any_of(
+            t, [&](std::uint32_t v) { return (mesh.vertices[v] - point).norm() > distance; }))
       out.triangles.push_back(t);
   return out;
 }
@@ -150,25 +149,24 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   };
   std::vector<Pair> pairs;
   for (std::size_t a = 0; a < surfaces.size(); ++a)
-    for (std::size_t b = a + 1; b < surfaces.size(); ++b)
-      pairs.push_back({a, b, nullptr});
+    for (std::size_t b = a + 1; b < surfaces.size(); ++b) pairs.push_back({a, b, nullptr});
 
   std::atomic<std::size_t> decided = 0;
   const auto stop = [&] {
     if (options.progress) options.progress(decided, pairs.size());
+    if (options.stop && options.stop()) return true;
     return std::chrono::duration<double>(Clock::now() - begin).count() > options.most_seconds;
   };
   std::vector<std::size_t> left(pairs.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
   const auto round = [&](const auto& work) {
-    parallel_for(
-        std::size_t{0}, left.size(),
-        [&](std::size_t i) {
-          Pair& pair = pairs[left[i]];
-          work(pair);
-          if (pair.search->decided()) ++decided;
-        },
-        {.alone = true});
+    parallel_for(std::size_t{0}, left.size(),
+                 [&](std::size_t i) {
+                   Pair& pair = pairs[left[i]];
+                   work(pair);
+                   if (pair.search->decided()) ++decided;
+                 },
+                 {.alone = true});
     std::erase_if(left, [&](std::size_t i) { return pairs[i].search->decided(); });
   };
   round([&](Pair& pair) {
@@ -183,29 +181,29 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
     if (boxes > 500) round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
     round([&](Pair& pair) {
       const std::size_t most = std::min(boxes, options.most_boxes);
-      if (pair.search->boxes() / 2 < most) pair.search->go_on(most - pair.search->boxes() / 2, stop);
+      if (pair.search->boxes() / 2 < most)
+        pair.search->go_on(most - pair.search->boxes() / 2, stop);
     });
     if (last || stop()) break;
   }
 
   std::vector<DecidedPair> out(pairs.size());
-  parallel_for(
-      std::size_t{0}, pairs.size(),
-      [&](std::size_t i) {
-        const auto& [a, b, search] = pairs[i];
-        DecidedPair& pair = out[i];
-        pair.a = surfaces[a]->link;
-        pair.b = surfaces[b]->link;
-        pair.relation = relation_of(robot, shaped, pair.a, pair.b);
-        pair.verdict = search->verdict();
-        pair.nearest = search->nearest();
-        pair.depth = search->depth();
-        pair.boxes = search->boxes();
-        pair.q = configuration(robot, *search);
-        if (pair.relation == Relation::Adjacent && pair.verdict != Verdict::Never)
-          pair.away = look_away(robot, *surfaces[a], *surfaces[b], *search, options, stop);
-      },
-      {.alone = true});
+  parallel_for(std::size_t{0}, pairs.size(),
+               [&](std::size_t i) {
+                 const auto& [a, b, search] = pairs[i];
+                 DecidedPair& pair = out[i];
+                 pair.a = surfaces[a]->link;
+                 pair.b = surfaces[b]->link;
+                 pair.relation = relation_of(robot, shaped, pair.a, pair.b);
+                 pair.verdict = search->verdict();
+                 pair.nearest = search->nearest();
+                 pair.depth = search->depth();
+                 pair.boxes = search->boxes();
+                 pair.q = configuration(robot, *search);
+                 if (pair.relation == Relation::Adjacent && pair.verdict != Verdict::Never)
+                   pair.away = look_away(robot, *surfaces[a], *surfaces[b], *search, options, stop);
+               },
+               {.alone = true});
   return out;
 }
 

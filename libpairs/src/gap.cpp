@@ -63,9 +63,8 @@ void BoxMotion::set(std::span<const double> middle, std::span<const double> half
   turns_ = 0;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     half_[k] = std::abs(joints[k].multiplier) * half[joints[k].variable] * kUp;
-    chord_[k] = joints[k].revolute
-                    ? 2 * std::sin(0.5 * std::min(half_[k], std::numbers::pi)) * kUp
-                    : half_[k];
+    chord_[k] = joints[k].revolute ? 2 * std::sin(0.5 * std::min(half_[k], std::numbers::pi)) * kUp
+                                   : half_[k];
     if (joints[k].revolute) turns_ += half_[k];
   }
 }
@@ -74,12 +73,10 @@ BoxMotion::Side BoxMotion::side(const Vec3& center, double reach, std::size_t ne
                                 std::size_t end, int step) const {
   std::array<double, 64> radius;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   const auto& joints = chain_->joints();
-  const auto count = static_cast<std::size_t>(
-      step > 0 ? static_cast<std::ptrdiff_t>(end - nearest)
-               : static_cast<std::ptrdiff_t>(nearest - end));
-  const auto joint = [&](std::size_t i) {
-    return step > 0 ? nearest + i : nearest - 1 - i;
-  };
+  const auto count =
+      static_cast<std::size_t>(step > 0 ? static_cast<std::ptrdiff_t>(end - nearest)
+                                        : static_cast<std::ptrdiff_t>(nearest - end));
+  const auto joint = [&](std::size_t i) { return step > 0 ? nearest + i : nearest - 1 - i; };
   Side out;
   for (std::size_t i = count; i-- > 0;) {
     const std::size_t k = joint(i);
@@ -258,8 +255,8 @@ double Gaps::lower(const Cluster& a, const Cluster& b, const BoxMotion& box, Vec
   return second.lower;
 }
 
-Gap Gaps::at_middle(const Cluster& a, const Cluster& b, const BoxMotion& box,
-                    const Vec3& direction, double enough) const {
+Gap Gaps::at_middle(const Cluster& a, const Cluster& b, const BoxMotion& box, const Vec3& direction,
+                    double enough) const {
   const Transform& at = box.placed().b;
   const auto rests = [&](const Vec3& d, Vec3& p, Vec3& q) {
     const Vec3 in_b = at.linear.transpose() * d;

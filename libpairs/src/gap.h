@@ -25,16 +25,16 @@ class BoxMotion {
   using Split = std::size_t;
   /// Bounds of two bodies' motions from where they are in the middle, for any point of the box.
   struct Bound {
-    double first = 0;      ///< of the sum of both displacements [length]
-    double second = 0;     ///< of what these differ from their first derivatives' [length]
+    double first = 0;   ///< of the sum of both displacements [length]
+    double second = 0;  ///< of what these differ from their first derivatives' [length]
     Split first_split = 0, second_split = 0;  ///< for which these are least
   };
   /// @param a, b  balls, of b in the frame of a: the middle, the radius
   [[nodiscard]] Bound bound(const Vec3& center_a, double reach_a, const Vec3& center_b,
                             double reach_b) const;
 
-  /// The displacements of a's and b's points by their first derivatives, along a direction: for each
-  /// variable that moves them, coefficients · p − constant.
+  /// The displacements of a's and b's points by their first derivatives, along a direction: for
+  /// each variable that moves them, coefficients · p − constant.
   struct Linear {
     static constexpr std::size_t kMost = 40;
     std::size_t count = 0;
@@ -45,8 +45,8 @@ class BoxMotion {
   void linear(const Vec3& direction, Split split, bool of_b, Linear& out) const;
   /// The displacement of a point of a or b, by first derivatives, for changes `sign` · half of the
   /// variables.
-  [[nodiscard]] Vec3 displacement(const Vec3& point, Split split, bool of_b,
-                                  const Linear& of, std::span<const double> signs) const;
+  [[nodiscard]] Vec3 displacement(const Vec3& point, Split split, bool of_b, const Linear& of,
+                                  std::span<const double> signs) const;
   /// Sum of the half turns.
   [[nodiscard]] double turns() const { return turns_; }
   [[nodiscard]] double half_of(std::size_t joint) const { return half_[joint]; }
@@ -55,8 +55,8 @@ class BoxMotion {
   struct Side {
     double first = 0, second = 0;
   };
-  [[nodiscard]] Side side(const Vec3& center, double reach, std::size_t nearest,
-                          std::size_t end, int step) const;
+  [[nodiscard]] Side side(const Vec3& center, double reach, std::size_t nearest, std::size_t end,
+                          int step) const;
 
   const Chain* chain_;
   Chain::Placed placed_;
@@ -66,17 +66,20 @@ class BoxMotion {
 
 /// Two clusters at a place.
 struct Gap {
-  double lower = -std::numeric_limits<double>::infinity();  ///< of the distance, everywhere in the box
-  Vec3 direction = Vec3::Zero();  ///< along which that is so
-  double upper = std::numeric_limits<double>::infinity();   ///< of the hulls' distance, rounded
-  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  ///< points of the hulls, that far apart
+  double lower =
+      -std::numeric_limits<double>::infinity();  ///< of the distance, everywhere in the box
+  Vec3 direction = Vec3::Zero();                 ///< along which that is so
+  double upper = std::numeric_limits<double>::infinity();  ///< of the hulls' distance, rounded
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();           ///< points of the hulls, that far apart
 };
 
 /// What separates clusters of two trees in boxes of a chain's variables.
 class Gaps {
  public:
   Gaps(const HullTree& a, const HullTree& b, const Chain& chain)
-      : a_(&a), b_(&b), reach_(a.extent() + b.extent() + chain.extent()),
+      : a_(&a),
+        b_(&b),
+        reach_(a.extent() + b.extent() + chain.extent()),
         error_(chain.error(a.extent() + b.extent())) {}
 
   /// A lower bound of the distance of what two clusters hold, for all of the box. Searched until it

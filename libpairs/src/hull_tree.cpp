@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "numbers.h"
@@ -14,7 +15,8 @@
 namespace kaboum::pairs::detail {
 namespace {
 
-constexpr std::size_t kFewPoints = 20;   ///< that are kept as they are
+constexpr std::size_t kFewPoints = 20;     ///< that are kept as they are
+constexpr std::size_t kManyCorners = 100;  ///< of which those that are kept are chosen at once
 
 /// Distance of p from the hull of the points, from above: that of a mean of them.
 double distance_to_hull(const Vec3& p, const std::vector<Vec3>& points) {
@@ -63,19 +65,22 @@ double choose(const std::vector<Vec3>& corners, double size, std::vector<Vec3>& 
     if (taken[i] == 0) chosen.push_back(corners[i]);
     taken[i] = 1;
   };
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z) {
-        // A third of the 26 directions: axes, and diagonals of the cube.
-        if (std::abs(x) + std::abs(y) + std::abs(z) == 2 || (x == 0 && y == 0 && z == 0)) continue;
-        const Vec3 d(x, y, z);
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < corners.size(); ++i)
-          if (d.dot(corners[i]) > d.dot(corners[best])) best = i;
-        take(best);
-      }
+  // Of many corners, the farthest ones in directions spread evenly (a spiral); of few, those that
+  // come farthest out of the hull of the others, one after the other.
+  const bool many = corners.size() > kManyCorners;
+  const std::size_t directions = many ? HullTree::kMostPoints : 14;
+  for (std::size_t k = 0; k < directions; ++k) {
+    const double z = 1 - 2 * (static_cast<double>(k) + 0.5) / static_cast<double>(directions);
+    const double turn = static_cast<double>(k) * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double across = std::sqrt(1 - z * z);
+    const Vec3 d(across * std::cos(turn), across * std::sin(turn), z);
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      if (d.dot(corners[i]) > d.dot(corners[best])) best = i;
+    take(best);
+  }
   std::vector<double> far(corners.size(), 0);
-  for (;;) {
+  for (; !many;) {
     std::size_t farthest = 0;
     double most = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -85,15 +90,13 @@ double choose(const std::vector<Vec3>& corners, double size, std::vector<Vec3>& 
       most = far[i];
       farthest = i;
     }
-    if (most <= 2e-3 * size || chosen.size() >= HullTree::kMostPoints) {
-      // Distances to fewer points are no less.
-      double all = 0;
-      for (std::size_t i = 0; i < corners.size(); ++i)
-        if (taken[i] == 0) all = std::max(all, distance_to_hull(corners[i], chosen));
-      return all;
-    }
+    if (most <= 2e-3 * size || chosen.size() >= HullTree::kMostPoints) break;
     take(farthest);
   }
+  double all = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (taken[i] == 0) all = std::max(all, distance_to_hull(corners[i], chosen));
+  return all;
 }
 
 }  // namespace
@@ -157,8 +160,8 @@ std::uint32_t HullTree::build(const Mesh& mesh, std::vector<std::uint32_t>& orde
   const double middle = middles.center()[axis];
   const auto from = order.begin() + static_cast<std::ptrdiff_t>(begin),
              to = order.begin() + static_cast<std::ptrdiff_t>(end);
-  auto cut = std::stable_partition(
-      from, to, [&](std::uint32_t t) { return centers[t][axis] < middle; });
+  auto cut =
+      std::stable_partition(from, to, [&](std::uint32_t t) { return centers[t][axis] < middle; });
   // Halves, where the middle leaves little on one side: no tree is deep.
   const std::ptrdiff_t few = (to - from) / 16;
   if (cut - from <= few || to - cut <= few) {

@@ -14,8 +14,8 @@ namespace kaboum::pairs {
 namespace detail {
 
 int line_at(const std::string& text, std::size_t place) {
-  return 1 + static_cast<int>(std::count(
-                 text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
+  return 1 + static_cast<int>(
+                 std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
 }
 
 Stretch with_line(const std::string& text, Stretch stretch) {
@@ -34,9 +34,7 @@ namespace {
 
 using Pair = std::pair<std::string, std::string>;
 
-Pair sorted(const std::string& a, const std::string& b) {
-  return a < b ? Pair(a, b) : Pair(b, a);
-}
+Pair sorted(const std::string& a, const std::string& b) { return a < b ? Pair(a, b) : Pair(b, a); }
 
 std::string quoted(const Pair& pair) { return "'" + pair.first + "', '" + pair.second + "'"; }
 
@@ -110,8 +108,7 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
       known = false;
       if (!unknown.insert(link).second) continue;
       std::string what = "the robot has no link '" + link + "'";
-      if (const auto similar = similar_name(link, links))
-        what += "; is '" + *similar + "' meant?";
+      if (const auto similar = similar_name(link, links)) what += "; is '" + *similar + "' meant?";
       fault(Kind::UnknownLink, what, pair.line);
     }
     if (!known) continue;
@@ -132,9 +129,9 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
     const bool differs = before.pair.reason != pair.reason;
     fault(differs ? Kind::Contradicting : Kind::Doubled,
           "the pair " + quoted(key) + " is stated in line " + std::to_string(before.pair.line) +
-              (differs ? " for the reason '" + before.pair.reason + "', here for '" + pair.reason +
-                             "'"
-                       : " already"),
+              (differs
+                   ? " for the reason '" + before.pair.reason + "', here for '" + pair.reason + "'"
+                   : " already"),
           pair.line);
   }
   for (const detail::StatedPair& stated : read.pairs) {
@@ -167,11 +164,11 @@ std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
     if (const auto at = found.find(sorted(stated.a, stated.b)); at != found.end()) {
       const DecidedPair& pair = *at->second;
       judged.found = pair;
-      judged.judgement = pair.verdict == Verdict::Never        ? Judgement::Proved
-                         : pair.relation != Relation::Moving   ? Judgement::Connected
-                         : pair.verdict == Verdict::Always     ? Judgement::Always
-                         : pair.verdict == Verdict::CanTouch   ? Judgement::Refuted
-                                                               : Judgement::Open;
+      judged.judgement = pair.verdict == Verdict::Never      ? Judgement::Proved
+                         : pair.relation != Relation::Moving ? Judgement::Connected
+                         : pair.verdict == Verdict::Always   ? Judgement::Always
+                         : pair.verdict == Verdict::CanTouch ? Judgement::Refuted
+                                                             : Judgement::Open;
     }
     out.push_back(std::move(judged));
   }
@@ -191,8 +188,8 @@ std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judge
     } else {
       throw Error(ErrorCode::InvalidArgument,
                   "line " + std::to_string(pair.stated.line) + " disables " +
-                      quoted({pair.stated.a, pair.stated.b}) +
-                      " together with other pairs, and " + name_of(matrix.format) +
+                      quoted({pair.stated.a, pair.stated.b}) + " together with other pairs, and " +
+                      name_of(matrix.format) +
                       " cannot state an exception: change the groups by hand");
     }
   }

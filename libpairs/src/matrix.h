@@ -11,7 +11,7 @@ namespace kaboum::pairs::detail {
 /// A pair as a file states it, before it is looked at.
 struct StatedPair {
   DisabledPair pair;
-  bool enabled = false;  ///< stated to be checked
+  bool enabled = false;   ///< stated to be checked
   bool expanded = false;  ///< of a statement about more pairs: said twice, it is no fault
 };
 

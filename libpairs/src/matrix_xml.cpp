@@ -28,9 +28,9 @@ std::string unescaped(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     bool found = false;
-    for (const auto& [entity, character] : {std::pair{"&amp;", '&'}, std::pair{"&lt;", '<'},
-                                            std::pair{"&gt;", '>'}, std::pair{"&quot;", '"'},
-                                            std::pair{"&apos;", '\''}}) {
+    for (const auto& [entity, character] :
+         {std::pair{"&amp;", '&'}, std::pair{"&lt;", '<'}, std::pair{"&gt;", '>'},
+          std::pair{"&quot;", '"'}, std::pair{"&apos;", '\''}}) {
       const std::string word = entity;
       if (text.compare(i, word.size(), word) != 0) continue;
       out += character;
@@ -91,7 +91,9 @@ class Scanner {
     Element element;
     element.line = line;
     element.place.begin = at_++;
-    const auto space = [&] { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); };
+    const auto space = [&] {
+      at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size());
+    };
     const auto word = [&] {
       const std::size_t end = std::min(text_.find_first_of(" \t\r\n=/>", at_), text_.size());
       std::string out = text_.substr(at_, end - at_);
@@ -251,8 +253,8 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
       const std::string link = attribute(e, "link", name);
       for (const std::string& other : links)
         if (other != link || links.size() == 1)
-          out.pairs.push_back({{link, other, attribute_or(e, "reason"), e.line, std::nullopt},
-                               false, true});
+          out.pairs.push_back(
+              {{link, other, attribute_or(e, "reason"), e.line, std::nullopt}, false, true});
     }
   }
   return out;

@@ -75,8 +75,9 @@ ReadMatrix read_yaml(const std::string& text, const std::string& name) {
   }
   if (!ignored || (!ignored.IsMap() && !ignored.IsNull()))
     throw Error(ErrorCode::InvalidInput,
-                name + ": neither 'self_collision: ignore' (XRDF) nor 'self_collision_ignore' "
-                       "(cuRobo) is in it, by links");
+                name +
+                    ": neither 'self_collision: ignore' (XRDF) nor 'self_collision_ignore' "
+                    "(cuRobo) is in it, by links");
   for (const auto& entry : ignored) {
     const YAML::Node& others = entry.second;
     if (others.IsNull()) continue;

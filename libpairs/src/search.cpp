@@ -18,10 +18,10 @@ namespace {
 constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                 23, 29, 31, 37, 41, 43, 47, 53};
 constexpr std::size_t kFirstSamples = 50;
-constexpr std::size_t kClimbs = 4;  ///< from the best places of each time
+constexpr std::size_t kClimbs = 4;         ///< from the best places of each time
 constexpr std::size_t kMostSteps = 5'000;  ///< of a search for the nearest triangles
-constexpr std::size_t kFirstBoxes = 30;     ///< before contacts are looked for
-constexpr std::size_t kMostItems = 6'000;  ///< of a box; then clusters are not cut any more
+constexpr std::size_t kFirstBoxes = 30;    ///< before contacts are looked for
+constexpr std::size_t kFewItems = 300, kMostItems = 6'000;
 
 }  // namespace
 
@@ -33,7 +33,8 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
       samples_(samples),
       tree_a_(&of_a.outer->tree()),
       tree_b_(&of_b.outer->tree()),
-      motion_(chain_) {
+      motion_(chain_),
+      most_items_(kMostItems) {
   if (!chain_.limits() || chain_.joints().size() > BoxMotion::Linear::kMost) {
     exhausted_ = searched_ = true;  // joints without limits that do not turn
     return;
@@ -79,7 +80,8 @@ bool Search::climb(std::vector<double> values) {
       const Vec3& axis = motion_.placed().axes[k];
       gradient[joint.variable] +=
           joint.multiplier *
-          along.dot(joint.revolute ? axis.cross(at.on_b - motion_.placed().origins[k]).eval() : axis);
+          along.dot(joint.revolute ? axis.cross(at.on_b - motion_.placed().origins[k]).eval()
+                                   : axis);
     }
     double square = 0;
     for (std::size_t v = 0; v < values.size(); ++v) {
@@ -217,8 +219,7 @@ std::size_t Search::widest(const BoxMotion& motion, const Item& worst) const {
       for (std::size_t v = 0; v < linear.count; ++v)
         score[linear.variables[v]] +=
             std::abs(linear.coefficients[v].dot(of_b ? center : a.center) - linear.constants[v]);
-    const std::size_t from = of_b ? split : 0,
-                      to = of_b ? chain_.joints().size() : split;
+    const std::size_t from = of_b ? split : 0, to = of_b ? chain_.joints().size() : split;
     for (std::size_t k = from; k < to; ++k) {
       const Chain::Joint& joint = chain_.joints()[k];
       const double half = motion.half_of(k);
@@ -259,7 +260,7 @@ void Search::look_at(std::vector<double> middle, std::vector<double> half, const
     const double moves = motion_.bound(a.center, a.reach, center, b.reach).first;
     const bool cut_a = !a.leaf() && (b.leaf() || a.reach > b.reach);
     const double size = cut_a ? a.reach : b.leaf() ? 0 : b.reach;
-    if (size > 0.7 * moves && left.size() + stack.size() < kMostItems) {
+    if (size > 0.7 * moves && left.size() + stack.size() < most_items_) {
       if (cut_a) {
         stack.push_back({a.right, item.b, item.direction});
         stack.push_back({a.left, item.b, item.direction});
@@ -313,7 +314,9 @@ void Search::end_proof() {
 
 void Search::begin(const std::function<bool()>& stop) {
   next_climb_ = std::numeric_limits<std::size_t>::max();
+  most_items_ = kFewItems;
   go_on(kFirstBoxes, stop);
+  most_items_ = kMostItems;
   next_climb_ = 64;
 }
 

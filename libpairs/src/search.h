@@ -95,6 +95,7 @@ class Search {
   bool begun_ = false;
   bool exhausted_ = false;  ///< no proof is possible
   bool searched_ = false;   ///< contacts were looked for
+  std::size_t most_items_;  ///< of a box; then clusters are not cut any more
   std::uint64_t order_ = 0;
   std::size_t looked_ = 0, next_climb_ = 32;
   double proved_ = std::numeric_limits<double>::infinity();  ///< least bound of boxes that are done

@@ -1,5 +1,6 @@
 // Which links of a robot can touch each other at all.
 
+#include <kaboum/pairs/decide.h>
 #include <kaboum/world/allowed_pairs.h>
 
 #include <algorithm>
@@ -15,15 +16,7 @@ namespace {
 
 using Reason = AllowedPair::Reason;
 
-/// The link that fixed joints make one body with this one: the one nearest to the root.
-std::uint32_t body_of(const robot::Robot& robot, std::uint32_t link) {
-  while (link > 0 && robot.joints[link - 1].type == robot::JointType::Fixed)
-    link = robot.joints[link - 1].parent;
-  return link;
-}
-
-/// Of each link, whether it has shapes.
-using Shaped = std::vector<char>;
+using pairs::Shaped;
 
 Shaped shaped_links(const robot::Robot& robot) {
   Shaped out;
@@ -37,44 +30,44 @@ Shaped shaped_links(const RobotModel& robot) {
   return out;
 }
 
-/// A link itself if it has shapes or moves against its parent; else the nearest such one on the way
-/// to the root: flanges and frames between a joint and what it carries.
-std::uint32_t carrier_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t link) {
-  while (link > 0 && shaped[link] == 0 && robot.joints[link - 1].type == robot::JointType::Fixed)
-    link = robot.joints[link - 1].parent;
-  return link;
-}
-
-/// The child, but for frames without shapes that are fixed between it and the joint that it hangs
-/// on.
-std::uint32_t joint_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t link) {
-  while (link > 0 && robot.joints[link - 1].type == robot::JointType::Fixed &&
-         robot.joints[link - 1].parent > 0 && shaped[robot.joints[link - 1].parent] == 0)
-    link = robot.joints[link - 1].parent;
-  return link;
-}
-
-/// Whether one joint connects both, with nothing that has shapes between them. What is fixed to the
-/// one elsewhere (a camera, a wall beside a rail) is not meant: it may well be touched.
-bool are_adjacent(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
-                  std::uint32_t b) {
-  const auto hangs_on = [&](std::uint32_t child, std::uint32_t parent) {
-    if (child > 0 && robot.joints[child - 1].parent == parent) return true;
-    const std::uint32_t joint = joint_of(robot, shaped, child);
-    return joint > 0 && carrier_of(robot, shaped, robot.joints[joint - 1].parent) == parent;
-  };
-  return hangs_on(a, b) || hangs_on(b, a);
-}
-
 std::vector<AllowedPair> connected(const robot::Robot& robot, const Shaped& shaped) {
   std::vector<AllowedPair> out;
   for (std::uint32_t a = 0; a < robot.links.size(); ++a)
     for (std::uint32_t b = a + 1; b < robot.links.size(); ++b)
-      if (are_adjacent(robot, shaped, a, b))
-        out.push_back({a, b, Reason::Adjacent});
-      else if (body_of(robot, a) == body_of(robot, b))
-        out.push_back({a, b, Reason::Always});
+      if (const pairs::Relation relation = pairs::relation_of(robot, shaped, a, b);
+          relation != pairs::Relation::Moving)
+        out.push_back(
+            {a, b, relation == pairs::Relation::Adjacent ? Reason::Adjacent : Reason::Always});
   return out;
+}
+
+/// The facets of a set's bodies; nullopt where bodies have radii.
+std::optional<geom::Mesh> mesh_of(const BoundingSet& set) {
+  geom::Mesh out;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const geom::ConvexBody& body = set.body(i);
+    if (body.radius > 0) return std::nullopt;
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), body.core.vertices.begin(), body.core.vertices.end());
+    for (const geom::Triangle& t : body.core.triangles)
+      out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return out;
+}
+
+/// What pairs::decide_pairs finds of two links of which nothing is known.
+void decide_pair(const RobotModel& robot, const LinkShape& a, const LinkShape& b,
+                 const PairOptions& options, LinkPair& pair) {
+  std::optional<geom::Mesh> of_a = mesh_of(a.outer), of_b = mesh_of(b.outer);
+  if (!of_a || !of_b || (options.stop && options.stop())) return;
+  const std::vector<pairs::DecidedPair> decided = pairs::decide_pairs(
+      robot.kinematics, {{a.link, std::move(*of_a), {}}, {b.link, std::move(*of_b), {}}},
+      {.most_boxes = options.most_boxes,
+       .most_seconds = std::numeric_limits<double>::infinity(),
+       .stop = options.stop});
+  if (decided.empty()) return;
+  if (decided.front().verdict == pairs::Verdict::Never) pair.reason = Reason::Never;
+  pair.meets = decided.front().verdict == pairs::Verdict::CanTouch;
 }
 
 }  // namespace
@@ -101,10 +94,17 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
     for (const LinkShape& b : robot.shapes) {
       if (a.link >= b.link) continue;
       LinkPair pair{a.link, b.link, std::nullopt, false};
-      if (are_adjacent(robot.kinematics, shaped, a.link, b.link)) {
+      if (pairs::relation_of(robot.kinematics, shaped, a.link, b.link) ==
+          pairs::Relation::Adjacent) {
         pair.reason = Reason::Adjacent;
       } else {
-        pair = detail::examine_pair(robot, a, b, options);
+        // What is easy, and bodies with radii; then what only better bounds decide.
+        PairOptions few = options;
+        few.most_boxes = std::min<std::size_t>(options.most_boxes, 1'000);
+        pair = detail::examine_pair(robot, a, b, few);
+        if (!pair.reason && !pair.meets) decide_pair(robot, a, b, options, pair);
+        if (!pair.reason && !pair.meets && options.most_boxes > few.most_boxes)
+          pair = detail::examine_pair(robot, a, b, options);
       }
       const auto [known, is_new] = found.emplace(std::pair(a.link, b.link), pair);
       if (is_new) continue;

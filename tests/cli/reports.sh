@@ -47,6 +47,9 @@ run state "$BIN/kaboum-check" cell.json --distance
 run motion "$BIN/kaboum-check" cell.json --path path.csv
 run move "$BIN/kaboum-move" cell.json --from 0 --to 1 -o moved.csv --trajectory samples.csv
 expect 1 '' "$BIN/bound-verify" mesh --outer wide.off box.off --report reports/refuted.json
+printf '<robot name="arm">\n<disable_collisions link1="no" link2="such"/>\n</robot>\n' >arm.srdf
+sed 's#<link name="tool"/>#<link name="tool"><collision><geometry><mesh filename="wide.off"/></geometry></collision></link>#' arm.urdf >two.urdf
+run links "$BIN/kaboum-pairs" two.urdf --judge arm.srdf
 run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'
 (define (domain d) (:requirements :strips) (:predicates (done)) (:action act :parameters () :precondition () :effect (done)))

@@ -11,6 +11,7 @@
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/trajectory_options.h>
+#include <kaboum/pairs/decide_options.h>
 #include <kaboum/picture/panels.h>
 #include <kaboum/plan/solve_options.h>
 #include <kaboum/robot/path_options.h>
@@ -119,6 +120,7 @@ TEST(OptionTables, AreSound) {
   check("engines", engines::engine_options());
   check("motions", world::motion_options());
   check("pairs of links", world::pair_options());
+  check("pairs of links by meshes", pairs::decide_options());
   check("scenes", scene::scene_options());
   check("grasps", scene::grasp_options());
   check("places", scene::place_options());

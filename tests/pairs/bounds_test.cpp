@@ -54,7 +54,8 @@ TEST(HullTree, HoldsTheTrianglesOfEachCluster) {
       points.push_back(random.between(0.9, 1) * (test::random_vector(random, 1)).normalized());
     geom::Mesh mesh;
     mesh.vertices = points;
-    for (std::uint32_t i = 0; i + 2 < points.size(); ++i) mesh.triangles.push_back({i, i + 1, i + 2});
+    for (std::uint32_t i = 0; i + 2 < points.size(); ++i)
+      mesh.triangles.push_back({i, i + 1, i + 2});
     const HullTree tree(mesh);
     const Cluster& root = tree[0];
     EXPECT_LE(root.count, HullTree::kMostPoints);

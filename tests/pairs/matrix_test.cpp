@@ -80,14 +80,16 @@ TEST(Matrix, SrdfIsJudgedAndOnlyWhatIsRefutedIsTakenOut) {
   EXPECT_EQ(judged[2].judgement, Judgement::Open);
   EXPECT_EQ(judged[3].judgement, Judgement::Connected);
   std::string wanted = kSrdf;
-  const std::string gone = R"(<disable_collisions link1="d" link2="a" reason="Never"></disable_collisions>)";
+  const std::string gone =
+      R"(<disable_collisions link1="d" link2="a" reason="Never"></disable_collisions>)";
   wanted.erase(wanted.find(gone), gone.size());
   EXPECT_EQ(corrected(matrix, judged), wanted);
 }
 
 TEST(Matrix, AStatementAloneOnItsLineIsTakenOutWithIt) {
   const robot::Robot robot = chain();
-  const std::string text = "<robot name=\"r\">\n  <disable_collisions link1=\"a\" link2=\"d\"/>\n</robot>\n";
+  const std::string text =
+      "<robot name=\"r\">\n  <disable_collisions link1=\"a\" link2=\"d\"/>\n</robot>\n";
   const Matrix matrix = parse_matrix(text, "m", robot);
   EXPECT_EQ(corrected(matrix, judge(matrix, robot, all())), "<robot name=\"r\">\n</robot>\n");
 }

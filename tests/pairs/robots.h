@@ -69,13 +69,15 @@ inline TestRobot random_robot(std::uint64_t seed, std::uint32_t links = 6) {
                              : robot::JointType::Revolute;
     if (joint.type != robot::JointType::Fixed) {
       const bool mimics = random.index(6) == 0 && !out.robot.variables.empty();
-      joint.variable = static_cast<std::uint32_t>(
-          mimics ? random.index(out.robot.variables.size()) : out.robot.variables.size());
+      joint.variable = static_cast<std::uint32_t>(mimics ? random.index(out.robot.variables.size())
+                                                         : out.robot.variables.size());
       joint.multiplier = mimics ? random.between(-1, 1) : 1;
       joint.offset = random.index(3) == 0 ? random.between(-0.2, 0.2) : 0;
       if (!mimics) {
-        const double most = joint.type == robot::JointType::Prismatic ? 0.2 : random.between(0.2, 3);
-        out.robot.variables.push_back({joint.name, -random.between(0, most), random.between(0, most)});
+        const double most =
+            joint.type == robot::JointType::Prismatic ? 0.2 : random.between(0.2, 3);
+        out.robot.variables.push_back(
+            {joint.name, -random.between(0, most), random.between(0, most)});
       }
     }
     out.robot.joints.push_back(joint);
@@ -89,9 +91,7 @@ inline std::vector<double> random_configuration(const robot::Robot& robot, Rando
   for (const robot::Variable& v : robot.variables) {
     // At the limits as often as not: the worst is often there.
     const std::size_t where = random.index(4);
-    q.push_back(where == 0   ? *v.lower
-                : where == 1 ? *v.upper
-                             : random.between(*v.lower, *v.upper));
+    q.push_back(where == 0 ? *v.lower : where == 1 ? *v.upper : random.between(*v.lower, *v.upper));
   }
   return q;
 }

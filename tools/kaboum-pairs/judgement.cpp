@@ -13,10 +13,9 @@
 namespace kaboum::tools {
 namespace {
 
-using pairs::Judgement;
 using pairs::JudgedPair;
+using pairs::Judgement;
 using pairs::MatrixFault;
-
 
 std::string short_text(double value) {
   std::array<char, 32> text{};
@@ -36,17 +35,17 @@ std::string finding_of(const JudgedPair& pair) {
     case Judgement::Refuted:
       out += ": they touch at " + pairs::text_of(pair.found->q);
       if (pair.found->depth.lower > 0)
-        out += ", " + short_text(pair.found->depth.lower) + " to " + short_text(pair.found->depth.upper) +
-               " deep";
+        out += ", " + short_text(pair.found->depth.lower) + " to " +
+               short_text(pair.found->depth.upper) + " deep";
       return out;
     case Judgement::Open:
-      return out + ": their smallest distance is " + short_text(pair.found->nearest.lower) + " to " +
-             short_text(pair.found->nearest.upper);
+      return out + ": their smallest distance is " + short_text(pair.found->nearest.lower) +
+             " to " + short_text(pair.found->nearest.upper);
     case Judgement::Connected: {
       out += std::string(" (") + pairs::name_of(pair.found->relation) + ")";
       if (pair.found->away)
-        out += ": farther than " + short_text(pair.found->away->beyond) + " from the joint: " +
-               pairs::name_of(pair.found->away->verdict);
+        out += ": farther than " + short_text(pair.found->away->beyond) +
+               " from the joint: " + pairs::name_of(pair.found->away->verdict);
       return out;
     }
     default:
@@ -108,26 +107,26 @@ Json matrix_json(const JudgedMatrix& judged) {
     out["disabled"].push_back(std::move(j));
   }
   for (const MatrixFault& fault : judged.matrix.faults)
-    out["faults"].push_back({{"fault", pairs::name_of(fault.kind)},
-                             {"line", fault.line},
-                             {"text", fault.text}});
+    out["faults"].push_back(
+        {{"fault", pairs::name_of(fault.kind)}, {"line", fault.line}, {"text", fault.text}});
   return out;
 }
 
 std::string to_junit(const JudgedMatrix& judged, bool open_fails) {
   const std::size_t refuted = judged.count(Judgement::Refuted),
                     open = judged.count(Judgement::Open);
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" +
-                    escape_xml(judged.file) + "\" tests=\"" + std::to_string(judged.pairs.size()) +
-                    "\" failures=\"" + std::to_string(refuted + (open_fails ? open : 0)) +
-                    "\" errors=\"0\" skipped=\"" + std::to_string(open_fails ? 0 : open) + "\">\n";
+  std::string out =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" +
+      escape_xml(judged.file) + "\" tests=\"" + std::to_string(judged.pairs.size()) +
+      "\" failures=\"" + std::to_string(refuted + (open_fails ? open : 0)) +
+      "\" errors=\"0\" skipped=\"" + std::to_string(open_fails ? 0 : open) + "\">\n";
   for (const JudgedPair& pair : judged.pairs) {
     const std::string finding = escape_xml(finding_of(pair));
     out += "    <testcase classname=\"" + escape_xml(judged.file) + "\" name=\"" +
            escape_xml(name_of(pair)) + "\" file=\"" + escape_xml(judged.file) + "\" line=\"" +
            std::to_string(pair.stated.line) + "\"";
-    const bool fails = pair.judgement == Judgement::Refuted ||
-                       (open_fails && pair.judgement == Judgement::Open);
+    const bool fails =
+        pair.judgement == Judgement::Refuted || (open_fails && pair.judgement == Judgement::Open);
     if (fails) {
       out += ">\n      <failure message=\"" + finding + "\">" +
              escape_xml(replay_of(judged, pair)) + "</failure>\n    </testcase>\n";
@@ -144,14 +143,13 @@ Json to_sarif(const JudgedMatrix& judged) {
   const auto rule = [](const char* id, const char* text) -> Json {
     return {{"id", id}, {"shortDescription", {{"text", text}}}};
   };
-  Json rules = {
-      rule("refuted", "A pair that is not checked touches in a configuration"),
-      rule("open", "It is not decided whether a pair that is not checked can touch"),
-      rule("unknown-link", "The robot has no link of this name"),
-      rule("same-link", "A link is paired with itself"),
-      rule("doubled", "A pair or group is stated twice"),
-      rule("contradicting", "A pair is stated for two reasons, or disabled and enabled"),
-      rule("empty-group", "A group has no links")};
+  Json rules = {rule("refuted", "A pair that is not checked touches in a configuration"),
+                rule("open", "It is not decided whether a pair that is not checked can touch"),
+                rule("unknown-link", "The robot has no link of this name"),
+                rule("same-link", "A link is paired with itself"),
+                rule("doubled", "A pair or group is stated twice"),
+                rule("contradicting", "A pair is stated for two reasons, or disabled and enabled"),
+                rule("empty-group", "A group has no links")};
   Json results = Json::array();
   for (const JudgedPair& pair : judged.pairs) {
     const std::string text = name_of(pair) + ": " + finding_of(pair);
@@ -165,13 +163,14 @@ Json to_sarif(const JudgedMatrix& judged) {
   for (const MatrixFault& fault : judged.matrix.faults)
     results.push_back(
         sarif_result(judged, pairs::name_of(fault.kind), "warning", fault.text, fault.line));
-  return {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
-          {"version", "2.1.0"},
-          {"runs",
-           Json::array({{{"tool",
-                          {{"driver",
-                            {{"name", "kaboum-pairs"}, {"version", version()}, {"rules", rules}}}}},
-                         {"results", results}}})}};
+  return {
+      {"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+      {"version", "2.1.0"},
+      {"runs",
+       Json::array(
+           {{{"tool",
+              {{"driver", {{"name", "kaboum-pairs"}, {"version", version()}, {"rules", rules}}}}},
+             {"results", results}}})}};
 }
 
 }  // namespace kaboum::tools

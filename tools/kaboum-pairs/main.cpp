@@ -113,9 +113,8 @@ int run(const PairsOptions& o) {
     const bool no = judged->count(pairs::Judgement::Refuted) > 0 || (open_pair && o.fail_on_open);
     return no ? tools::kNo : open_pair ? tools::kLimit : tools::kDone;
   }
-  const bool open = std::ranges::any_of(pairs, [](const pairs::DecidedPair& pair) {
-    return pair.verdict == pairs::Verdict::Open;
-  });
+  const bool open = std::ranges::any_of(
+      pairs, [](const pairs::DecidedPair& pair) { return pair.verdict == pairs::Verdict::Open; });
   return open ? tools::kLimit : tools::kDone;
 }
 
@@ -123,7 +122,8 @@ int run(const PairsOptions& o) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Decides which links of a robot can touch each other, by their exact meshes: never or always, "
+      "Decides which links of a robot can touch each other, by their exact meshes: never or "
+      "always, "
       "proved over all of the joints' limits, or a configuration in which they do.",
       "kaboum-pairs");
   PairsOptions options;

@@ -21,9 +21,10 @@ void describe(CLI::App& app, PairsOptions& o) {
                  "that are connected")
       ->type_name("FILE");
   CLI::Option* judge =
-      app.add_option("--judge", o.judge,
-                     "Judge the pairs that this file disables: SRDF, MJCF (exclude), Drake's filter "
-                     "groups, XRDF, cuRobo's YAML")
+      app.add_option(
+             "--judge", o.judge,
+             "Judge the pairs that this file disables: SRDF, MJCF (exclude), Drake's filter "
+             "groups, XRDF, cuRobo's YAML")
           ->type_name("FILE");
   app.add_option("-o,--output", o.output,
                  "Write that file without the pairs that are refuted; all else of it stays")

@@ -16,9 +16,9 @@ namespace kaboum::tools {
 
 /// What kaboum-pairs is asked for.
 struct PairsOptions {
-  std::string robot;  ///< a file
-  std::string srdf;   ///< to write
-  std::string judge;  ///< a matrix
+  std::string robot;                 ///< a file
+  std::string srdf;                  ///< to write
+  std::string judge;                 ///< a matrix
   std::string output, junit, sarif;  ///< to write, of the judged matrix
   bool fail_on_open = false;
   robot::ShapeChoice choice;

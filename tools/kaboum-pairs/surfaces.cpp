@@ -44,8 +44,8 @@ Mesh inscribed(const Geometry& shape) {
 }
 
 /// Adds a shape. @return whether both meshes got the same
-bool add(const Geometry& shape, const Mesh& exact, const std::string& link,
-         pairs::LinkSurface& out, Mesh& inner, std::vector<std::string>& notes) {
+bool add(const Geometry& shape, const Mesh& exact, const std::string& link, pairs::LinkSurface& out,
+         Mesh& inner, std::vector<std::string>& notes) {
   if (shape.shape == Geometry::Shape::Cylinder || shape.shape == Geometry::Shape::Sphere) {
     append(out.outer, exact);
     if (!is_flat(shape)) append(inner, inscribed(shape));

@@ -29,6 +29,7 @@ struct DecideOptions {
   std::size_t samples = 300;         ///< places at which contacts of a pair are looked for at first
   /// After so long nothing more is proved. [s]
   double most_seconds = 60;
+  std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
   /// Often called, by several threads: how many pairs are decided, of how many. May throw.
   std::function<void(std::size_t decided, std::size_t all)> progress = {};
 };
@@ -68,7 +69,7 @@ struct DecidedPair {
   /// Of the penetration in that configuration, where they touch: no translation of one by less than
   /// `lower` parts the two; one by `upper` does.
   Bracket depth{0, 0};
-  std::size_t boxes = 0;  ///< that were looked at
+  std::size_t boxes = 0;              ///< that were looked at
   std::optional<AwayFromJoint> away;  ///< of adjacent links that touch
 };
 

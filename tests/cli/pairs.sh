@@ -1,0 +1,90 @@
+# kaboum-pairs: verdicts, a file judged and corrected, what is written for others, exit codes.
+. "$(dirname "$0")/common.sh"
+P=$BIN/kaboum-pairs
+box() { # NAME X Y Z SX SY SZ
+  echo "<link name=\"$1\"><collision><origin xyz=\"$2 $3 $4\"/><geometry><box size=\"$5 $6 $7\"/></geometry></collision></link>"
+}
+joint() { # NAME PARENT CHILD XYZ AXIS LIMIT
+  echo "<joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/><origin xyz=\"$4\"/>
+<axis xyz=\"$5\"/><limit lower=\"-$6\" upper=\"$6\" effort=\"1\" velocity=\"1\"/></joint>"
+}
+{
+  echo '<robot name="arm">'
+  box base 0 0 0.05 0.4 0.4 0.1
+  box turret 0 0 0.1 0.1 0.1 0.3
+  box upper 0 0 0.25 0.08 0.08 0.5
+  box fore 0 0 0.25 0.06 0.06 0.5
+  joint waist base turret '0 0 0.1' '0 0 1' 3
+  joint shoulder turret upper '0 0 0.2' '0 1 0' 0.3
+  joint elbow upper fore '0 0 0.5' '0 1 0' 2.9
+  echo '</robot>'
+} >arm.urdf
+expect 0 '6 pairs: ' "$P" arm.urdf --json --srdf arm.srdf
+python3 - <<'END' || fail "verdicts: $(cat out.txt)"
+import json
+pairs = {tuple(p["links"]): p for p in json.load(open("out.txt"))["pairs"]}
+assert len(pairs) == 6
+assert pairs["base", "upper"]["verdict"] == "never"
+assert pairs["base", "upper"]["distance"]["at_least"] > 0
+folded = pairs["turret", "fore"]
+assert folded["verdict"] == "can touch" and folded["depth"]["at_least"] > 0
+assert abs(folded["configuration"]["elbow"]) > 2
+assert pairs["turret", "upper"]["relation"] == "adjacent"
+assert pairs["turret", "upper"]["away_from_joint"]["verdict"] in ("never", "can touch")
+END
+grep -q 'link1="base" link2="upper" reason="Never"' arm.srdf || fail "arm.srdf: $(cat arm.srdf)"
+grep -q 'turret" link2="fore' arm.srdf && fail 'a pair that touches was switched off'
+
+# A configuration that shows a contact does so to the program that checks sets.
+Q=$(python3 -c 'import json
+for p in json.load(open("out.txt"))["pairs"]:
+    if p["links"] == ["turret", "fore"]: print(",".join(map(repr, p["configuration"].values())))')
+"$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --no-cache --quiet || fail 'no scene'
+expect 1 'fore' "$BIN/kaboum-check" cell.json --configuration="$Q"
+
+# The same for any number of threads.
+expect 0 '' "$P" arm.urdf --json --threads 1
+mv out.txt one.txt
+expect 0 '' "$P" arm.urdf --json --threads 2
+cmp -s one.txt out.txt || fail 'threads change what is said'
+
+cat >stated.srdf <<'END'
+<robot name="arm">
+  <!-- made by sampling -->
+  <disable_collisions link1="base" link2="upper" reason="Never"/>
+  <disable_collisions link1="fore" link2="turret" reason="Never"/>
+  <disable_collisions link1="upper" link2="base" reason="Never"/>
+  <disable_collisions link1="base" link2="hand" reason="Never"/>
+  <disable_collisions link1="base" link2="turret" reason="Adjacent"/> <!-- waist -->
+</robot>
+END
+expect 1 '3 pairs disabled: 1 proved never to touch, 1 connected, 0 always in contact, 1 refuted, 0 open; 2 faults' \
+  "$P" arm.urdf --judge stated.srdf -o corrected.srdf --junit pairs.xml --sarif pairs.sarif
+grep -q 'line 4: fore turret (Never): refuted: they touch at ' out.txt || fail "$(cat out.txt)"
+grep -q "line 5: the pair 'base', 'upper' is stated in line 3 already" out.txt || fail "$(cat out.txt)"
+grep -q "line 6: the robot has no link 'hand'" out.txt || fail "$(cat out.txt)"
+grep -v 'fore' stated.srdf | cmp -s - corrected.srdf || fail "corrected.srdf: $(cat corrected.srdf)"
+expect 0 '' "$P" arm.urdf --judge corrected.srdf --fail-on open
+python3 - <<'END' || fail 'JUnit or SARIF'
+import json
+import xml.etree.ElementTree as xml
+suite = xml.parse("pairs.xml").getroot().find("testsuite")
+assert suite.get("tests") == "3" and suite.get("failures") == "1"
+failed = [c for c in suite.iter("testcase") if c.find("failure") is not None]
+assert [(c.get("name"), c.get("line")) for c in failed] == [("fore turret", "4")]
+assert "kaboum-check" in failed[0].find("failure").text
+run, = json.load(open("pairs.sarif"))["runs"]
+rules = {r["id"] for r in run["tool"]["driver"]["rules"]}
+found = [(r["ruleId"], r["locations"][0]["physicalLocation"]["region"]["startLine"]) for r in run["results"]]
+assert found == [("refuted", 4), ("doubled", 5), ("unknown-link", 6)] and {r for r, _ in found} <= rules
+END
+
+# Nothing is decided in no time, and that is said.
+expect 7 'open' "$P" arm.urdf --timeout 1e-9
+expect 1 '' "$P" arm.urdf --judge stated.srdf --timeout 1e-9 --fail-on open
+expect 2 'requires' "$P" arm.urdf -o corrected.srdf
+expect 2 'links' "$P" arm.urdf --judge stated.srdf --links base,upper
+expect 3 'no two links with shapes' "$P" arm.urdf --links base
+echo '<robot><disable_collisions link1="base"/></robot>' >bad.srdf
+expect 3 "bad.srdf: line 1: <disable_collisions> has no 'link2'" "$P" arm.urdf --judge bad.srdf
+expect 3 'absent.srdf' "$P" arm.urdf --judge absent.srdf
