@@ -195,8 +195,9 @@ void write_page(const Run& run, const RobotWriter& output) {
           .counts = page::counts_of(run.made)}));
 }
 
-/// Spheres, capsules or boxes of all links, in one file: no meshes.
-int decompose_into_shapes(const DecomposeOptions& o) {
+/// The format of a file of spheres, capsules or boxes.
+/// @throws Error{InvalidArgument} where it has no place for them, and on options of polytopes
+robot_folder::SphereFormat format_of_shapes(const DecomposeOptions& o) {
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
   const std::optional<robot_folder::SphereFormat> format = sphere_format_of(o.output);
   if (!spheres && format != robot_folder::SphereFormat::Urdf)
@@ -213,6 +214,13 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
                 "state --robot-bodies");
+  return *format;
+}
+
+/// Spheres, capsules or boxes of all links, in one file: no meshes.
+int decompose_into_shapes(const DecomposeOptions& o) {
+  const robot_folder::SphereFormat format = format_of_shapes(o);
+  const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
   Run run{o, robot::read_robot(o.input, robot::Motions::None)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
@@ -243,8 +251,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
       certify::certify_bodies(run.robot, run.request, cache, hooks);
   double distance = bodies.certificate().distance;
   if (spheres) {
-    io::write_file(o.output,
-                   robot_folder::sphere_text(*format, run.robot, bodies, run.request.parameters(), o.output));
+    io::write_file(o.output, robot_folder::sphere_text(format, run.robot, bodies,
+                                                       run.request.parameters(), o.output));
   } else {
     const SimpleShapes shapes = simple_shapes(bodies.artefact());
     distance += shapes.beyond;
