@@ -430,7 +430,7 @@ class SimpleBodySearch {
         // What is far outside does not fit.
         const Vec3 middle = 0.5 * (found->from + found->to);
         if (!(body_->signed_distance(middle).upper < epsilon_)) continue;
-        if (const auto one = capsule(found->from, found->to, radius)) return one;
+        if (auto one = capsule(found->from, found->to, radius)) return one;
       }
     }
     return std::nullopt;
