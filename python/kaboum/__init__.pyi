@@ -694,7 +694,7 @@ def decompose(
     epsilon: _Length | None = None,
     max_bodies: int | None = None,
     max_total_vertices: int | None = None,
-    bodies: Literal["polytopes", "spheres"] = "polytopes",
+    bodies: Literal["polytopes", "spheres", "capsules", "boxes", "mixed"] = "polytopes",
     direction: Literal["outer", "inner"] = "outer",
     min_thickness: float = 0.0,
     max_vertices_per_body: int = 64,
