@@ -35,9 +35,10 @@ constexpr double kPointSlack = 2e-3;
 constexpr double kCoarseCaps = 0.15, kFineCaps = 0.04;
 /// Share of the work for fewer balls before all triangles are held, and again after it.
 constexpr double kReducing = 0.3;
-constexpr int kPatchRounds = 150;                              ///< of points added where no ball is
-constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 600;  ///< while balls move, and after it
-constexpr int kPieceCuts = 24;                                 ///< of a triangle
+constexpr int kPatchRounds = 150;  ///< of points added where no ball is
+constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 3000;  ///< while balls move, and after it
+constexpr int kPieceCuts = 24;                                  ///< of a triangle
+constexpr int kFreeCuts = 11;                                   ///< of parts with a free corner
 constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
 /// Points of the inside that are looked at, of which every so manieth is to be held at first.
 constexpr std::size_t kInnerPoints = 20'000, kInnerShown = 29;
@@ -292,6 +293,18 @@ class BallSearch {
       candidates_.push_back({at, radius});
   }
 
+  /// Balls that hold each of the points: about it, and inwards of its triangle.
+  void add_candidates_for(const std::vector<Vec3>& points) {
+    std::vector<SurfacePoint> at;
+    for (const Vec3& p : points) {
+      add_ball_at(p);
+      const auto& [a, b, c] = query_.corners(query_.nearest(p).triangle);
+      const Vec3 inwards = -(b - a).cross(c - a).normalized();
+      if (inwards.allFinite()) at.push_back({p, inwards});
+    }
+    add_candidates(at);
+  }
+
   [[nodiscard]] bool may_move() const { return relaxation_.work() < end_of_work_; }
 
   /// Fewer balls, while that succeeds.
@@ -405,14 +418,15 @@ class BallSearch {
       bool free = false;
       for (std::size_t k = 0; k < 3; ++k) {
         if (some[k]) continue;
-        out.push_back(piece.corner[k]);
+        // Others were seen as middles.
+        if (piece.cuts == 0) out.push_back(piece.corner[k]);
         free = true;
       }
       if (piece.cuts >= kPieceCuts) {
         out.push_back((piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3);
         continue;
       }
-      if (free && piece.cuts > 6) continue;
+      if (free && piece.cuts > kFreeCuts) continue;
       std::size_t longest = 0;
       for (std::size_t k = 1; k < 3; ++k)
         if ((piece.corner[(k + 1) % 3] - piece.corner[k]).squaredNorm() >
@@ -420,6 +434,8 @@ class BallSearch {
           longest = k;
       const std::size_t next = (longest + 1) % 3;
       const Vec3 half = 0.5 * (piece.corner[longest] + piece.corner[next]);
+      if (std::ranges::none_of(piece.near, [&](const Ball& b) { return holds(b, half); }))
+        out.push_back(half);
       for (const std::size_t k : {longest, next}) {
         std::array<Vec3, 3> corner = piece.corner;
         corner[k] = half;
@@ -443,14 +459,8 @@ class BallSearch {
       if (may_move() && relaxation_.hold(balls, effort_.sweeps)) continue;
       const std::vector<Vec3> free(points_.begin() + static_cast<std::ptrdiff_t>(known),
                                    points_.end());
-      std::vector<SurfacePoint> at;
-      for (const Vec3& p : free) {
-        add_ball_at(p);
-        const auto& [a, b, c] = query_.corners(query_.nearest(p).triangle);
-        const Vec3 inwards = -(b - a).cross(c - a).normalized();
-        if (inwards.allFinite()) at.push_back({p, inwards});
-      }
-      add_candidates(at);
+      if (!may_move()) candidates_.clear();  // those known hold little of what is left
+      add_candidates_for(free);
       std::vector<Ball> more = choose(free, 0);
       // A part of them may do, once all have moved.
       if (may_move()) more.resize((more.size() + 2) / 3);
@@ -668,14 +678,7 @@ class BallSearch {
   /// Other balls that hold the points.
   void add(std::vector<Ball>& balls, const std::vector<Vec3>& free, std::size_t steps) {
     if (free.empty()) return;
-    std::vector<SurfacePoint> at;
-    for (const Vec3& p : free) {
-      add_ball_at(p);
-      const auto& [a, b, c] = query_.corners(query_.nearest(p).triangle);
-      const Vec3 inwards = -(b - a).cross(c - a).normalized();
-      if (inwards.allFinite()) at.push_back({p, inwards});
-    }
-    add_candidates(at);
+    add_candidates_for(free);
     std::erase_if(candidates_, [&](const Ball& b) {
       return std::ranges::none_of(free, [&](const Vec3& p) { return is_held(b, p, kPointSlack); });
     });

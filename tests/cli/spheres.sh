@@ -70,6 +70,11 @@ shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres twelve.y
 expect 2 'budget is less' "$B" arm.urdf -o x.yaml --bodies spheres --robot-bodies 2 --effort fast --no-cache
 expect 2 'no vertices' "$B" arm.urdf -o x.yaml --bodies spheres --robot-vertices 20
 
+# A mesh that gets none within epsilon, of which its wrap leaves nothing: some within a few times that, and exit code 1.
+sed '/name="hand"/d; /<joint/d; s/<origin.*rpy="0.3 0.2 0.1"\/>//' arm.urdf >base.urdf
+expect 1 'has spheres within 0.8' "$B" base.urdf -o base-wrapped.yaml --bodies spheres --epsilon 0.4 --prepare wrap --offset 0.3 --effort fast --no-cache
+shows 0 '^verified' "$V" robot base.urdf base-wrapped.yaml
+
 cat >one.yaml <<'Y'
 robot_cfg:
   kinematics:
