@@ -46,8 +46,9 @@ void say(const robot_folder::RobotWriter& writer, bool quiet, const Notes& notes
   const robot_folder::FolderOptions& o = writer.options();
   const bool visual = o.shapes.visual;
   const robot_folder::RobotFolder& folder = writer.folder();
-  log(quiet,
-      how_meshes_are_found(folder.urdf(), folder.part(), robot_folder::with_slash(o.mesh_prefix)));
+  if (writer.robot().format == robot::RobotFile::Format::Urdf)
+    log(quiet, how_meshes_are_found(folder.urdf(), folder.part(),
+                                    robot_folder::with_slash(o.mesh_prefix)));
   for (const std::string& text : notes.lines()) log(quiet, text);
   const robot::Robot& robot = writer.robot().robot;
   for (const std::string& text : robot.notes) log(quiet, text);

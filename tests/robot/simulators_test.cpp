@@ -1,0 +1,220 @@
+// MJCF and SDF robots: what is read and refused, and what an edit changes. tests/engines compares
+// poses with the engines.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/sdf.h>
+
+#include <functional>
+#include <numbers>
+
+namespace kaboum::robot {
+namespace {
+
+using Shape = Geometry::Shape;
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string mjcf(const std::string& bodies, const std::string& before = "") {
+  return "<mujoco model='m'>" + before + "<worldbody>" + bodies + "</worldbody></mujoco>";
+}
+
+MjcfRobot parse(const std::string& text) { return parse_mjcf(text, "m.xml"); }
+
+/// A link by its name.
+const Link& link_of(const Robot& robot, const std::string& name) {
+  return robot.links.at(robot.find_link(name).value());
+}
+
+TEST(Mjcf, ClassesFramesAndReplicas) {
+  const Robot robot =
+      parse(mjcf("<body name='a' childclass='c'><joint name='j' range='-90 90'/>"
+                 "<geom size='0.1'/><geom class='drawn' size='0.2'/>"
+                 "<frame pos='1 0 0'><body name='b' pos='0 1 0'><geom type='box' size='1 2 3'/>"
+                 "</body></frame>"
+                 "<replicate count='2' offset='0 0 1' sep='_'><body name='r'/></replicate></body>",
+                 "<default><default class='c'><joint axis='0 2 0'/></default>"
+                 "<default class='drawn'><geom contype='0' conaffinity='0'/></default></default>"))
+          .robot;
+  ASSERT_EQ(robot.variables.size(), 1U);
+  EXPECT_DOUBLE_EQ(robot.variables[0].upper.value(), std::numbers::pi / 2);
+  EXPECT_EQ(robot.joints[0].axis, Vec3(0, 1, 0));
+  EXPECT_EQ(link_of(robot, "a").collision.size(), 1U);
+  EXPECT_EQ(link_of(robot, "a").visual.size(), 1U);
+  EXPECT_EQ(link_of(robot, "b").collision.at(0).size, Vec3(2, 4, 6)) << "half lengths";
+  EXPECT_EQ(link_of(robot, "b").visual.size(), 1U) << "MuJoCo draws what collides";
+  const std::vector<double> q{0};
+  const std::vector<Transform> poses = forward(robot, q);
+  EXPECT_EQ(poses[robot.find_link("b").value()].translation, Vec3(1, 1, 0));
+  EXPECT_EQ(poses[robot.find_link("r_1").value()].translation, Vec3(0, 0, 1));
+}
+
+/// A joint beside the body's origin, and several of one body.
+TEST(Mjcf, JointsOfABody) {
+  const Robot robot =
+      parse(mjcf("<body name='a'><joint type='hinge' pos='1 0 0' axis='0 0 1' ref='90'/>"
+                 "<joint type='slide' axis='1 0 0'/></body>"))
+          .robot;
+  ASSERT_EQ(robot.variables.size(), 2U);
+  const std::vector<double> q{std::numbers::pi / 2 + std::numbers::pi, 0.5};
+  const Transform pose = forward(robot, q)[robot.find_link("a").value()];
+  // Half a turn about x = 1, then half a unit along what was x.
+  EXPECT_LT((pose.translation - Vec3(1.5, 0, 0)).norm(), 1e-15);
+}
+
+TEST(Mjcf, WhatIsNotModelledIsNamed) {
+  for (const char* joint : {"<freejoint/>", "<joint type='ball'/>", "<joint type='free'/>"}) {
+    const Robot robot = parse(mjcf(std::string("\n<body name='a'>") + joint + "</body>")).robot;
+    ASSERT_EQ(robot.unmodelled.size(), 1U) << joint;
+    EXPECT_TRUE(robot.unmodelled[0].starts_with("m.xml:2: joint ")) << robot.unmodelled[0];
+  }
+  EXPECT_EQ(parse(mjcf("<body mocap='true'/>")).robot.unmodelled.size(), 1U);
+  EXPECT_EQ(parse(mjcf("<geom type='plane' size='1 1 1'/>")).robot.notes.size(), 1U);
+}
+
+TEST(Mjcf, RefusedByNameAndLine) {
+  const auto has = [](const std::string& text, const std::string& words) {
+    const std::string got = refusal([&] { parse(text); });
+    EXPECT_NE(got.find(words), std::string::npos) << got;
+    EXPECT_NE(got.find("m.xml"), std::string::npos) << got;
+  };
+  const std::string mesh =
+      "<asset><mesh name='p' file='p.stl'/><mesh name='v' vertex='0 0 0'/></asset>";
+  has("<robot name='r'/>", "expected <mujoco>");
+  has(mjcf("<geom type='mesh' mesh='q'/>", mesh), "no mesh 'q'");
+  has(mjcf("<geom type='mesh' mesh='v'/>", mesh), "without a file");
+  has(mjcf("<geom type='box' mesh='p'/>", mesh), "fits to the mesh");
+  has(mjcf("<geom type='sdf' mesh='p'/>", mesh), "signed distance field");
+  has(mjcf("<geom class='none' size='1'/>"), "no default class 'none'");
+  has(mjcf("<geom type='box' size='1 1'/>"), "not positive");
+  has(mjcf("<geom size='nan'/>"), "'nan'");
+  has(mjcf("<geom size='1' quat='0 0 0 0'/>"), "no rotation");
+  has(mjcf("<body><joint axis='0 0 0'/></body>"), "no direction");
+  has(mjcf("<flexcomp/>"), "flexible");
+  has(mjcf("<attach model='x'/>"), "mj_saveLastXML");
+  has(mjcf("<body><geometry/></body>"), "no element of a body");
+}
+
+TEST(Mjcf, Includes) {
+  const auto read = [](const std::string& file) -> std::string {
+    if (file == "b.xml")
+      return "<mujocoinclude><body name='b'><include file='c.xml'/></body></mujocoinclude>";
+    return "<mujocoinclude><geom size='1'/></mujocoinclude>";
+  };
+  const std::string text = expand_mjcf(mjcf("<include file='b.xml'/>"), "m.xml", read);
+  EXPECT_EQ(link_of(parse(text).robot, "b").collision.size(), 1U);
+  EXPECT_NE(refusal([&] {
+              expand_mjcf(mjcf("<include file='c.xml'/><include file='c.xml'/>"), "m.xml", read);
+            }).find("already"),
+            std::string::npos);
+}
+
+ShapeEdit edit_with(bool visual, std::vector<std::vector<ShapeMeshes>> links) {
+  ShapeEdit edit;
+  edit.visual = visual;
+  edit.links = std::move(links);
+  edit.moved = [](const std::string& file) { return "../" + file; };
+  return edit;
+}
+
+/// Two bodies for a mesh: the old geom goes where it neither is drawn nor weighs.
+TEST(Mjcf, Edit) {
+  const std::string before =
+      "<compiler meshdir='d'/><asset><mesh name='p' file='p.stl' scale='2 2 2'/></asset>";
+  const std::string text = mjcf(
+      "<body name='a'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>"
+      "<geom name='old' type='mesh' mesh='p' pos='1 0 0' friction='0.3'/>"
+      "<geom type='mesh' mesh='p' contype='0' conaffinity='0'/></body>"
+      "<body name='b'><geom type='mesh' mesh='p'/></body>",
+      before);
+  const ShapeMeshes two = std::vector<std::string>{"bodies/p-0.stl", "bodies/p-1.stl"};
+  const std::string out = mjcf_with_shapes(text, "m.xml", edit_with(false, {{}, {two}, {two}}));
+  const Robot robot = parse(out).robot;
+  const Link& a = link_of(robot, "a");
+  ASSERT_EQ(a.collision.size(), 2U);
+  EXPECT_EQ(a.collision[1].mesh, "bodies/p-1.stl");
+  EXPECT_EQ(a.collision[0].size, Vec3(2, 2, 2));
+  EXPECT_EQ(a.collision[0].origin.translation, Vec3(1, 0, 0));
+  EXPECT_EQ(a.visual.size(), 1U);
+  EXPECT_EQ(a.visual[0].mesh, "../d/p.stl");
+  EXPECT_EQ(out.find("name=\"old\""), std::string::npos);
+  EXPECT_NE(out.find("friction=\"0.3\""), std::string::npos);
+  const Link& b = link_of(robot, "b");
+  EXPECT_EQ(b.collision.size(), 2U);
+  EXPECT_EQ(b.visual.size(), 1U) << "it weighs, and is drawn";
+  EXPECT_NE(out.find("mass=\"0\""), std::string::npos);
+
+  const Robot drawn =
+      parse(mjcf_with_shapes(text, "m.xml", edit_with(true, {{}, {two}, {two}}))).robot;
+  EXPECT_EQ(link_of(drawn, "a").collision.size(), 2U);
+  EXPECT_EQ(link_of(drawn, "a").collision[0].origin.translation, Vec3(0, 0, 0));
+  EXPECT_EQ(link_of(drawn, "b").collision.size(), 2U);
+}
+
+std::string sdf(const std::string& inside) {
+  return "<sdf version='1.9'><model name='s'>" + inside + "</model></sdf>";
+}
+
+TEST(Sdf, FramesAndShapes) {
+  const Robot robot =
+      parse_sdf(sdf("<link name='a'><pose>1 0 0 0 0 0</pose><collision name='c'><geometry><capsule>"
+                    "<radius>1</radius><length>2</length></capsule></geometry></collision></link>"
+                    "<link name='b'><pose relative_to='f'>0 0 1 0 0 0</pose></link>"
+                    "<frame name='f' attached_to='a'><pose>0 1 0 0 0 0</pose></frame>"
+                    "<joint name='j' type='revolute'><pose>0 0 1 0 0 0</pose><parent>a</parent>"
+                    "<child>b</child><axis><xyz>0 1 0</xyz></axis></joint>"),
+                "s.sdf")
+          .robot;
+  ASSERT_EQ(robot.variables.size(), 1U);
+  EXPECT_EQ(link_of(robot, "a").collision.at(0).shape, Shape::Capsule);
+  const std::vector<double> q{std::numbers::pi};
+  const std::vector<Transform> poses = forward(robot, q);
+  // b hangs one below its joint; half a turn puts it one above.
+  EXPECT_LT((poses[robot.find_link("b").value()].translation - Vec3(1, 1, 3)).norm(), 1e-15);
+}
+
+TEST(Sdf, RefusedByNameAndLine) {
+  const auto has = [](const std::string& text, const std::string& words) {
+    const std::string got = refusal([&] { parse_sdf(text, "s.sdf"); });
+    EXPECT_NE(got.find(words), std::string::npos) << got;
+  };
+  has("<sdf version='2.0'><model name='s'/></sdf>", "version 2.0");
+  has("<sdf version='1.9'/>", "no <model>");
+  has(sdf("<link name='a'/><link name='a'/>"), "there already");
+  has(sdf("<include><uri>model://x</uri></include>"), "nested");
+  has(sdf("<link name='a'><pose relative_to='a'/></link>"), "relative to itself");
+  has(sdf("<link name='a'><collision "
+          "name='c'><geometry><heightmap/></geometry></collision></link>"),
+      "not read");
+  EXPECT_EQ(parse_sdf(sdf("<link name='a'/><link name='b'/><joint name='j' type='ball'>"
+                          "<parent>a</parent><child>b</child></joint>"),
+                      "s.sdf")
+                .robot.unmodelled.size(),
+            1U);
+}
+
+TEST(Sdf, Edit) {
+  const std::string text =
+      sdf("<link name='a'><collision name='c'><pose>1 0 0 0 0 0</pose><geometry><mesh>"
+          "<uri>p.stl</uri><scale>2 2 2</scale></mesh></geometry></collision></link>");
+  const ShapeMeshes two = std::vector<std::string>{"bodies/p-0.stl", "bodies/p-1.stl"};
+  const Robot robot =
+      parse_sdf(sdf_with_shapes(text, "s.sdf", edit_with(false, {{}, {two}})), "s.sdf").robot;
+  const Link& a = link_of(robot, "a");
+  ASSERT_EQ(a.collision.size(), 2U);
+  EXPECT_EQ(a.collision[1].mesh, "bodies/p-1.stl");
+  EXPECT_EQ(a.collision[1].size, Vec3(2, 2, 2));
+  EXPECT_EQ(a.collision[1].origin.translation, Vec3(1, 0, 0));
+}
+
+}  // namespace
+}  // namespace kaboum::robot
