@@ -223,7 +223,8 @@ def motions_section(context, document):
                    [[m["what"], m["median"], m["mean"], m["late"], m["most"], m["count"]] for m in sorted(found, key=lambda m: not m["what"].startswith("find"))])
     for line in text:
         if line.startswith("of OMPL's paths") or " found, " in line and "straight" in line:
-            document.paragraph(line.split("; work")[0].capitalize() + ".")
+            said = line.split("; work")[0]
+            document.paragraph(said[0].upper() + said[1:] + ".")
     for package in ("ompl", "vamp-planner"):
         module = {"ompl": "ompl", "vamp-planner": "vamp"}[package]
         if not _has(context.others.get("python"), module):

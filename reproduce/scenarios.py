@@ -128,7 +128,7 @@ def varies(found):
 def cell(found, key):
     """What runs say of a quantity."""
     values = [one[key] for one in found]
-    if varies(found):
+    if varies(found) and (key in TIMES or len(set(values)) > 1):
         return f"{figure(statistics.fmean(values))} ± {figure(statistics.stdev(values))}"
     if key not in TIMES and values[0] == int(values[0]):
         return f"{values[0]:,.0f}"
