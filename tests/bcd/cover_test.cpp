@@ -218,11 +218,12 @@ std::vector<std::pair<std::string, Mesh>> solids_to_cut() {
 TEST(Cover, NoNumberOfBodiesIsFartherThanASmallerPowerOfTwo) {
   for (const auto& [name, mesh] : solids_to_cut()) {
     const geom::Prepared input = geom::prepare(mesh);
-    const bool small = input.solid.mesh().triangles.size() < 1000;
+    const std::size_t triangles = input.solid.mesh().triangles.size();
+    const std::size_t most = triangles < 300 ? 9 : triangles < 1000 ? 4 : 2;
     CoverOptions options;
     options.effort = Effort::Fast;
     std::vector<std::pair<std::size_t, double>> rungs;
-    for (std::size_t bodies = 1; bodies <= (small ? 9U : 4U); ++bodies) {
+    for (std::size_t bodies = 1; bodies <= most; ++bodies) {
       options.max_bodies = bodies;
       const double reach = find_cover(input.solid, options).excess_upper;
       for (const auto& [fewer, farthest] : rungs)
