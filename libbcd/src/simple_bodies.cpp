@@ -110,8 +110,9 @@ class SimpleBodySearch {
       out.statistics.largest = std::max(out.statistics.largest, vertices);
     }
     out.statistics.leaves = bodies.size();
-    out.excess_upper = epsilon_;
-    out.excess_lower = std::min(farthest(bodies), epsilon_);
+    // Half of what is left is for who rounds the bodies.
+    out.excess_upper = epsilon_ * (1 - 0.5 * kLeft);
+    out.excess_lower = std::min(farthest(bodies), out.excess_upper);
     if (options_.epsilon && !(out.excess_upper <= *options_.epsilon))
       out.stop = Stop::TooManyBodies;
     return out;

@@ -256,6 +256,9 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   } else {
     const SimpleShapes shapes = simple_shapes(bodies.artefact());
     distance += shapes.beyond;
+    const std::optional<Length>& epsilon = run.request.set.epsilon;
+    if (run.request.epsilons.empty() && epsilon && !epsilon->percent)
+      reached = reached && distance <= epsilon->value;
     io::write_file(o.output,
                    urdf_of_shapes(run.robot, bodies, shapes, run.request.parameters(), o.output));
   }
