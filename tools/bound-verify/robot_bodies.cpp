@@ -42,6 +42,7 @@ std::optional<geom::Mesh> box_of(const Geometry& g, double more) {
   const Vec3 half = 0.5 * g.size + Vec3::Constant(more);
   if (!(half.minCoeff() > 0)) return std::nullopt;
   std::vector<Vec3> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i)
     corners.emplace_back(g.origin * Vec3((i & 1) != 0 ? half.x() : -half.x(),
                                          (i & 2) != 0 ? half.y() : -half.y(),
@@ -64,6 +65,7 @@ std::optional<geom::Mesh> prism_in(const Geometry& g, double error) {
   const double radius = g.size.x() - error, half = 0.5 * g.size.y() - error;
   if (!(radius > 0 && half > 0)) return std::nullopt;
   std::vector<Vec3> points;
+  points.reserve(std::size_t{2} * kSides);
   for (int i = 0; i < kSides; ++i) {
     const double angle = 2 * std::acos(-1.0) * i / kSides;
     for (const double z : {-half, half})
@@ -224,6 +226,7 @@ Json json_of_claim(const verify::Claim& claim) {
 /// @throws Error{InvalidInput} naming the first link with shapes that the robot does not have.
 void require_known(const robot::RobotFile& bodies, const robot::RobotFile& robot) {
   std::vector<std::string> names;
+  names.reserve(robot.robot.links.size());
   for (const robot::Link& link : robot.robot.links) names.push_back(link.name);
   for (const robot::Link& link : bodies.robot.links)
     if (!link.collision.empty() && !robot.robot.find_link(link.name))
