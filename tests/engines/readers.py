@@ -101,7 +101,7 @@ def compare_mujoco(path, read, fail):
         fail(path, "MuJoCo loads it, and it is refused: " + read["error"])
         return True
     data = mujoco.MjData(model)
-    joints = [j for j in range(model.njnt) if model.jnt_type[j] in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)]
+    joints = [j for j in range(model.njnt) if model.jnt_type[j] in (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))]
     if len(joints) != len(read["variables"]):
         fail(path, f"{len(read['variables'])} joints, MuJoCo has {len(joints)}")
         return True
@@ -136,6 +136,7 @@ def compare_geoms(path, read, model, links, fail):
     kinds = {mujoco.mjtGeom.mjGEOM_SPHERE: ("sphere", lambda s: [s[0]]), mujoco.mjtGeom.mjGEOM_CAPSULE: ("capsule", lambda s: [s[0], 2 * s[1]]),
              mujoco.mjtGeom.mjGEOM_ELLIPSOID: ("ellipsoid", list), mujoco.mjtGeom.mjGEOM_CYLINDER: ("cylinder", lambda s: [s[0], 2 * s[1]]),
              mujoco.mjtGeom.mjGEOM_BOX: ("box", lambda s: list(2 * s)), mujoco.mjtGeom.mjGEOM_MESH: ("mesh", None)}
+    kinds = {int(kind): what for kind, what in kinds.items()}
     for b in range(model.nbody):
         name = model.body(b).name
         geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == b and model.geom_type[g] in kinds and
@@ -147,7 +148,7 @@ def compare_geoms(path, read, model, links, fail):
             fail(path, f"{name}: {len(ours)} shapes, MuJoCo has {len(geoms)}")
             continue
         for shape, g in zip(ours, geoms):
-            kind, size = kinds[model.geom_type[g]]
+            kind, size = kinds[int(model.geom_type[g])]
             if shape["kind"] != kind:
                 fail(path, f"{name}: a {shape['kind']}, in MuJoCo a {kind}")
                 continue
@@ -214,7 +215,8 @@ def compare_drake(path, read, fail):
     context, worst = plant.CreateDefaultContext(), 0
     for configuration in read["configurations"]:
         for variable, q in zip(read["variables"], configuration["q"]):
-            plant.GetJointByName(variable["name"]).SetPositions(context, [q])
+            joint = plant.GetJointByName(variable["name"])
+            (joint.set_angle if hasattr(joint, "set_angle") else joint.set_translation)(context, q)
         first = None
         for link, ours in zip(read["links"], configuration["poses"]):
             if link["name"] == "world" or not plant.HasBodyNamed(link["name"]):
@@ -222,7 +224,8 @@ def compare_drake(path, read, fail):
             theirs = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(link["name"])).GetAsMatrix4()
             here = np.eye(4)
             here[:3, :3], here[:3, 3] = np.reshape(ours[:9], (3, 3)), ours[9:]
-            first = first or (np.linalg.inv(theirs), np.linalg.inv(here)) if first is None else first
+            if first is None:
+                first = np.linalg.inv(theirs), np.linalg.inv(here)
             worst = max(worst, np.abs(first[0] @ theirs - first[1] @ here).max())
     if worst > TOLERANCE:
         fail(path, f"links are {worst} away from where Drake has them")
