@@ -13,10 +13,10 @@ namespace kaboum::tools {
 namespace {
 
 void add_input(CLI::App& app, DecomposeOptions& o) {
-  app.add_option(
-         "INPUT", o.input,
-         "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf, .xacro, .xml, .sdf), every "
-         "link of it")
+  app.add_option("INPUT", o.input,
+                 "Mesh or STEP file to decompose (- for stdin), or a robot (.urdf, .xacro, .xml, "
+                 ".sdf), every "
+                 "link of it")
       ->required()
       ->type_name("FILE");
   app.add_option(
@@ -129,8 +129,8 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   else
     require_options_of_meshes(app, o.input);
   if (!is_robot(o.input) && o.srdf)
-    throw Error(ErrorCode::InvalidArgument,
-                "--srdf is for robots (.urdf, .xacro, .xml, .sdf); " + o.input + " is taken for a mesh");
+    throw Error(ErrorCode::InvalidArgument, "--srdf is for robots (.urdf, .xacro, .xml, .sdf); " +
+                                                o.input + " is taken for a mesh");
   for (const char* budget : {"--robot-bodies", "--robot-vertices"}) {
     if (app.count(budget) == 0) continue;
     if (!is_robot(o.input))
@@ -157,8 +157,8 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   }
   if (o.srdf) require_absent(app, "--srdf, which is about all links,", {"--links"});
   if (!is_robot(o.input) && app.count("--from") != 0)
-    throw Error(ErrorCode::InvalidArgument,
-                "--from is for robots (.urdf, .xacro, .xml, .sdf); " + o.input + " is taken for a mesh");
+    throw Error(ErrorCode::InvalidArgument, "--from is for robots (.urdf, .xacro, .xml, .sdf); " +
+                                                o.input + " is taken for a mesh");
   if (is_page(o.preview)) require_absent(app, "--preview with a page", {"--explode"});
   if (is_page(o.preview) && o.input == "-")
     throw Error(ErrorCode::InvalidArgument,

@@ -16,9 +16,10 @@ void require(bool condition, const char* message) {
 }
 
 void describe_results(CLI::App& app, DecimationOptions& o) {
-  app.add_option("INPUT", o.input,
-                 "Mesh to simplify (- for stdin), or a robot (.urdf, .xacro, .xml, .sdf), every mesh of "
-                 "every link")
+  app.add_option(
+         "INPUT", o.input,
+         "Mesh to simplify (- for stdin), or a robot (.urdf, .xacro, .xml, .sdf), every mesh of "
+         "every link")
       ->type_name("FILE");
   app.add_option(
          "-o,--output", o.output,

@@ -30,9 +30,9 @@ enum class Motions {
 /// True if a file is xacro by its name, NAME.xacro, NAME.urdf.xacro, which read_robot expands.
 bool is_xacro(const std::filesystem::path& path);
 
-/// Reads URDF, MJCF, SDF, or the Robotics Library's rlkin and rlmdl (told apart by the root element).
-/// Links of the latter get the mesh in the robot's folder that has their name; `bodyN` also that of
-/// `linkN`.
+/// Reads URDF, MJCF, SDF, or the Robotics Library's rlkin and rlmdl (told apart by the root
+/// element). Links of the latter get the mesh in the robot's folder that has their name; `bodyN`
+/// also that of `linkN`.
 ///
 /// Of a file called NAME.xacro, what the program `xacro` makes of it without arguments; its names
 /// of files are relative to NAME.xacro. The program is run: such a file is trusted as a script is.
