@@ -16,7 +16,7 @@
 namespace kaboum::pairs::detail {
 namespace {
 
-constexpr std::size_t kMostPierced = 3'000;  ///< pairs of triangles that are looked at
+constexpr std::size_t kMostPierced = 1'500;  ///< pairs of triangles that are looked at
 
 using Corners = std::array<Vec3, 3>;
 

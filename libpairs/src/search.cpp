@@ -70,7 +70,7 @@ bool Search::climb(std::vector<double> values) {
   const double touching = 1e-11 * inner_.gaps().reach();
   const auto& [low, high] = *chain_.limits();
   Contact::Nearest at = measure(values, 0, kMostSteps);
-  for (int step = 0; step < 60 && at.upper > touching; ++step) {
+  for (int step = 0; step < 60 && at.upper > touching && !stopped(); ++step) {
     // Derivative of the distance: all joints move b.
     motion_.set(values, std::vector<double>(values.size(), 0));
     const Vec3 along = (at.on_b - at.on_a) / at.upper;
@@ -123,7 +123,7 @@ void Search::show_contact(std::vector<double> values) {
   double deepest = depth_at(values, 150), overlap = outer_.depth_above(motion_);
   Random random(1);
   double width = 0.05;
-  for (int step = 0; step < 150 && !values.empty(); ++step) {
+  for (int step = 0; step < 150 && !values.empty() && !stopped(); ++step) {
     std::vector<double> next = values;
     for (std::size_t v = 0; v < next.size(); ++v)
       next[v] = std::clamp(next[v] + random.between(-1, 1) * width * half_[v], low[v], high[v]);
@@ -155,6 +155,7 @@ void Search::show_contact(std::vector<double> values) {
 
 void Search::look_for_contacts(const std::function<bool()>& stop) {
   if (decided()) return;
+  stop_ = &stop;
   searched_ = true;
   const auto& [low, high] = *chain_.limits();
   const std::size_t samples =
@@ -322,6 +323,7 @@ void Search::begin(const std::function<bool()>& stop) {
 
 void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
   if (verdict_ != Verdict::Open || exhausted_) return;
+  stop_ = &stop;
   if (!begun_) {
     begun_ = true;
     look_at(middle_, half_, {{0, 0, Vec3::Zero()}});

@@ -83,6 +83,7 @@ class Search {
   bool meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
                    const std::function<bool()>& stop);
   void end_proof();
+  [[nodiscard]] bool stopped() const { return stop_ != nullptr && *stop_ && (*stop_)(); }
 
   Chain chain_;
   Contact outer_, inner_;
@@ -103,6 +104,7 @@ class Search {
   std::vector<double> best_values_, apart_values_;  ///< apart: hulls do not meet, if not empty
   Bracket depth_{0, 0};
   Verdict verdict_ = Verdict::Open;
+  const std::function<bool()>* stop_ = nullptr;  ///< of the call that goes on
 };
 
 }  // namespace kaboum::pairs::detail

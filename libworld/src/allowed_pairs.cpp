@@ -1,6 +1,6 @@
 // Which links of a robot can touch each other at all.
 
-#include <kaboum/pairs/decide.h>
+#include <kaboum/pairs/relation.h>
 #include <kaboum/world/allowed_pairs.h>
 
 #include <algorithm>
@@ -41,35 +41,6 @@ std::vector<AllowedPair> connected(const robot::Robot& robot, const Shaped& shap
   return out;
 }
 
-/// The facets of a set's bodies; nullopt where bodies have radii.
-std::optional<geom::Mesh> mesh_of(const BoundingSet& set) {
-  geom::Mesh out;
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    const geom::ConvexBody& body = set.body(i);
-    if (body.radius > 0) return std::nullopt;
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    out.vertices.insert(out.vertices.end(), body.core.vertices.begin(), body.core.vertices.end());
-    for (const geom::Triangle& t : body.core.triangles)
-      out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-  return out;
-}
-
-/// What pairs::decide_pairs finds of two links of which nothing is known.
-void decide_pair(const RobotModel& robot, const LinkShape& a, const LinkShape& b,
-                 const PairOptions& options, LinkPair& pair) {
-  std::optional<geom::Mesh> of_a = mesh_of(a.outer), of_b = mesh_of(b.outer);
-  if (!of_a || !of_b || (options.stop && options.stop())) return;
-  const std::vector<pairs::DecidedPair> decided = pairs::decide_pairs(
-      robot.kinematics, {{a.link, std::move(*of_a), {}}, {b.link, std::move(*of_b), {}}},
-      {.most_boxes = options.most_boxes,
-       .most_seconds = std::numeric_limits<double>::infinity(),
-       .stop = options.stop});
-  if (decided.empty()) return;
-  if (decided.front().verdict == pairs::Verdict::Never) pair.reason = Reason::Never;
-  pair.meets = decided.front().verdict == pairs::Verdict::CanTouch;
-}
-
 }  // namespace
 
 std::vector<AllowedPair> connected_links(const robot::Robot& robot) {
@@ -98,13 +69,7 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
           pairs::Relation::Adjacent) {
         pair.reason = Reason::Adjacent;
       } else {
-        // What is easy, and bodies with radii; then what only better bounds decide.
-        PairOptions few = options;
-        few.most_boxes = std::min<std::size_t>(options.most_boxes, 1'000);
-        pair = detail::examine_pair(robot, a, b, few);
-        if (!pair.reason && !pair.meets) decide_pair(robot, a, b, options, pair);
-        if (!pair.reason && !pair.meets && options.most_boxes > few.most_boxes)
-          pair = detail::examine_pair(robot, a, b, options);
+        pair = detail::examine_pair(robot, a, b, options);
       }
       const auto [known, is_new] = found.emplace(std::pair(a.link, b.link), pair);
       if (is_new) continue;
