@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/scene/derived_features.h>
+#include <kaboum/scene/scene_options.h>
 #include <kaboum/scene/scene_update.h>
 #include <kaboum/world/scene.h>
 
