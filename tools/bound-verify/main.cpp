@@ -19,7 +19,8 @@ std::string limits_of(const CLI::App& command) {
 
 int decide(const CLI::App& app, const tools::VerifyOptions& options) {
   const int code = options.decide();
-  if (code != tools::kLimit || !options.robot.spheres.empty() || !options.robot.bodies.empty()) return code;
+  if (code != tools::kLimit || !options.robot.spheres.empty() || !options.robot.bodies.empty())
+    return code;
   for (const CLI::App* command : app.get_subcommands())
     if (const std::string limits = limits_of(*command); !limits.empty())
       tools::log(options.common.quiet, "undecided; a larger limit may decide it: " + limits);

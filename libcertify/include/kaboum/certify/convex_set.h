@@ -24,8 +24,13 @@ struct SetRequest : bcd::CoverSettings {
   /// Polytopes; or, of outer sets, spheres (closed balls), capsules, boxes, or whichever of these
   /// three takes least to be queried (Mixed). All but polytopes take of the other settings of
   /// covers `max_bodies` and `effort`.
-  enum class BodyKind { Polytopes, Spheres, Capsules, Boxes, Mixed } body_kind =
-      BodyKind::Polytopes;
+  enum class BodyKind {
+    Polytopes,
+    Spheres,
+    Capsules,
+    Boxes,
+    Mixed
+  } body_kind = BodyKind::Polytopes;
   /// Spheres within epsilon: the same number, as near as it was found to allow.
   bool nearest = false;
   /// Spheres within epsilon: more are not searched for, with an error instead (LimitReached). What
