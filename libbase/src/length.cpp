@@ -47,11 +47,10 @@ Length Length::in(std::string_view other) const {
   if (unit == Unit::Own) return *this;
   const Unit to = unit_named(other);
   if (to == Unit::Own) refuse(*this);
-  const std::int64_t from_size = tenths_of(unit), to_size = tenths_of(to),
-                     common = std::gcd(from_size, to_size);
+  const std::int64_t common = std::gcd(tenths_of(unit), tenths_of(to));
   // One of the two is 1 between units of ten.
-  return {value * static_cast<double>(from_size / common) / static_cast<double>(to_size / common),
-          false};
+  const std::int64_t times = tenths_of(unit) / common, over = tenths_of(to) / common;
+  return {value * static_cast<double>(times) / static_cast<double>(over), false};
 }
 
 std::string Length::text() const {
