@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <memory>
 #include <utility>
 
@@ -35,10 +34,9 @@ constexpr double kPointSlack = 2e-3;
 constexpr double kCoarseCaps = 0.15, kFineCaps = 0.04;
 /// Share of the work for fewer balls before all triangles are held, and again after it.
 constexpr double kReducing = 0.3;
-constexpr int kPatchRounds = 150;  ///< of points added where no ball is
-constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 3000;  ///< while balls move, and after it
-constexpr int kPieceCuts = 24;                                  ///< of a triangle
-constexpr int kFreeCuts = 11;                                   ///< of parts with a free corner
+constexpr int kPatchRounds = 150;                              ///< of points added where no ball is
+constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 600;  ///< while balls move, and after it
+constexpr int kPieceCuts = 24;                                 ///< of a triangle
 constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
 /// Points of the inside that are looked at, of which every so manieth is to be held at first.
 constexpr std::size_t kInnerPoints = 20'000, kInnerShown = 29;
@@ -397,11 +395,10 @@ class BallSearch {
     const auto holds = [](const Ball& b, const Vec3& p) {
       return (p - b.center).squaredNorm() <= b.radius * b.radius;
     };
-    // The largest pieces first, so that the points found are spread over the triangle.
-    std::deque<Piece> open{{triangle, 0, std::move(smaller)}};
+    std::vector<Piece> open{{triangle, 0, std::move(smaller)}};
     while (!open.empty() && out.size() < most) {
-      const Piece piece = std::move(open.front());
-      open.pop_front();
+      const Piece piece = std::move(open.back());
+      open.pop_back();
       bool held = false;
       std::array<bool, 3> some{};
       for (const Ball& b : piece.near) {
@@ -418,15 +415,14 @@ class BallSearch {
       bool free = false;
       for (std::size_t k = 0; k < 3; ++k) {
         if (some[k]) continue;
-        // Others were seen as middles.
-        if (piece.cuts == 0) out.push_back(piece.corner[k]);
+        out.push_back(piece.corner[k]);
         free = true;
       }
       if (piece.cuts >= kPieceCuts) {
         out.push_back((piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3);
         continue;
       }
-      if (free && piece.cuts > kFreeCuts) continue;
+      if (free && piece.cuts > 6) continue;
       std::size_t longest = 0;
       for (std::size_t k = 1; k < 3; ++k)
         if ((piece.corner[(k + 1) % 3] - piece.corner[k]).squaredNorm() >
@@ -434,8 +430,6 @@ class BallSearch {
           longest = k;
       const std::size_t next = (longest + 1) % 3;
       const Vec3 half = 0.5 * (piece.corner[longest] + piece.corner[next]);
-      if (std::ranges::none_of(piece.near, [&](const Ball& b) { return holds(b, half); }))
-        out.push_back(half);
       for (const std::size_t k : {longest, next}) {
         std::array<Vec3, 3> corner = piece.corner;
         corner[k] = half;
@@ -459,7 +453,6 @@ class BallSearch {
       if (may_move() && relaxation_.hold(balls, effort_.sweeps)) continue;
       const std::vector<Vec3> free(points_.begin() + static_cast<std::ptrdiff_t>(known),
                                    points_.end());
-      if (!may_move()) candidates_.clear();  // those known hold little of what is left
       add_candidates_for(free);
       std::vector<Ball> more = choose(free, 0);
       // A part of them may do, once all have moved.

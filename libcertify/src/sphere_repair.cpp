@@ -188,6 +188,7 @@ RepairedSpheres repair_spheres(const robot::RobotFile& robot, const std::string&
   }
   for (int round = 0;; ++round) {
     std::vector<robot::LinkSpheres> wanted;
+    wanted.reserve(links.size());
     for (const RepairedBalls& made : links)
       wanted.push_back({robot.robot.links[made.link].name, 0, set_of(made.balls)});
     out.text = robot::edited_spheres(file, text, wanted);

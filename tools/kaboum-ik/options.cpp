@@ -13,7 +13,7 @@ namespace kaboum::tools {
 
 void describe(CLI::App& app, IkOptions& o) {
   CLI::Option* file =
-      app.add_option("ROBOT", o.robot, "URDF, or the Robotics Library's rlkin or rlmdl")
+      app.add_option("ROBOT", o.robot, "URDF, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
           ->type_name("FILE");
   CLI::Option* scene =
       app.add_option("--scene", o.scene,
@@ -65,7 +65,7 @@ void describe(CLI::App& app, IkOptions& o) {
 
 void require_valid(const IkOptions& o) {
   if (o.robot.empty() && o.scene.empty())
-    throw Error(ErrorCode::InvalidArgument, "of which robot? Give a URDF, or --scene SCENE");
+    throw Error(ErrorCode::InvalidArgument, "of which robot? Give its file, or --scene SCENE");
   if (o.pose.empty() && o.pose_of.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "where is the tip to be? Give --pose X,Y,Z,QX,QY,QZ,QW or --pose-of Q1,Q2,…");

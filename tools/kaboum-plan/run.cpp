@@ -128,6 +128,7 @@ int run_plan(const PlanOptions& o) {
   report["replans"] = replans_json(replans);
   const bool good = done.good();
   report["verdict"] = good ? "good" : "not good";
+  if (!plan.not_certified.empty()) report["not_certified"] = plan.not_certified;
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
   if (!o.common.quiet || !good)
