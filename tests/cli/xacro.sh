@@ -76,6 +76,6 @@ refused 'more than 64 MiB' with_xacro
 xacro 'cat "$1"'
 refused '(expanded):2: <xacro:property>' with_xacro
 xacro 'echo "<sdf version=\"1.9\"/>"'
-refused 'SDF' with_xacro
+refused '<sdf>: no <model>' with_xacro
 pgrep -f "$WORK/bin/xacro" >/dev/null && fail "xacro still runs"
 finish

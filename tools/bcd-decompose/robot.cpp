@@ -31,6 +31,8 @@
 namespace kaboum::tools {
 namespace {
 
+namespace fs = std::filesystem;
+
 using robot_folder::RobotWriter;
 using robot_folder::sphere_format_of;
 
@@ -365,11 +367,12 @@ int decompose_robot(const DecomposeOptions& o) {
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
-  if (sphere_format_of(o.output))
+  if (sphere_format_of(o.output) && !fs::is_directory(o.output))
     throw Error(ErrorCode::InvalidArgument,
                 o.output +
-                    ": such files hold spheres: state --bodies spheres, or name a folder "
-                    "for the robot");
+                    ": such files hold spheres: state --bodies spheres, or name a folder for the "
+                    "robot, such as " +
+                    fs::path(o.output).replace_extension().string() + ", not " + o.output);
   require_robot_folder(o.output, o.output_format);
   Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None)};
   const std::vector<std::string> included =
