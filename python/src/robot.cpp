@@ -376,7 +376,9 @@ robot_folder::FolderOptions folder_options_of(const std::string& folder, const p
       options.mjcf = true;
     else if (format == "sdf")
       options.sdf = true;
-    else if (format != "urdf")
+    else if (format == "urdf")
+      options.urdf = true;
+    else
       refuse_name("formats", format, {"urdf", "mjcf", "sdf"});
   }
   if (mesh_prefix) options.mesh_prefix = *mesh_prefix;
@@ -386,6 +388,7 @@ robot_folder::FolderOptions folder_options_of(const std::string& folder, const p
   if (!formats.is_none()) {
     out.mjcf = options.mjcf;
     out.sdf = options.sdf;
+    out.urdf = options.urdf;
   }
   if (mesh_prefix) out.mesh_prefix = *mesh_prefix;
   return out;

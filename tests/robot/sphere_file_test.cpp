@@ -60,6 +60,11 @@ TEST(SphereFile, YamlIsEditedInPlace) {
   const std::vector<LinkSpheres> wanted = changed(read);
   const std::string text = edited_spheres("a.yaml", kBlock, wanted);
   expect_same(wanted, parse_spheres("a.yaml", text));
+  // A new link before the last one, which gets a sphere as well: both begin at one place.
+  std::vector<LinkSpheres> turned = changed(read);
+  turned[1].balls.bodies.push_back(ball({7, 8, 9}, 0.5));
+  std::ranges::reverse(turned);
+  expect_same(turned, parse_spheres("a.yaml", edited_spheres("a.yaml", kBlock, turned)));
   for (const char* kept :
        {"# a comment\n", "# here\n", "{arm: 0.125}", "    self_collision_ignore: {arm: [hand]}\n",
         "- 2.0\n", "{\"center\": [0, 0, 1], \"radius\": 0.5}"})

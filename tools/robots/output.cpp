@@ -34,6 +34,7 @@ robot_folder::FolderOptions folder_options(const RobotOptions& o) {
           .mesh_prefix = o.prefix,
           .mjcf = o.writes("mjcf"),
           .sdf = o.writes("sdf"),
+          .urdf = o.writes("urdf"),
           .bodies = o.bodies,
           .declare_convex = o.declare_convex};
 }

@@ -60,6 +60,11 @@ RobotWriter::RobotWriter(FolderOptions options, const std::string& folder,
     : state_(new State{std::move(options), robot,
                        RobotFolder(folder, robot, std::move(part), std::move(extension)),
                        document_of(robot, folder)}) {
+  const bool own = robot.format == robot::RobotFile::Format::Mjcf ||
+                   robot.format == robot::RobotFile::Format::Sdf;
+  if (own && state_->o.urdf)
+    throw Error(ErrorCode::InvalidArgument,
+                robot.path.string() + ": robots in MJCF or SDF are not written as URDF");
   // Its own format is written in any case.
   if (robot.format == robot::RobotFile::Format::Mjcf) state_->o.mjcf = false;
   if (robot.format == robot::RobotFile::Format::Sdf) state_->o.sdf = false;

@@ -266,6 +266,8 @@ class YamlFile {
   [[nodiscard]] std::string edited(const std::string& text,
                                    const std::vector<LinkSpheres>& wanted) const {
     TextEdits edits(text);
+    // What is added to a link comes before new links, which may begin where the last link ends.
+    std::vector<const LinkSpheres*> added;
     for (const LinkSpheres& link : wanted) {
       YAML::Node list;
       for (const auto& entry : spheres_)
@@ -273,8 +275,9 @@ class YamlFile {
       if (list.IsSequence())
         edit_link(link, list, edits);
       else
-        add_link(link, edits);
+        added.push_back(&link);
     }
+    for (const LinkSpheres* link : added) add_link(*link, edits);
     return edits.applied(file_);
   }
 

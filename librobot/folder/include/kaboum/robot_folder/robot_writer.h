@@ -19,7 +19,8 @@ namespace kaboum::robot_folder {
 struct FolderOptions {
   robot::ShapeChoice shapes;       ///< that other shapes stand for
   std::string mesh_prefix;         ///< put before names of meshes in URDF and SDF
-  bool mjcf = false, sdf = false;  ///< formats that are written besides URDF
+  bool mjcf = false, sdf = false;  ///< formats that are written besides the robot's own
+  bool urdf = false;               ///< asked for: refused of robots that are in another format
   std::string bodies = "stl";      ///< format of convex bodies' files: stl or obj
   bool declare_convex = false;     ///< in the URDF, as Drake asks for
 };
