@@ -29,7 +29,7 @@ class Calls:
         self.programs, self.limit = context.runner.programs, context.runner.limit
         self.folder = context.folder / folder
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.failures, self.spent = context.runner.failures, context.runner.spent
+        self.failures, self.spent, self.called = context.runner.failures, context.runner.spent, context.runner.called
 
     def __call__(self, name, program, arguments, inputs, results, codes=(0,), limit=None):
         """@param limit  CPU seconds of each process of the call, instead of those of all calls
@@ -43,6 +43,7 @@ class Calls:
             kept = json.loads(record.read_text())
             if kept["key"] == key and kept["files"] == self._hashes(results):
                 self._spend(kept)
+                self.called[1] += 1
                 return kept["code"]
         except (OSError, ValueError, KeyError, TypeError):
             pass
@@ -56,6 +57,7 @@ class Calls:
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
         start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         seconds = limit or self.limit
+        self.called[0] += 1
         done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, capture_output=True,
                               text=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5)))

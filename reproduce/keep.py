@@ -158,7 +158,7 @@ def told(document, before, after):
     compared = sum(len(set(before.get(kind, {})) & set(after.get(kind, {}))) for kind in ("whole", "quick"))
     regressions = [f for f in found if f[-1] in ("worse", "gone")]
     document.paragraph(
-        f"Sections that both have: {compared}. Figures that differ, times and memory apart: {len(found)}; **regressions: {len(regressions)}** "
+        f"Sections that both have, whole and quick ones counted apart: {compared}. Figures that differ, times and memory apart: {len(found)}; **regressions: {len(regressions)}** "
         f"(worse by more than {100 * WORSE:g} %, or no longer there; larger is worse, but for factors and what is counted as found). "
         "Figures of other models, programs or rows have nothing to be compared with.")
     document.table(["section", "figure", "column", "before", "now", ""],

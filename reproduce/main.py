@@ -103,7 +103,8 @@ def main(argv):
     results = report.make(chosen, runner, out, options.quick, sections, others)
     if options.keep:
         keep.keep(results, report.SECTIONS)
-    print(f"{out / 'index.html'}: {runner.executed} runs done, {len(runner.results) - runner.executed} kept"
+    print(f"{out / 'index.html'}: {runner.executed + runner.called[0]} runs done, "
+          f"{len(runner.results) - runner.executed + runner.called[1]} kept"
           + (f", {len(runner.failures)} without a result" if runner.failures else ""))
     return 1 if runner.failures else 0
 

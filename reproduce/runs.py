@@ -78,6 +78,7 @@ class Runner:
         self.results, self.failures = {}, {}
         self.spent = [0, 0]  # user and wall seconds of the calls of a section (calls.py), those that were kept among them
         self.executed = 0
+        self.called = [0, 0]  # calls made now, and those that were kept (calls.py)
         self._lock = threading.Lock()
 
     def run_all(self, runs):
