@@ -107,5 +107,32 @@ expect 3 'this is a mesh' "$V" robot arm.urdf --bodies arm.urdf
 sed 's/"base"/"bsae"/g' boxes.urdf >stranger.urdf
 expect 3 "no link 'bsae'" "$V" robot arm.urdf --bodies stranger.urdf
 expect 2 'state one' "$V" robot arm.urdf arm.urdf --bodies boxes.urdf
+# Frames elsewhere, however large the shapes are.
+cat >turning.urdf <<'U'
+<robot name="r">
+  <link name="a"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="b"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="c"/>
+  <joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="k" type="revolute"><parent link="b"/><child link="c"/><limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="j" multiplier="2"/></joint>
+</robot>
+U
+sed 's/0.2 0.2 0.2/0.3 0.3 0.3/' turning.urdf >turning-bodies.urdf
+shows 0 '^joints: verified' "$V" robot turning.urdf --bodies turning-bodies.urdf --report judged.json
+json judged.json "r['verdict'] == 'verified' and r['joints'] == {'answer': 'verified', 'reason': ''}"
+while IFS='|' read -r edit words; do
+  sed "$edit" turning-bodies.urdf >moved.urdf
+  cmp -s moved.urdf turning-bodies.urdf && fail "nothing was changed by $edit"
+  shows 1 "^joints: refuted: $words" "$V" robot turning.urdf --bodies moved.urdf --report judged.json
+  json judged.json "r['verdict'] == 'refuted' and r['joints']['answer'] == 'refuted' and r['links_held'] == 2"
+done <<'E'
+s/xyz="0 0 1"\/><axis/xyz="0 0 3"\/><axis/|joint 'j' has another origin
+s/axis xyz="0 0 1"/axis xyz="1 0 0"/|joint 'j' has another axis
+s/name="j" type="revolute"/name="j" type="prismatic"/|joint 'j' is of another type
+s/multiplier="2"/multiplier="3"/|joint 'k' mimics in another way
+s/lower="-1"/lower="-2"/|joint 'j' has other limits
+s/<parent link="b"/<parent link="a"/|joint 'k' has another parent
+s/"c"/"d"/|the result has no link 'c'
+E
 expect 2 'epsilon' "$V" robot arm.urdf --bodies boxes.urdf --epsilon 1%
 finish

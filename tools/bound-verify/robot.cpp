@@ -129,8 +129,7 @@ class RobotVerifier {
       say("link '" + link + "': undecided: how far " + std::to_string(count) +
           (count == 1 ? " shape" : " shapes") +
           " of the result that the original has no match for reach from it");
-    say(verdict.motion.empty() ? "joints: verified: both robots move alike"
-                               : "joints: refuted: " + verdict.motion);
+    say(line_on_joints(verdict.motion));
     take_notes(verdict);
     if (!common_.report.empty()) write_report(common_, "bound-verify", report(verdict));
     progress_.show("");
@@ -261,23 +260,21 @@ class RobotVerifier {
     };
     Json links = Json::array();
     for (const verify::LinkVerdict& link : verdict.links) links.push_back(link_json(link));
-    return {
-        {"relation", "robot"},
-        {"verdict", name_of(verdict.answer)},
-        {"deciding_claims", name_of(o_.how.claims)},
-        {"geometry", visual() ? "visual" : "collision"},
-        {"prepared", is_prepared()},
-        {"prepare",
-         is_prepared() ? value_of(verify::robot_verdict_options(), "prepare", o_.how) : "off"},
-        {"dropped_sheet_triangles", dropped_in(verdict)},
-        {"original", file(o_.original, original_)},
-        {"result", file(o_.result, result_)},
-        {"joints",
-         {{"answer", verdict.motion.empty() ? "verified" : "refuted"}, {"reason", verdict.motion}}},
-        {"links", std::move(links)},
-        {"links_without_shapes", bare_.all()},
-        {"links_with_other_shapes_only", bare_.other},
-        {"notes", notes_.lines()}};
+    return {{"relation", "robot"},
+            {"verdict", name_of(verdict.answer)},
+            {"deciding_claims", name_of(o_.how.claims)},
+            {"geometry", visual() ? "visual" : "collision"},
+            {"prepared", is_prepared()},
+            {"prepare",
+             is_prepared() ? value_of(verify::robot_verdict_options(), "prepare", o_.how) : "off"},
+            {"dropped_sheet_triangles", dropped_in(verdict)},
+            {"original", file(o_.original, original_)},
+            {"result", file(o_.result, result_)},
+            {"joints", json_of_joints(verdict.motion)},
+            {"links", std::move(links)},
+            {"links_without_shapes", bare_.all()},
+            {"links_with_other_shapes_only", bare_.other},
+            {"notes", notes_.lines()}};
   }
 
   const VerifyRobotOptions& o_;
@@ -290,6 +287,15 @@ class RobotVerifier {
 };
 
 }  // namespace
+
+std::string line_on_joints(const std::string& difference) {
+  return difference.empty() ? "joints: verified: both robots move alike"
+                            : "joints: refuted: " + difference;
+}
+
+Json json_of_joints(const std::string& difference) {
+  return {{"answer", difference.empty() ? "verified" : "refuted"}, {"reason", difference}};
+}
 
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);

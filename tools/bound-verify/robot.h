@@ -23,4 +23,9 @@ struct VerifyRobotOptions {
 /// @throws Error on bad input.
 int verify_robot(const VerifyRobotOptions& options, const CommonOptions& common);
 
+/// What is printed of verify::difference_in_motion.
+std::string line_on_joints(const std::string& difference);
+/// The same as reports have it.
+Json json_of_joints(const std::string& difference);
+
 }  // namespace kaboum::tools

@@ -8,6 +8,7 @@
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
 #include <cmath>
@@ -281,6 +282,10 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     throw Error(ErrorCode::InvalidInput,
                 o.original + ": no link has a shape" +
                     (o.how.shapes.visual ? std::string() : "; try --geometry visual"));
+  // Shapes in the links' frames hold the robot only where the file has these frames.
+  const std::string motion = verify::difference_in_motion(robot.robot, bodies.robot);
+  if (!motion.empty()) all = Answer::Refuted;
+  if (!common.quiet) out << line_on_joints(motion) << std::endl;
   if (!common.report.empty())
     write_report(common, "bound-verify",
                  {{"relation", "bodies"},
@@ -290,10 +295,11 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                   {"bodies", {{"file", o.bodies}, {"sha256", bodies.sha256}}},
                   {"count", count},
                   {"links_held", held},
+                  {"joints", json_of_joints(motion)},
                   {"links", std::move(links)}});
   if (!common.quiet)
     out << name_of(all) << ": " << count << " shapes hold " << held << " of " << judged << " links"
-        << std::endl;
+        << (motion.empty() ? "" : ", but the robots do not move alike") << std::endl;
   return exit_code(all);
 }
 
