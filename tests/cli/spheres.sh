@@ -115,6 +115,30 @@ shows 1 '1 link has none' "$V" robot arm.urdf --spheres base.yaml
 sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"/>|<sphere radius="0.6"/>|' arm.urdf >spheres.urdf
 shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf
 expect 3 'are to be spheres' "$V" robot arm.urdf --spheres arm.urdf
+# Frames elsewhere: at other values of the joints than 0, and under a root of another name.
+cat >turning.urdf <<'U'
+<robot name="r">
+  <link name="base"/>
+  <link name="b"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="c"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="b"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="k" type="revolute"><parent link="b"/><child link="c"/><limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="j" multiplier="2"/></joint>
+</robot>
+U
+sed 's/<box size="0.2 0.2 0.2"/<sphere radius="0.3"/' turning.urdf >turning-spheres.urdf
+shows 0 '^verified' "$V" robot turning.urdf --spheres turning-spheres.urdf
+sed '/<link name="base"/d; /name="j"/d; s/<mimic.*>/<\/joint>/; s/<joint name="k".*//' turning-spheres.urdf | sed '/<link name="c"/d' >bare.urdf
+shows 1 "link 'c': refuted: it has no spheres" "$V" robot turning.urdf --spheres bare.urdf
+while IFS='|' read -r edit words; do
+  sed "$edit" turning-spheres.urdf >moved.urdf
+  cmp -s moved.urdf turning-spheres.urdf && fail "nothing was changed by $edit"
+  expect 3 "moved.urdf:[0-9]*: the frame of link '$words" "$V" robot turning.urdf --spheres moved.urdf
+done <<'E'
+s/axis xyz="0 0 1"/axis xyz="1 0 0"/|b' is not where the robot has it: joint 'j' has another axis
+s/name="j" type="revolute"/name="j" type="prismatic"/|b' is not where the robot has it: joint 'j' is of another type
+s/multiplier="2"/multiplier="3"/|c' is not where the robot has it: joint 'k' mimics in another way
+s/"base"/"world"/; s/xyz="0 0 1"\/><axis/xyz="0 0 3"\/><axis/|b' is not where the robot has it: a step beside joint 'j' is 2 away
+E
 finish
 
 # XRDF: the geometry that is meant, its buffers; SRDF.

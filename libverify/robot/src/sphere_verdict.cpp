@@ -6,7 +6,7 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/exact_shapes.h>
-#include <kaboum/robot/kinematics.h>
+#include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 using robot::Geometry;
 
 constexpr double kFarAway = std::numeric_limits<double>::infinity();
-/// Places of the same frame in two files differ by no more than this, in lengths of the robot.
+/// Steps between the same frames in two files differ by no more than this, in sizes of the robot.
 constexpr double kSameFrame = 1e-6;
 
 std::string place_of(const std::string& file, int line) {
@@ -53,25 +53,15 @@ void require_known(const robot::SphereFile& spheres, const std::string& file,
 /// @throws Error{InvalidInput} where the file's own robot has a frame elsewhere
 void require_same_frames(const robot::SphereFile& spheres, const std::string& file,
                          const robot::Robot& robot) {
-  if (!spheres.robot || spheres.robot->links[0].name != robot.links[0].name) return;
-  const auto at_zero = [](const robot::Robot& of) {
-    return robot::forward(of, std::vector<double>(of.variables.size(), 0.0));
-  };
-  const std::vector<robot::Transform> own = at_zero(*spheres.robot), wanted = at_zero(robot);
-  double size = 0;
-  for (const robot::Transform& pose : wanted) size = std::max(size, pose.translation.norm());
-  for (const robot::LinkSpheres& link : spheres.links) {
-    const robot::Transform &a = own[*spheres.robot->find_link(link.link)],
-                           &b = wanted[*robot.find_link(link.link)];
-    const double apart = (a.translation - b.translation).norm(),
-                 turned = (a.linear - b.linear).norm();
-    if (apart <= kSameFrame * size && turned <= kSameFrame) continue;
-    throw Error(ErrorCode::InvalidInput,
-                place_of(file, link.line) + "the frame of link '" + link.link +
-                    "' is not where the robot has it with all joints at 0: " + number_text(apart) +
-                    " away, turned by about " + number_text(turned / std::numbers::sqrt2) +
-                    " rad; its spheres would be somewhere else");
-  }
+  if (!spheres.robot) return;
+  const auto found = find_frame_elsewhere(robot, *spheres.robot, kSameFrame);
+  if (!found) return;
+  const std::string& name = robot.links[found->link].name;
+  const auto own = std::ranges::find(spheres.links, name, &robot::LinkSpheres::link);
+  throw Error(ErrorCode::InvalidInput, place_of(file, own == spheres.links.end() ? 0 : own->line) +
+                                           "the frame of link '" + name +
+                                           "' is not where the robot has it: " + found->why +
+                                           "; spheres would be somewhere else");
 }
 
 /// True if one ball holds the sphere, for certain.

@@ -47,7 +47,7 @@ struct SpheresVerdict {
 
 /// Refuses spheres that cannot be a robot's.
 /// @throws Error{InvalidInput} naming file and line: links that the robot does not have; frames of
-///   links that the file's own robot has elsewhere
+///   links that the file's own robot has elsewhere (find_frame_elsewhere)
 void require_spheres_of(const robot::RobotFile& robot, const robot::SphereFile& spheres,
                         const std::string& file);
 
