@@ -22,7 +22,7 @@ using geom::Vec3;
 using Kind = SimpleShape::Kind;
 
 /// Of lengths: more than what a dozen operations and a rotation from its angles err by, which is
-/// 200 · 2^-53.
+/// 300 · 2^-53 (docs/algorithms/capsules-and-boxes.md, "Robots").
 constexpr double kPoseRounding = 0x1p-44;
 
 std::string decimal(double x) {
@@ -52,15 +52,20 @@ SimpleShape sphere_of(const robot::LinkBody& body) {
   return {Kind::Sphere, body.link, body.points[0], Vec3::Zero(), Vec3(body.margin + error, 0, 0)};
 }
 
+/// The capsule whose axis is along the rotation of angles, round balls of the margin about the two
+/// points: both are measured along it, however well the angles fit.
 SimpleShape capsule_of(const robot::LinkBody& body) {
-  const Vec3 &a = body.points[0], &b = body.points[1];
-  const Vec3 along = b - a;
-  const double length = along.norm();
-  const Vec3 d = length > 0 ? Vec3(along / length) : Vec3(Vec3::UnitZ());
+  const Vec3 along = body.points[1] - body.points[0];
+  // The angle from z; its cosine would not tell small ones apart.
+  const Vec3 rpy(0, std::atan2(std::hypot(along.x(), along.y()), along.z()),
+                 std::atan2(along.y(), along.x()));
+  const Eigen::Matrix3d turn = robot::rotation_from_rpy(rpy.x(), rpy.y(), rpy.z());
+  const Vec3 a = turn.transpose() * body.points[0], b = turn.transpose() * body.points[1];
+  const double length = std::abs(b.z() - a.z()),
+               beside = 0.5 * std::hypot(b.x() - a.x(), b.y() - a.y());
   const double error = kPoseRounding * (largest_of(body.points) + length + body.margin);
-  return {Kind::Capsule, body.link, 0.5 * (a + b),
-          Vec3(0, std::acos(std::clamp(d.z(), -1.0, 1.0)), std::atan2(d.y(), d.x())),
-          Vec3(body.margin + error, length, 0)};
+  return {Kind::Capsule, body.link, turn * (0.5 * (a + b)), rpy,
+          Vec3(body.margin + beside + error, length, 0)};
 }
 
 /// The box along the rotation of angles, round balls of the margin about the points.
