@@ -135,4 +135,41 @@ s/<parent link="b"/<parent link="a"/|joint 'k' has another parent
 s/"c"/"d"/|the result has no link 'c'
 E
 expect 2 'epsilon' "$V" robot arm.urdf --bodies boxes.urdf --epsilon 1%
+
+# <capsule>: of the file, and of the robot. 0.3 long with 0.1 at its ends, it holds the box; a little less does not.
+link() { echo "<robot name=\"r\" version=\"1.2\"><link name=\"a\"><collision>$1</collision></link></robot>"; }
+at='<origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/>'
+capsule() { link "$at<geometry><capsule radius=\"$1\" length=\"$2\"/></geometry>"; }
+link "$at<geometry><box size=\"0.12 0.12 0.3\"/></geometry>" >box.urdf
+capsule 0.1 0.3 >capsule.urdf
+shows 0 '^verified: 1 shapes hold 1 of 1 links' "$V" robot box.urdf --bodies capsule.urdf
+capsule 0.09 0.25 >thin.urdf  # sqrt(0.06² + 0.06² + 0.025²) is 0.0885
+shows 0 '^verified' "$V" robot box.urdf --bodies thin.urdf
+capsule 0.088 0.25 >thin.urdf
+shows 1 "link 'a': refuted: .* triangles stick out" "$V" robot box.urdf --bodies thin.urdf
+capsule 0.1 0 >ball.urdf
+shows 1 "link 'a': refuted: .* triangles stick out" "$V" robot box.urdf --bodies ball.urdf
+shows 0 '^verified' "$V" robot capsule.urdf --bodies capsule.urdf
+shows 7 '^undecided' "$V" robot ball.urdf --bodies capsule.urdf  # but for what the pose is rounded by
+capsule 0.0999999 0 >ball.urdf
+shows 0 '^verified' "$V" robot ball.urdf --bodies capsule.urdf
+for size in '0.101 0.3' '0.1 0.301' '0.102 0.298'; do
+  # shellcheck disable=SC2086
+  capsule $size >other.urdf
+  shows 0 '^verified' "$V" robot capsule.urdf --bodies other.urdf
+  shows 7 '^undecided' "$V" robot other.urdf --bodies capsule.urdf
+done
+link "$at<geometry><cylinder radius=\"0.1\" length=\"0.3\"/></geometry>" >cylinder.urdf
+shows 0 '^verified' "$V" robot cylinder.urdf --bodies cylinder.urdf
+shows 7 '^undecided' "$V" robot capsule.urdf --bodies cylinder.urdf
+shows 7 '^undecided' "$V" robot cylinder.urdf --bodies capsule.urdf
+# As the program writes it: of a robot with a capsule.
+expect 0 '' "$B" capsule.urdf -o written.urdf --bodies capsules --epsilon 0.05 --effort fast --no-cache
+shows 0 '^verified' "$V" robot capsule.urdf --bodies written.urdf
+# An ellipsoid is held, but does not hold.
+model() { echo "<mujoco model=\"m\"><worldbody><body name=\"a\"><geom type=\"$1\"/></body></worldbody></mujoco>"; }
+model 'ellipsoid" size="0.1 0.2 0.3' >ellipsoid.xml
+model 'sphere" size="0.31' >sphere.xml
+shows 0 '^verified' "$V" robot ellipsoid.xml --bodies sphere.xml
+expect 3 "ellipsoid.xml:[0-9]*: link 'a': .*this is an ellipsoid" "$V" robot ellipsoid.xml --bodies ellipsoid.xml
 finish

@@ -188,10 +188,11 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       ->check(page_name())
       ->type_name("FILE");
   c->add_option("--bodies", o.robot.bodies,
-                "Instead of RESULT, a URDF whose collision shapes are spheres, boxes and cylinders "
-                "with or without spheres at their ends: decides of each link whether its own "
-                "shapes hold its triangles, as --spheres does of spheres. Beside it only "
-                "--geometry, --links and --package-path may be stated")
+                "Instead of RESULT, a URDF whose collision shapes are spheres, boxes, capsules and "
+                "cylinders with or without spheres at their ends: decides of each link whether its "
+                "own shapes hold its triangles, as --spheres does of spheres, and whether both "
+                "robots move alike. Beside it only --geometry, --links and --package-path may be "
+                "stated")
       ->type_name("FILE");
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);

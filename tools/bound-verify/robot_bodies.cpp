@@ -1,5 +1,5 @@
-// `bound-verify robot ROBOT --bodies FILE`: whether capsules, boxes and spheres hold a robot's
-// links.
+// `bound-verify robot ROBOT --bodies FILE`: whether capsules, boxes, cylinders and spheres hold a
+// robot's links.
 #include "robot_bodies.h"
 
 #include <kaboum/base/error.h>
@@ -11,6 +11,7 @@
 #include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -92,6 +93,16 @@ void add_cylinder(const Geometry& g, double error, const std::vector<Geometry>& 
     add(out.outside, {{low}, {}}, g.size.x() + error);
 }
 
+/// A segment and a radius: one body.
+void add_capsule(const Geometry& g, double error, Bounds& out) {
+  const double half = 0.5 * g.size.y();
+  const Vec3 low = g.origin * Vec3(0, 0, -half), high = g.origin * Vec3(0, 0, half);
+  geom::Mesh core{{low, high}, {}};
+  if (low == high) core.vertices.pop_back();
+  if (g.size.x() - error > 0) add(out.inside, core, g.size.x() - error);
+  add(out.outside, std::move(core), g.size.x() + error);
+}
+
 /// @throws Error{InvalidInput} naming the line of a shape of another kind
 Bounds bounds_of(const robot::Link& link, const std::string& file) {
   Bounds out;
@@ -110,11 +121,18 @@ Bounds bounds_of(const robot::Link& link, const std::string& file) {
       case Geometry::Shape::Cylinder:
         add_cylinder(g, error, link.collision, out);
         break;
-      case Geometry::Shape::Mesh:
+      case Geometry::Shape::Capsule:
+        add_capsule(g, error, out);
+        break;
+      case Geometry::Shape::Ellipsoid:
+      case Geometry::Shape::Mesh: {
+        const bool is_mesh = g.shape == Geometry::Shape::Mesh;
         throw Error(ErrorCode::InvalidInput,
                     file + ":" + std::to_string(g.line) + ": link '" + link.name +
-                        "': its collision shapes are to be spheres, boxes and cylinders; this is "
-                        "a mesh: state the file as RESULT");
+                        "': its collision shapes are to be spheres, boxes, cylinders and capsules; "
+                        "this is " +
+                        (is_mesh ? "a mesh: state the file as RESULT" : "an " + describe(g)));
+      }
     }
   }
   return out;
@@ -149,15 +167,40 @@ verify::Inclusion decide(const geom::Mesh& mesh, const Bounds& bounds) {
   return inside;
 }
 
-/// Cylinders and spheres of the original: by a polytope round them.
-std::string open_shape(const std::vector<Geometry>& round, const Bounds& bounds) {
+/// True if a shape is the other one, or this with larger sizes: in the same place, bit by bit.
+bool is_in(const Geometry& g, const Geometry& other) {
+  return g.shape == other.shape && g.origin.linear == other.origin.linear &&
+         g.origin.translation == other.origin.translation &&
+         (g.size.array() <= other.size.array()).all();
+}
+
+/// True if a body about a point or a segment holds a sphere or a capsule, for certain.
+bool is_in(const Geometry& g, const geom::ConvexBody& body) {
+  const bool is_sphere = g.shape == Geometry::Shape::Sphere;
+  if ((!is_sphere && g.shape != Geometry::Shape::Capsule) || body.core.vertices.size() > 2)
+    return false;
+  const Vec3 &a = body.core.vertices.front(), &b = body.core.vertices.back();
+  if (is_sphere && a == b && a == g.origin.translation) return g.size.x() <= body.radius;
+  const double half = is_sphere ? 0 : 0.5 * g.size.y();
+  const double error = kPoseRounding * (g.origin.translation.norm() + 2 * g.size.norm() + a.norm() +
+                                        b.norm() + body.radius);
+  return std::ranges::all_of(std::array{-half, half}, [&](double z) {
+    const Vec3 end = g.origin * Vec3(0, 0, z), along = b - a;
+    const double length = along.squaredNorm(),
+                 t = length > 0 ? std::clamp((end - a).dot(along) / length, 0.0, 1.0) : 0;
+    return (a + t * along - end).norm() + g.size.x() + error <= body.radius;
+  });
+}
+
+/// Cylinders, spheres, capsules and ellipsoids of the original: by one of the shapes that is the
+/// same or larger, or by one body, or by a polytope round them.
+std::string open_shape(const std::vector<Geometry>& round, const std::vector<Geometry>& shapes,
+                       const Bounds& bounds) {
   for (const Geometry& g : round) {
     if (robot::is_point(g)) continue;
-    if (g.shape == Geometry::Shape::Sphere &&
-        std::ranges::any_of(bounds.inside.bodies, [&](const geom::ConvexBody& body) {
-          return body.core.vertices.size() == 1 && body.core.vertices[0] == g.origin.translation &&
-                 body.radius >= g.size.x();
-        }))
+    if (std::ranges::any_of(shapes, [&](const Geometry& other) { return is_in(g, other); }) ||
+        std::ranges::any_of(bounds.inside.bodies,
+                            [&](const geom::ConvexBody& body) { return is_in(g, body); }))
       continue;
     const geom::Mesh polytope = *geom::convex_hull(robot::bounding_points(g));
     if (verify::verify_cover(polytope, bounds.inside).inclusion.solid.answer != Answer::Verified)
@@ -192,18 +235,19 @@ std::string sentence_of(const LinkAnswer& link) {
 }
 
 LinkAnswer judge(const std::string& name, const geom::Mesh& mesh,
-                 const std::vector<Geometry>& round, const Bounds& bounds, std::size_t shapes) {
+                 const std::vector<Geometry>& round, const Bounds& bounds,
+                 const std::vector<Geometry>& shapes) {
   LinkAnswer out;
   out.name = name;
-  out.shapes = shapes;
+  out.shapes = shapes.size();
   out.triangles = mesh.triangles.size();
-  if (shapes == 0 || bounds.outside.bodies.empty()) {
+  if (shapes.empty() || bounds.outside.bodies.empty()) {
     out.shapes = 0;
     out.answer = Answer::Refuted;
     out.sentence = sentence_of(out);
     return out;
   }
-  const std::string open = open_shape(round, bounds);
+  const std::string open = open_shape(round, shapes, bounds);
   if (!open.empty()) out.answer = Answer::Undecided;
   if (!mesh.triangles.empty()) {
     out.inclusion = decide(mesh, bounds);
@@ -260,8 +304,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     const auto index = bodies.robot.find_link(link.name);
     const robot::Link none{link.name, {}, {}};
     const robot::Link& own = index ? bodies.robot.links[*index] : none;
-    const LinkAnswer now =
-        judge(link.name, mesh, round, bounds_of(own, o.bodies), own.collision.size());
+    const LinkAnswer now = judge(link.name, mesh, round, bounds_of(own, o.bodies), own.collision);
     all = verify::worse(all, now.answer);
     ++judged;
     held += now.answer == Answer::Verified ? 1 : 0;
