@@ -69,6 +69,15 @@ double square_to_box(const Vec3& p, const geom::Box3& box) {
   return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
 }
 
+Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
+  Mesh out{mesh.vertices, {}};
+  for (const geom::Triangle& t : mesh.triangles)
+    if (std::ranges::any_of(
+            t, [&](std::uint32_t v) { return (mesh.vertices[v] - point).norm() > distance; }))
+      out.triangles.push_back(t);
+  return out;
+}
+
 }  // namespace
 
 Surface::Surface(Mesh mesh)
@@ -119,7 +128,17 @@ Surface::Surface(Mesh mesh)
     if (edge.first != 0) closed_[edge.second] = 0;
 }
 
+Surface::Surface(const Surface& whole, const Vec3& point, double distance)
+    : Surface(away_from(whole.mesh(), point, distance)) {
+  whole_ = &whole;
+  std::erase_if(corners_,
+                [&](std::uint32_t v) { return !((mesh_.vertices[v] - point).norm() > distance); });
+  // The other mesh may go through a part's triangles nearer to the point: one corner is not enough.
+  parts_ = corners_;
+}
+
 Surface::Winding Surface::winding(const Vec3& point) const {
+  if (whole_ != nullptr) return whole_->winding(point);
   std::map<std::uint32_t, int> numbers;
   winding_.crossings(point, [&](std::uint32_t triangle, int sign) {
     const std::uint32_t part = part_of_[triangle];
@@ -134,6 +153,7 @@ Surface::Winding Surface::winding(const Vec3& point) const {
 }
 
 double Surface::distance(const Vec3& point, double most, double least) const {
+  if (whole_ != nullptr) return whole_->distance(point, most, least);
   double best = most * most;
   bvh_->traverse(
       [&](const geom::Box3& box) {

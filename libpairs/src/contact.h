@@ -16,12 +16,15 @@ namespace kaboum::pairs::detail {
 class Surface {
  public:
   explicit Surface(Mesh mesh);
+  /// The triangles of another surface that have a corner farther than a distance from a point. What
+  /// is solid and how far that is, the other one says; asked are corners farther than that only.
+  Surface(const Surface& whole, const Vec3& point, double distance);
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const HullTree& tree() const { return tree_; }
-  /// A vertex of each connected part.
+  /// A vertex of each connected part; of a surface that was cut, every corner.
   [[nodiscard]] const std::vector<std::uint32_t>& parts() const { return parts_; }
   /// Vertices of triangles.
   [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
@@ -36,6 +39,7 @@ class Surface {
   [[nodiscard]] double distance(const Vec3& point, double most, double least) const;
 
  private:
+  const Surface* whole_ = nullptr;  ///< that this was cut from
   Mesh mesh_;
   HullTree tree_;
   std::shared_ptr<const geom::Bvh> bvh_;

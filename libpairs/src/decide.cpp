@@ -11,11 +11,13 @@
 #include <cmath>
 #include <mutex>
 
+#include "numbers.h"
 #include "search.h"
 
 namespace kaboum::pairs {
 namespace {
 
+using detail::kInfinite;
 using detail::Search;
 using detail::Shapes;
 using detail::Surface;
@@ -24,19 +26,47 @@ using geom::Vec3;
 
 Shapes shapes_of(const Mesh& outer, const std::optional<Mesh>& inner) {
   Shapes out;
+  if (outer.empty()) return out;
   out.outer = std::make_unique<Surface>(outer);
-  if (inner) out.inner_or_none = std::make_unique<Surface>(*inner);
+  out.shows = !inner || !inner->empty();
+  if (inner && out.shows) out.inner_or_none = std::make_unique<Surface>(*inner);
   return out;
 }
 
-/// Triangles that have a corner farther than a distance from a point.
-Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
-  Mesh out{mesh.vertices, {}};
-  for (const geom::Triangle& t : mesh.triangles)
-    if (std::ranges::any_of(
-            t, [&](std::uint32_t v) { return (mesh.vertices[v] - point).norm() > distance; }))
-      out.triangles.push_back(t);
+/// The same but for triangles whose corners are all within a distance from a point; no outer
+/// surface: none is left.
+Shapes away_from(const Shapes& shapes, const Vec3& point, double distance) {
+  const auto cut = [&](const Surface& whole) {
+    const bool reaches = std::ranges::any_of(whole.corners(), [&](std::uint32_t v) {
+      return (whole.mesh().vertices[v] - point).norm() > distance;
+    });
+    return reaches ? std::make_unique<Surface>(whole, point, distance) : nullptr;
+  };
+  Shapes out;
+  out.outer = cut(*shapes.outer);
+  out.shows = shapes.shows;
+  if (!shapes.inner_or_none) return out;
+  out.inner_or_none = cut(*shapes.inner_or_none);
+  out.shows = out.inner_or_none != nullptr;
   return out;
+}
+
+/// Why nothing can be proved of what a pair has. Empty: it can.
+std::string unsure_of(const robot::Robot& robot, const LinkSurface& a, const LinkSurface& b) {
+  std::string out;
+  for (const LinkSurface* s : {&a, &b}) {
+    if (s->unsure.empty()) continue;
+    if (!out.empty()) out += "; ";
+    out += "link '" + robot.links[s->link].name + "': " + s->unsure;
+  }
+  return out;
+}
+
+/// What is proved of meshes that may lack something is not proved of the shapes.
+template <typename Found>
+void doubt(Found& found) {
+  if (found.verdict == Verdict::Never) found.verdict = Verdict::Open;
+  found.nearest.lower = 0;
 }
 
 /// A value per variable of the robot.
@@ -55,31 +85,21 @@ std::vector<double> configuration(const robot::Robot& robot, const Search& searc
 }
 
 /// The parts of adjacent links that are not at their joint.
-std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const LinkSurface& a,
-                                       const LinkSurface& b, const Search& whole,
+std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const DecidedPair& pair,
+                                       const Shapes& a, const Shapes& b, const Search& whole,
                                        const DecideOptions& options,
                                        const std::function<bool()>& stop) {
   const std::optional<Search::Joint> joint = whole.joint();
   if (!joint || stop()) return std::nullopt;
   AwayFromJoint out;
-  out.beyond = joint->beyond * 1.05;
-  const auto cut = [&](const LinkSurface& surface, const Vec3& point) {
-    std::optional<Mesh> inner;
-    if (surface.inner) inner = away_from(*surface.inner, point, out.beyond);
-    return std::pair(away_from(surface.outer, point, out.beyond), std::move(inner));
-  };
-  const auto [outer_a, inner_a] = cut(a, joint->in_a);
-  const auto [outer_b, inner_b] = cut(b, joint->in_b);
-  const auto is_empty = [](const Mesh& outer, const std::optional<Mesh>& inner) {
-    return outer.empty() || (inner && inner->empty());
-  };
-  if (is_empty(outer_a, inner_a) || is_empty(outer_b, inner_b)) {
-    if (!outer_a.empty() && !outer_b.empty()) return std::nullopt;
+  const double cut = joint->beyond * 1.05;
+  out.beyond = cut * (1 + 0x1p-30);  // for the rounding of the point
+  const Shapes of_a = away_from(a, joint->in_a, cut), of_b = away_from(b, joint->in_b, cut);
+  if (!of_a.outer || !of_b.outer) {
     out.verdict = Verdict::Never;
     return out;
   }
-  const Shapes of_a = shapes_of(outer_a, inner_a), of_b = shapes_of(outer_b, inner_b);
-  Search search(robot, a.link, b.link, of_a, of_b, options.samples);
+  Search search(robot, pair.a, pair.b, of_a, of_b, options.samples);
   search.begin(stop);
   for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
   search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
@@ -124,8 +144,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   for (const LinkSurface& surface : given) {
     if (surface.link >= robot.links.size())
       throw Error(ErrorCode::InvalidArgument, "a surface of a link that the robot does not have");
-    if (!surface.outer.empty() && !(surface.inner && surface.inner->empty()))
-      surfaces.push_back(&surface);
+    if (!surface.outer.empty() || !surface.unsure.empty()) surfaces.push_back(&surface);
   }
   std::ranges::sort(surfaces, {}, [](const LinkSurface* s) { return s->link; });
   for (std::size_t i = 1; i < surfaces.size(); ++i)
@@ -157,8 +176,9 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
     if (options.stop && options.stop()) return true;
     return std::chrono::duration<double>(Clock::now() - begin).count() > options.most_seconds;
   };
-  std::vector<std::size_t> left(pairs.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (shapes[pairs[i].a].outer && shapes[pairs[i].b].outer) left.push_back(i);
   const auto round = [&](const auto& work) {
     parallel_for(std::size_t{0}, left.size(),
                  [&](std::size_t i) {
@@ -195,13 +215,23 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                  pair.a = surfaces[a]->link;
                  pair.b = surfaces[b]->link;
                  pair.relation = relation_of(robot, shaped, pair.a, pair.b);
+                 const std::string unsure = unsure_of(robot, *surfaces[a], *surfaces[b]);
+                 if (search == nullptr) {
+                   pair.why = unsure;
+                   return;
+                 }
                  pair.verdict = search->verdict();
                  pair.nearest = search->nearest();
                  pair.depth = search->depth();
                  pair.boxes = search->boxes();
                  pair.q = configuration(robot, *search);
                  if (pair.relation == Relation::Adjacent && pair.verdict != Verdict::Never)
-                   pair.away = look_away(robot, *surfaces[a], *surfaces[b], *search, options, stop);
+                   pair.away = look_away(robot, pair, shapes[a], shapes[b], *search, options, stop);
+                 if (unsure.empty()) return;
+                 doubt(pair);
+                 if (pair.away) doubt(*pair.away);
+                 pair.depth.upper = pair.depth.lower > 0 ? kInfinite : 0;
+                 if (pair.verdict == Verdict::Open) pair.why = unsure;
                },
                {.alone = true});
   return out;

@@ -21,6 +21,7 @@ constexpr std::size_t kFirstSamples = 50;
 constexpr std::size_t kClimbs = 4;         ///< from the best places of each time
 constexpr std::size_t kMostSteps = 5'000;  ///< of a search for the nearest triangles
 constexpr std::size_t kFirstBoxes = 30;    ///< before contacts are looked for
+constexpr std::size_t kAlwaysBoxes = 3'000;
 constexpr std::size_t kFewItems = 300, kMostItems = 6'000;
 
 }  // namespace
@@ -30,6 +31,8 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
     : chain_(robot, a, b),
       outer_(*of_a.outer, *of_b.outer, chain_),
       inner_(of_a.inner(), of_b.inner(), chain_),
+      shows_(of_a.shows && of_b.shows),
+      same_(shows_ && !of_a.inner_or_none && !of_b.inner_or_none),
       samples_(samples),
       tree_a_(&of_a.outer->tree()),
       tree_b_(&of_b.outer->tree()),
@@ -157,6 +160,7 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   if (decided()) return;
   stop_ = &stop;
   searched_ = true;
+  if (!shows_) return;
   const auto& [low, high] = *chain_.limits();
   const std::size_t samples =
       middle_.empty() ? 1 : std::min(samples_, std::max(kFirstSamples, 2 * sampled_));
@@ -177,7 +181,7 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
     if (!always_ && verdict_ == Verdict::CanTouch) return;
   }
   if (always_ && verdict_ == Verdict::CanTouch) {
-    std::size_t left = 3'000;
+    std::size_t left = kAlwaysBoxes;
     if (meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
     return;
   }
@@ -301,8 +305,14 @@ void Search::end_proof() {
       verdict_ = Verdict::Never;
       break;
     case Contact::Held::Part:
-      // The outer meshes' solids may be larger than the shapes: the inner ones have to say so.
-      if (inner_.held(motion_) == Contact::Held::Part) {
+      // The outer meshes' solids may be larger than the shapes. Inner ones have not been proved
+      // apart: that they meet here says nothing of elsewhere.
+      if (same_) {
+        verdict_ = Verdict::Always;
+        break;
+      }
+      if (std::size_t left = kAlwaysBoxes;
+          shows_ && stop_ != nullptr && meet_always(middle_, half_, left, *stop_)) {
         verdict_ = Verdict::Always;
         break;
       }
@@ -330,7 +340,7 @@ void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
   }
   for (std::size_t i = 0; i < boxes && !open_.empty() && !exhausted_; ++i) {
     if (stop()) return;
-    if (looked_ >= next_climb_) {
+    if (shows_ && looked_ >= next_climb_) {
       next_climb_ = looked_ + std::clamp<std::size_t>(looked_ / 2, 32, 2'000);
       if (climb(open_.top().middle) && verdict_ == Verdict::CanTouch) return;
     }

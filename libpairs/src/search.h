@@ -14,6 +14,7 @@ namespace kaboum::pairs::detail {
 /// The shapes of one link, ready to be asked.
 struct Shapes {
   std::unique_ptr<Surface> outer, inner_or_none;
+  bool shows = true;  ///< false: nothing is known to lie in the shapes, so no contact is shown
   [[nodiscard]] const Surface& inner() const { return inner_or_none ? *inner_or_none : *outer; }
 };
 
@@ -87,6 +88,8 @@ class Search {
 
   Chain chain_;
   Contact outer_, inner_;
+  bool shows_;  ///< inner meshes are there, so that contacts can be shown
+  bool same_;   ///< the outer meshes are the inner ones
   std::size_t samples_, sampled_ = 0;
   bool always_ = true;  ///< so far all places were contacts
   const HullTree *tree_a_, *tree_b_;

@@ -154,6 +154,95 @@ TEST(DecidedPairs, WhatIsInsideAlwaysTouchesAndWhatIsInACavityIsNotSaidTo) {
   EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Open);
 }
 
+/// Every triangle cut into four.
+geom::Mesh finer(const geom::Mesh& mesh) {
+  geom::Mesh out;
+  for (const geom::Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (int i = 0; i < 3; ++i) out.vertices.push_back(mesh.vertices[t[i]]);
+    for (int i = 0; i < 3; ++i)
+      out.vertices.push_back(0.5 * (mesh.vertices[t[i]] + mesh.vertices[t[(i + 1) % 3]]));
+    for (const geom::Triangle& part : {geom::Triangle{0, 3, 5}, geom::Triangle{3, 1, 4},
+                                       geom::Triangle{5, 4, 2}, geom::Triangle{3, 4, 5}})
+      out.triangles.push_back({first + part[0], first + part[1], first + part[2]});
+  }
+  return out;
+}
+
+/// Two links and the joint between them.
+TestRobot two_links(robot::JointType type, double lower, double upper) {
+  TestRobot out;
+  out.robot.name = "two";
+  out.robot.links = {{"a", {}, {}}, {"b", {}, {}}};
+  robot::Joint joint;
+  joint.name = "j";
+  joint.type = type;
+  joint.axis = type == robot::JointType::Prismatic ? Vec3::UnitX() : Vec3::UnitZ();
+  out.robot.joints = {joint};
+  out.robot.variables = {{"j", lower, upper}};
+  return out;
+}
+
+TEST(DecidedPairs, WhatIsInsideAwayFromTheJointIsSeenAlthoughTheMeshIsCutThere) {
+  TestRobot of = two_links(robot::JointType::Revolute, -1, 1);
+  const geom::Mesh solid = finer(finer(finer(box_mesh({-1, -1, -2}, {1, 1, 0}))));
+  geom::Mesh pin = box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05});
+  of.surfaces = {{0, solid, {}}, {1, pin, {}}};
+  auto pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  ASSERT_TRUE(pair.away);
+  EXPECT_LT(pair.away->beyond, 0.6);
+  EXPECT_EQ(pair.away->verdict, Verdict::Never);
+  test::append(of.surfaces[1].outer, box_mesh({0.2, -0.1, -1.5}, {0.4, 0.1, -1.3}));
+  pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  ASSERT_TRUE(pair.away);
+  EXPECT_LT(pair.away->beyond, 0.6);
+  EXPECT_EQ(pair.away->verdict, Verdict::Always);
+}
+
+TEST(DecidedPairs, AlwaysNeedsInnerMeshesThatMeetEverywhere) {
+  // In the outer mesh all along, but only up to 0.9 in the inner one.
+  TestRobot of = two_links(robot::JointType::Prismatic, 0, 0.95);
+  of.surfaces = {
+      {0, box_mesh({-1, -1, -1}, {1, 1, 1}), box_mesh({-0.9, -0.9, -0.9}, {0.9, 0.9, 0.9})},
+      {1, box_mesh({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}), {}}};
+  EXPECT_NE(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Always);
+  of.robot.variables[0].upper = 0.8;
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Always);
+}
+
+TEST(DecidedPairs, WithoutAnInnerMeshTheOuterOneStillDecides) {
+  TestRobot of = two_links(robot::JointType::Prismatic, -0.1, 0.1);
+  const geom::Mesh none, far = box_mesh({4, 4, 4}, {5, 5, 5});
+  of.surfaces = {{0, box_mesh({-1, -1, -1}, {1, 1, 1}), {}},
+                 {1, box_mesh({-0.3, -0.3, -0.01}, {0.3, 0.3, 0.01}), none}};
+  auto pairs = decide_pairs(of.robot, of.surfaces, {});
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs.front().verdict, Verdict::Open);
+  of.surfaces[1].outer = far;
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Never);
+}
+
+TEST(DecidedPairs, NothingIsNeverOfALinkThatMayLackAShape) {
+  TestRobot of = two_links(robot::JointType::Revolute, -0.1, 0.1);
+  of.surfaces = {{0, box_mesh({-1, -1, -1}, {1, 1, 1}), {}, "a plane was not read"},
+                 {1, box_mesh({4, 4, 4}, {5, 5, 5}), {}}};
+  DecidedPair pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  EXPECT_EQ(pair.verdict, Verdict::Open);
+  EXPECT_EQ(pair.nearest.lower, 0);
+  EXPECT_EQ(pair.why, "link 'a': a plane was not read");
+  of.surfaces[0].outer = {};
+  pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  EXPECT_EQ(pair.verdict, Verdict::Open);
+  EXPECT_EQ(pair.why, "link 'a': a plane was not read");
+  // A contact is one whatever else there is; what holds away from the joint is not known.
+  of.surfaces[0].outer = box_mesh({-1, -1, -1}, {1, 1, 1});
+  of.surfaces[1].outer = box_mesh({-0.1, -0.1, 0.9}, {0.1, 0.1, 1.1});
+  pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  EXPECT_EQ(pair.verdict, Verdict::Always);
+  ASSERT_TRUE(pair.away);
+  EXPECT_EQ(pair.away->verdict, Verdict::Open);
+}
+
 TEST(DecidedPairs, OuterMeshesProveAndInnerOnesShow) {
   TestRobot of = arm_over_table(0.001);
   // Outer meshes meet; inner ones do not: neither can be said.

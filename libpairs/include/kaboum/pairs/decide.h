@@ -20,8 +20,12 @@ namespace kaboum::pairs {
 /// those of a closed one wind about; nothing else is asked of a mesh.
 struct LinkSurface {
   std::uint32_t link = 0;
-  geom::Mesh outer;                 ///< holds the shapes: that pairs never touch is proved of it
-  std::optional<geom::Mesh> inner;  ///< lies in them: contacts are shown by it; none: the outer one
+  geom::Mesh outer;  ///< holds the shapes: that pairs never touch is proved of it
+  /// Lies in them: contacts are shown by it. None: the outer one does. Empty: no contact is shown.
+  std::optional<geom::Mesh> inner;
+  /// Why the outer mesh may lack something of the shapes: "a plane was not read". No pair of the
+  /// link is "never" then, however far its meshes are apart; the outer mesh may be empty.
+  std::string unsure = {};
 };
 
 struct DecideOptions {
@@ -71,10 +75,11 @@ struct DecidedPair {
   Bracket depth{0, 0};
   std::size_t boxes = 0;              ///< that were looked at
   std::optional<AwayFromJoint> away;  ///< of adjacent links that touch
+  std::string why = {};  ///< of an open pair, where it could not be decided: what is not known
 };
 
-/// All pairs of links that have a surface, ordered by a, then b. The same for any number of
-/// threads, unless the time is up.
+/// All pairs of links that have a surface or are unsure, ordered by a, then b. The same for any
+/// number of threads, unless the time is up.
 /// @throws Error{InvalidArgument} for a link with two surfaces, or that the robot does not have.
 std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const std::vector<LinkSurface>& surfaces,
