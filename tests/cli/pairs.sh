@@ -89,3 +89,62 @@ expect 3 'no two links with shapes' "$P" arm.urdf --links base
 echo '<robot><disable_collisions link1="base"/></robot>' >bad.srdf
 expect 3 "bad.srdf: line 1: <disable_collisions> has no 'link2'" "$P" arm.urdf --judge bad.srdf
 expect 3 'absent.srdf' "$P" arm.urdf --judge absent.srdf
+
+# Bodies in a solid are in it whatever is wrong with its mesh. Never is not said where it is not known.
+cat >in.py <<'END'
+import sys
+corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+box = [(1, 2, 4), (1, 4, 3), (5, 7, 8), (5, 8, 6), (1, 5, 6), (1, 6, 2), (3, 4, 8), (3, 8, 7), (1, 3, 7), (1, 7, 5),
+       (2, 6, 8), (2, 8, 4)]
+sheet = [(9, 10, 11), (9, 11, 10)]
+files = {
+    "flipped": [(1, 4, 2)] + box[1:],
+    "sheet": box[:-1] + sheet,
+    "no_solid": sheet,
+    "copies": box + box,
+}
+for name, triangles in files.items():
+    with open(name + ".obj", "w") as out:
+        for v in corners + [(3, 0, 0), (4, 0, 0), (4, 1, 0)]:
+            out.write("v %g %g %g\n" % v)
+        for t in triangles:
+            out.write("f %d %d %d\n" % t)
+END
+python3 in.py || fail 'no meshes'
+carried() { # LINKS: two joints that slide carry the last link
+  echo "<robot name=\"r\" version=\"1.1\">$1<link name=\"m\"/>$2"
+  echo '<joint name="x" type="prismatic"><parent link="a"/><child link="m"/><axis xyz="0 1 0"/>
+<limit lower="-0.01" upper="0.01" effort="1" velocity="1"/></joint>'
+  echo "<joint name=\"y\" type=\"prismatic\"><parent link=\"m\"/><child link=\"b\"/><axis xyz=\"${3:-1 0 0}\"/>
+<limit lower=\"${4:--0.3}\" upper=\"${5:-0.3}\" effort=\"1\" velocity=\"1\"/></joint></robot>"
+}
+shape() { echo "<link name=\"$1\"><collision><origin xyz=\"$3\"/><geometry>$2</geometry></collision></link>"; }
+for name in flipped copies; do
+  carried "$(shape a "<mesh filename=\"$name.obj\"/>" '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
+  expect 0 '1 always do' "$P" in.urdf
+done
+carried "$(shape a '<mesh filename="sheet.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
+expect 7 '1 open' "$P" in.urdf
+carried "$(shape a '<mesh filename="no_solid.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
+expect 7 "link 'a': a mesh has no solid" "$P" in.urdf --json
+python3 - <<'END' || fail "why a pair is open: $(cat out.txt)"
+import json
+said = json.load(open("out.txt"))
+assert "no solid" in said["notes"][0] and "no solid" in said["pairs"][0]["why"], said
+END
+
+# What is flat is looked at as well; points are not, and that is said.
+for what in '<cylinder radius="0.3" length="0"/>' '<sphere radius="0"/>' '<sphere radius="1e-200"/>'; do
+  carried "$(box a 0 0 0 1 1 1)" "$(shape b "$what" '0 0 0')" >flat.urdf
+  expect 7 '1 pairs: 0 never touch, 0 always do, 0 can, 1 open' "$P" flat.urdf
+done
+
+# Of what is round, the inner meshes lie in it: 2.8 mm beyond them nothing is said.
+for what in '<capsule radius="1" length="1"/>' '<sphere radius="1"/>'; do
+  z=0
+  case $what in *capsule*) z=-0.5 ;; esac
+  carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 1.003 1.0035 >round.urdf
+  expect 7 '1 open' "$P" round.urdf
+  carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 0.5 0.9 >round.urdf
+  expect 0 '1 always do' "$P" round.urdf
+done

@@ -22,8 +22,9 @@ namespace {
 using namespace kaboum;  // the tool's own names are few
 using tools::PairsOptions;
 
-std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o) {
-  std::vector<std::string> notes;
+/// @param notes  gets what a user should know, besides being printed
+std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o,
+                                       std::vector<std::string>& notes) {
   const std::vector<pairs::LinkSurface> surfaces =
       tools::naming(o.robot, [&] { return tools::surfaces_of(file, o.choice, notes); });
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
@@ -80,10 +81,12 @@ int run(const PairsOptions& o) {
   const robot::RobotFile file = robot::read_robot(o.robot);
   std::optional<pairs::Matrix> matrix;
   if (!o.judge.empty()) matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
-  const std::vector<pairs::DecidedPair> pairs = decide(file, o);
+  std::vector<std::string> notes;
+  const std::vector<pairs::DecidedPair> pairs = decide(file, o, notes);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   tools::Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
+                        {"notes", notes},
                         {"pairs", tools::pairs_json(file.robot, pairs)}};
   std::optional<tools::JudgedMatrix> judged;
   if (matrix) {

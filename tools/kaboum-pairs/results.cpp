@@ -51,6 +51,7 @@ Json pairs_json(const robot::Robot& robot, const std::vector<DecidedPair>& pairs
               {"distance", bracket_json(pair.nearest)}};
     if (pair.depth.lower > 0) j["depth"] = bracket_json(pair.depth);
     if (!pair.q.empty()) j["configuration"] = configuration_json(robot, pair.q);
+    if (!pair.why.empty()) j["why"] = pair.why;
     j["boxes"] = pair.boxes;
     if (pair.away) {
       j["away_from_joint"] = {{"beyond", pair.away->beyond},
@@ -81,6 +82,7 @@ std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
     out += "; farther than " + number(pair.away->beyond) + " from the joint: ";
     out += pairs::name_of(pair.away->verdict);
   }
+  if (!pair.why.empty()) out += "; " + pair.why;
   return out;
 }
 

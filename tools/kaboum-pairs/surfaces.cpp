@@ -8,6 +8,7 @@
 #include <kaboum/robot/exact_shapes.h>
 
 #include <cmath>
+#include <optional>
 
 namespace kaboum::tools {
 namespace {
@@ -23,50 +24,118 @@ void append(Mesh& all, const Mesh& mesh) {
     all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
-/// Of a cylinder or sphere, a polytope that lies in it: the corners of the one that encloses it,
-/// moved onto its surface, and a little less.
+/// Triangles as a sheet with two sides, so that what is closed stays closed with them.
+void append_sheet(Mesh& all, const Mesh& mesh) {
+  Mesh both = mesh;
+  for (const geom::Triangle& t : mesh.triangles) both.triangles.push_back({t[0], t[2], t[1]});
+  append(all, both);
+}
+
+/// Of a shape that is round, a polytope that lies in it: the corners of the one that encloses it,
+/// moved onto its surface, and a little less. Empty where rounding leaves nothing.
 Mesh inscribed(const Geometry& shape) {
   constexpr double kDown = 1 - 1e-9;
   std::vector<Vec3> points;
   for (const Vec3& corner : robot::bounding_points(shape)) {
     const Vec3 p = shape.origin.linear.transpose() * (corner - shape.origin.translation);
+    const double radius = shape.size.x() * kDown, half = 0.5 * shape.size.y() * kDown;
+    const double end = p.z() > 0 ? half : -half;
     Vec3 q;
-    if (shape.shape == Geometry::Shape::Sphere) {
-      q = shape.size.x() * kDown * p.normalized();
-    } else {
-      const double radius = shape.size.x() * kDown, half = 0.5 * shape.size.y() * kDown;
-      const double across = std::hypot(p.x(), p.y());
-      q = {p.x() / across * radius, p.y() / across * radius, p.z() > 0 ? half : -half};
+    switch (shape.shape) {
+      case Geometry::Shape::Sphere:
+        q = radius * p.normalized();
+        break;
+      case Geometry::Shape::Capsule:
+        q = Vec3(0, 0, end) + radius * (p - Vec3(0, 0, end)).normalized();
+        break;
+      case Geometry::Shape::Ellipsoid:
+        q = kDown * shape.size.cwiseProduct(p.cwiseQuotient(shape.size).normalized());
+        break;
+      default: {
+        const double across = std::hypot(p.x(), p.y());
+        q = {p.x() / across * radius, p.y() / across * radius, end};
+      }
     }
+    if (!q.allFinite()) return {};
     points.push_back(shape.origin * q);
   }
   return geom::convex_hull(points).value_or(Mesh{});
 }
 
-/// Adds a shape. @return whether both meshes got the same
-bool add(const Geometry& shape, const Mesh& exact, const std::string& link, pairs::LinkSurface& out,
-         Mesh& inner, std::vector<std::string>& notes) {
-  if (shape.shape == Geometry::Shape::Cylinder || shape.shape == Geometry::Shape::Sphere) {
-    append(out.outer, exact);
-    if (!is_flat(shape)) append(inner, inscribed(shape));
-    return false;
+bool is_round(const Geometry& shape) {
+  using Shape = Geometry::Shape;
+  return shape.shape == Shape::Cylinder || shape.shape == Shape::Sphere ||
+         shape.shape == Shape::Capsule || shape.shape == Shape::Ellipsoid;
+}
+
+/// What the shapes of a link become.
+struct Made {
+  Mesh outer, inner;
+  bool same = true;  ///< inner is outer
+  std::vector<std::string> unsure;
+};
+
+void add_primitive(const Geometry& shape, Made& out) {
+  const std::optional<Mesh> hull =
+      robot::is_point(shape) ? std::nullopt : geom::convex_hull(robot::bounding_points(shape));
+  if (!hull) {
+    out.unsure.push_back("a " + robot::describe(shape) + " is a point, which has no mesh");
+    out.same = false;
+    return;
   }
-  append(inner, exact);
-  if (shape.shape == Geometry::Shape::Mesh) {
+  append(out.outer, *hull);
+  if (!robot::is_flat(shape)) append(out.inner, is_round(shape) ? inscribed(shape) : *hull);
+  out.same = out.same && !is_flat(shape) && !is_round(shape);
+}
+
+/// The solid of a mesh file, with all of its triangles. Nothing is proved of one whose solid is a
+/// guess.
+void add_mesh(const Mesh& exact, Made& out) {
+  const auto prepared = [&](bool drop_sheets) {
+    return geom::prepare(exact, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill});
+  };
+  std::optional<geom::Prepared> found;
+  std::string why;
+  for (const bool drop_sheets : {false, true}) {
+    if (found) break;
     try {
-      const geom::Prepared prepared = geom::prepare(exact, {.holes = geom::Holes::Fill});
-      if (prepared.solid.filled_triangles() > 0) {
-        append(out.outer, prepared.solid.mesh());
-        return false;
-      }
+      found = prepared(drop_sheets);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::InvalidInput) throw;
-      notes.push_back("'" + link + "': a mesh has no solid (" + error.what() +
-                      "); only its triangles are looked at");
+      if (why.empty()) why = error.what();
     }
   }
-  append(out.outer, exact);
-  return !is_flat(shape);
+  if (!found) {
+    append(out.outer, exact);
+    append(out.inner, exact);
+    out.unsure.push_back("a mesh has no solid (" + why + "), and only its triangles are looked at");
+    return;
+  }
+  const geom::PreparationReport& report = found->report;
+  if (!found->solid.closed() || report.guessed || report.hollow) {
+    std::string what = "which solid a mesh means is not certain";
+    for (const std::string& note : report.notes)
+      if (note.starts_with("WARNING: ")) what += ": " + note.substr(9);
+    out.unsure.push_back(what);
+  }
+  Mesh solid = found->solid.mesh();
+  // What the solid is made without is not of its surface, but may still be touched.
+  for (const geom::LeftOut& left : report.left_out)
+    append_sheet(solid, {{left.corners.begin(), left.corners.end()}, {{0, 1, 2}}});
+  if (report.dropped_sheets > 0) append_sheet(solid, exact);
+  append(out.outer, solid);
+  const bool filled = found->solid.filled_triangles() > 0;
+  append(out.inner, filled ? exact : solid);
+  out.same = out.same && !filled;
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string out;
+  for (const std::string& text : texts) {
+    if (!out.empty()) out += "; ";
+    out += text;
+  }
+  return out;
 }
 
 }  // namespace
@@ -79,19 +148,20 @@ std::vector<pairs::LinkSurface> surfaces_of(const robot::RobotFile& file,
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
     const robot::Link& link = file.robot.links[l];
     if (!choice.has(link)) continue;
-    pairs::LinkSurface surface;
-    surface.link = l;
-    Mesh inner;
-    bool same = true;
+    Made made;
     for (const Geometry& shape : choice.shapes_of(link)) {
-      const Mesh exact = robot::exact_shapes({shape}, file, choice.packages);
-      if (exact.empty()) continue;
-      geom::require_valid(exact);
-      const bool alike = add(shape, exact, link.name, surface, inner, notes);
-      same = same && alike;
+      if (shape.shape == Geometry::Shape::Mesh) {
+        const Mesh exact = robot::exact_shapes({shape}, file, choice.packages);
+        geom::require_valid(exact);
+        add_mesh(exact, made);
+      } else {
+        add_primitive(shape, made);
+      }
     }
-    if (surface.outer.empty()) continue;
-    if (!same) surface.inner = std::move(inner);
+    if (made.outer.empty() && made.unsure.empty()) continue;
+    pairs::LinkSurface surface{l, std::move(made.outer), std::nullopt, joined(made.unsure)};
+    if (!made.same) surface.inner = std::move(made.inner);
+    if (!surface.unsure.empty()) notes.push_back("link '" + link.name + "': " + surface.unsure);
     out.push_back(std::move(surface));
   }
   return out;
