@@ -160,10 +160,20 @@ std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
     found.emplace(sorted(robot.links[pair.a].name, robot.links[pair.b].name), &pair);
   std::vector<JudgedPair> out;
   for (const DisabledPair& stated : matrix.pairs) {
-    JudgedPair judged{stated, Judgement::Proved, std::nullopt};
+    JudgedPair judged{stated, Judgement::Open, std::nullopt};
+    for (const std::string& name : {stated.a, stated.b}) {
+      const robot::Link& link = robot.links[robot.find_link(name).value()];
+      judged.why = "link '" + name + "' has no shapes";
+      if (link.collision.empty() && link.visual.empty() && link.unread.empty()) {
+        judged.judgement = Judgement::Proved;
+        break;
+      }
+      judged.why = "shapes of a link are not looked at, be they for drawing only";
+    }
     if (const auto at = found.find(sorted(stated.a, stated.b)); at != found.end()) {
       const DecidedPair& pair = *at->second;
       judged.found = pair;
+      judged.why = pair.why;
       judged.judgement = pair.verdict == Verdict::Never      ? Judgement::Proved
                          : pair.relation != Relation::Moving ? Judgement::Connected
                          : pair.verdict == Verdict::Always   ? Judgement::Always

@@ -509,7 +509,11 @@ class Reader {
     const Attributes a = classes_.of(e, class_here);
     const std::string* kind = find(a, "type");
     const std::string type = kind == nullptr ? "sphere" : *kind;
+    const bool collides =
+        number(e, a, "contype", 1) != 0 || number(e, a, "conaffinity", 1) != 0 || paired(e);
     if (type == "plane" || type == "hfield") {
+      out_.robot.links[link].unread.push_back(
+          {!collides, type == "plane" ? "a plane" : "a height field"});
       note(e, type == "plane"
                   ? "a plane of the world, which is no link's shape, stays as it is"
                   : "a height field of the world, which is no link's shape, stays as it is");
@@ -527,8 +531,6 @@ class Reader {
     else
       place_primitive(e, a, type, g);
     g.origin = frame * g.origin;
-    const bool collides =
-        number(e, a, "contype", 1) != 0 || number(e, a, "conaffinity", 1) != 0 || paired(e);
     Link& to = out_.robot.links[link];
     (collides ? to.collision : to.visual).push_back(std::move(g));
     (collides ? out_.collision : out_.visual)[link].push_back(&e);

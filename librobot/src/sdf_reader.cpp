@@ -403,7 +403,7 @@ class Reader {
       for (XMLElement* shape = e.FirstChildElement(visual ? "visual" : "collision");
            shape != nullptr; shape = shape->NextSiblingElement(visual ? "visual" : "collision")) {
         Geometry g;
-        if (!read_geometry(*shape, link.name, g)) continue;
+        if (!read_geometry(*shape, link, g)) continue;
         (visual ? link.visual : link.collision).push_back(std::move(g));
         (visual ? visual_ : collision_)[l].push_back(shape);
       }
@@ -423,7 +423,7 @@ class Reader {
   }
 
   /// @return false: nothing that is to be held
-  bool read_geometry(const XMLElement& shape, const std::string& link, Geometry& g) {
+  bool read_geometry(const XMLElement& shape, Link& link, Geometry& g) {
     const XMLElement* geometry = file_.only_child(shape, "geometry");
     if (geometry == nullptr) file_.fail(shape, "no <geometry>");
     const XMLElement* e = geometry->FirstChildElement();
@@ -432,8 +432,8 @@ class Reader {
     if (kind == "drake:capsule" || kind == "drake:ellipsoid") kind.erase(0, 6);
     g.line = e->GetLineNum();
     g.origin = pose(shape);
-    if (const std::string base = relative_to(shape); !base.empty() && base != link)
-      g.origin = inverse(in_model(link, shape)) * in_model(base, shape) * g.origin;
+    if (const std::string base = relative_to(shape); !base.empty() && base != link.name)
+      g.origin = inverse(in_model(link.name, shape)) * in_model(base, shape) * g.origin;
     const auto child = [&](const char* tag, std::size_t count) {
       const XMLElement* value = file_.only_child(*e, tag);
       if (value == nullptr) value = file_.only_child(*e, (std::string("drake:") + tag).c_str());
@@ -443,7 +443,8 @@ class Reader {
     using Shape = Geometry::Shape;
     if (kind == "empty") return false;
     if (kind == "plane") {
-      note(*e, "a plane of link '" + link + "' stays as it is: nothing bounded could hold it");
+      link.unread.push_back({std::string_view(shape.Name()) == "visual", "a plane"});
+      note(*e, "a plane of link '" + link.name + "' stays as it is: nothing bounded could hold it");
       return false;
     }
     if (kind == "box") {
@@ -465,12 +466,12 @@ class Reader {
       read_mesh(*e, g);
       return true;
     } else {
-      file_.fail(*e, "link '" + link +
+      file_.fail(*e, "link '" + link.name +
                          "': a shape of this kind is not read; box, cylinder, sphere, capsule, "
                          "ellipsoid and mesh are");
     }
     if (!(g.size.array() >= 0).all())
-      file_.fail(*e, "link '" + link + "': a " + describe(g) + " whose size is negative");
+      file_.fail(*e, "link '" + link.name + "': a " + describe(g) + " whose size is negative");
     return true;
   }
 

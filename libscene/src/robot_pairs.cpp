@@ -18,6 +18,8 @@ world::RobotModel robot_model(const robot::Robot& robot,
   for (const certify::CertifiedLink& link : links) {
     // Of a link that has points only nothing is proved: its pairs are left to the checks.
     if (link.artefact().bodies.empty()) continue;
+    // Nor of one with a plane, which no set holds.
+    if (!robot.links[link.certificate().link].unread.empty()) continue;
     model.shapes.push_back({static_cast<std::uint32_t>(link.certificate().link),
                             world::BoundingSet(link.artefact()),
                             {}});

@@ -133,6 +133,51 @@ said = json.load(open("out.txt"))
 assert "no solid" in said["notes"][0] and "no solid" in said["pairs"][0]["why"], said
 END
 
+# Nor where shapes are not read, or of the other kind.
+cat >floor.xml <<'END'
+<mujoco><worldbody>
+ <geom type="plane" size="5 5 .1"/>
+ <body name="base" pos="0 0 1"><geom type="box" size=".1 .1 .1"/>
+  <body name="arm"><joint name="j" type="slide" axis="0 0 1" range="-2 2"/><geom type="box" size=".05 .05 .05" pos="1 0 0"/></body>
+ </body>
+</worldbody>
+<contact><exclude body1="world" body2="arm"/></contact></mujoco>
+END
+expect 7 'floor.xml:2: a plane' "$P" floor.xml --judge floor.xml
+grep -q "world arm: open: .*link 'world': a plane is not looked at" out.txt || fail "$(cat out.txt)"
+expect 7 '' "$P" floor.xml --json
+python3 - <<'END' || fail "a floor that is not read: $(cat out.txt)"
+import json
+said = json.load(open("out.txt"))
+assert any("floor.xml:2: a plane" in note for note in said["notes"]), said["notes"]
+found = {tuple(p["links"]): p for p in said["pairs"]}
+for link in "base", "arm":
+    pair = found["world", link]
+    assert pair["verdict"] == "open" and "a plane" in pair["why"] and pair["distance"]["at_least"] == 0, pair
+END
+cat >floor.sdf <<'END'
+<sdf version="1.9"><model name="m">
+ <link name="ground"><collision name="c"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link>
+ <link name="arm"><collision name="c"><pose>1 0 1 0 0 0</pose><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link>
+ <joint name="j" type="prismatic"><parent>ground</parent><child>arm</child><axis><xyz>0 0 1</xyz><limit><lower>-2</lower><upper>2</upper></limit></axis></joint>
+</model></sdf>
+END
+echo '<robot name="m"><disable_collisions link1="ground" link2="arm" reason="Never"/></robot>' >floor.srdf
+expect 7 "a plane of link 'ground'" "$P" floor.sdf --judge floor.srdf
+grep -q "ground arm (Never): open: " out.txt || fail "$(cat out.txt)"
+{
+  echo '<robot name="r"><link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual></link><link name="f"/>'
+  box m 0 0 5 0.1 0.1 0.1
+  box b 0 0 0 0.9 0.8 0.7
+  joint i a m '0 0 0' '0 1 0' 1
+  joint j m b '0 0 0' '1 0 0' 1
+  echo '<joint name="k" type="fixed"><parent link="b"/><child link="f"/></joint></robot>'
+} >drawn.urdf
+echo '<robot name="r"><disable_collisions link1="a" link2="b"/><disable_collisions link1="f" link2="m"/></robot>' >drawn.srdf
+expect 7 "link 'a' has no collision shape, only visual ones" "$P" drawn.urdf --judge drawn.srdf
+grep -q 'a b: open: ' out.txt || fail "$(cat out.txt)"
+grep -q "f m: proved: link 'f' has no shapes" out.txt || fail "$(cat out.txt)"
+
 # What is flat is looked at as well; points are not, and that is said.
 for what in '<cylinder radius="0.3" length="0"/>' '<sphere radius="0"/>' '<sphere radius="1e-200"/>'; do
   carried "$(box a 0 0 0 1 1 1)" "$(shape b "$what" '0 0 0')" >flat.urdf
@@ -148,3 +193,14 @@ for what in '<capsule radius="1" length="1"/>' '<sphere radius="1"/>'; do
   carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 0.5 0.9 >round.urdf
   expect 0 '1 always do' "$P" round.urdf
 done
+cat >round.xml <<'END'
+<mujoco><compiler angle="radian"/><worldbody>
+ <body name="a"><geom type="ellipsoid" size="1 1 1"/>
+  <body name="m"><joint name="x" type="slide" axis="1 0 0" range="0 0.0001"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+   <body name="b"><joint name="y" type="slide" axis="0 1 1.6180339887" range="1.003 1.0035"/>
+    <geom type="box" size="0.00005 0.00005 0.00005"/></body></body></body>
+</worldbody></mujoco>
+END
+expect 7 '1 open' "$P" round.xml
+sed -i 's/1.003 1.0035/0.5 0.9/' round.xml
+expect 0 '1 always do' "$P" round.xml

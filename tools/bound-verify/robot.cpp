@@ -177,6 +177,7 @@ class RobotVerifier {
   void find_bare_links() {
     bare_ = robot::bare_links(original_.robot, visual(), o_.how.shapes.links);
     if (visual()) bare_.other.clear();  // their shapes for collisions are judged
+    for (const std::string& note : original_.robot.notes) log(common_.quiet, "note: " + note);
     for (const std::string& note : robot::notes_on(bare_, visual(), ": nothing of this is judged"))
       log(common_.quiet, "note: " + o_.original + ": " + note);
     for (const std::string& note :

@@ -27,8 +27,8 @@ std::string name_of(const JudgedPair& pair) { return pair.stated.a + " " + pair.
 
 /// What was found, in words.
 std::string finding_of(const JudgedPair& pair) {
-  if (!pair.found) return "proved: a link of it has no shapes";
   std::string out = pairs::name_of(pair.judgement);
+  if (!pair.found) return out + ": " + pair.why;
   switch (pair.judgement) {
     case Judgement::Proved:
       return out + ": at least " + short_text(pair.found->nearest.lower) + " apart";
@@ -39,8 +39,10 @@ std::string finding_of(const JudgedPair& pair) {
                short_text(pair.found->depth.upper) + " deep";
       return out;
     case Judgement::Open:
-      return out + ": their smallest distance is " + short_text(pair.found->nearest.lower) +
-             " to " + short_text(pair.found->nearest.upper);
+      out += ": their smallest distance is " + short_text(pair.found->nearest.lower) + " to " +
+             short_text(pair.found->nearest.upper);
+      if (!pair.why.empty()) out += "; " + pair.why;
+      return out;
     case Judgement::Connected: {
       out += std::string(" (") + pairs::name_of(pair.found->relation) + ")";
       if (pair.found->away)
@@ -102,6 +104,7 @@ Json matrix_json(const JudgedMatrix& judged) {
               {"line", pair.stated.line},
               {"judgement", pairs::name_of(pair.judgement)}};
     if (!pair.stated.reason.empty()) j["reason"] = pair.stated.reason;
+    if (!pair.why.empty()) j["why"] = pair.why;
     const std::string replay = replay_of(judged, pair);
     if (!replay.empty()) j["replay"] = replay;
     out["disabled"].push_back(std::move(j));

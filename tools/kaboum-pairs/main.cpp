@@ -25,6 +25,11 @@ using tools::PairsOptions;
 /// @param notes  gets what a user should know, besides being printed
 std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o,
                                        std::vector<std::string>& notes) {
+  notes = file.robot.notes;
+  for (const std::string& note :
+       robot::notes_on(robot::bare_links(file.robot, o.choice.visual, o.choice.links),
+                       o.choice.visual, ": there is nothing of this to look at"))
+    notes.push_back(note);
   const std::vector<pairs::LinkSurface> surfaces =
       tools::naming(o.robot, [&] { return tools::surfaces_of(file, o.choice, notes); });
   for (const std::string& note : notes) tools::log(o.common.quiet, note);

@@ -13,7 +13,7 @@
 namespace kaboum::tools {
 
 void describe(CLI::App& app, PairsOptions& o) {
-  app.add_option("ROBOT", o.robot, "URDF, or the Robotics Library's rlkin or rlmdl")
+  app.add_option("ROBOT", o.robot, "URDF, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
       ->type_name("FILE")
       ->required();
   app.add_option("--srdf", o.srdf,

@@ -158,6 +158,8 @@ std::vector<pairs::LinkSurface> surfaces_of(const robot::RobotFile& file,
         add_primitive(shape, made);
       }
     }
+    for (const robot::UnreadShape& unread : link.unread)
+      if (choice.visual || !unread.visual) made.unsure.push_back(unread.what + " is not looked at");
     if (made.outer.empty() && made.unsure.empty()) continue;
     pairs::LinkSurface surface{l, std::move(made.outer), std::nullopt, joined(made.unsure)};
     if (!made.same) surface.inner = std::move(made.inner);

@@ -230,6 +230,7 @@ int sweep_path(SweepApproxOptions o) {
   run.path = robot::read_path(
       o.path, run.robot.robot,
       {!o.sweep.ignore_limits, o.sweep.degrees, numbers_by_name(o.sweep.joints)}, notes);
+  for (const std::string& note : run.robot.robot.notes) log(o.common.quiet, note);
   for (const std::string& note : notes) log(o.common.quiet, note);
   const std::vector<std::string> links = o.sweep.links;
   make_bodies(o, run);

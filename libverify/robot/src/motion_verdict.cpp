@@ -102,7 +102,9 @@ MotionShapes read_motion_shapes(const robot::RobotFile& file, const MotionShapeO
   const bool visual = o.choice.visual;
   MotionShapes out;
   out.bare = robot::bare_links(file.robot, visual, links);
-  out.notes = robot::notes_on_flat_shapes(file, visual, links);
+  out.notes = file.robot.notes;
+  for (const std::string& note : robot::notes_on_flat_shapes(file, visual, links))
+    out.notes.push_back(note);
   for (const std::string& note : robot::notes_on(out.bare, visual, ": nothing of this is judged"))
     out.notes.push_back(file.path.string() + ": " + note);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l)

@@ -67,7 +67,7 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
 
 /// What was found about a pair that a file disables.
 enum class Judgement {
-  Proved,     ///< it never touches, or has no shapes
+  Proved,     ///< it never touches, or one link has no shapes of any kind
   Connected,  ///< one joint or fixed ones connect the links: their contact says nothing
   Always,     ///< they touch in every configuration, which a check could only repeat
   Refuted,    ///< a configuration shows a contact that is not looked for
@@ -79,7 +79,8 @@ const char* name_of(Judgement judgement);
 struct JudgedPair {
   DisabledPair stated;
   Judgement judgement = Judgement::Open;
-  std::optional<DecidedPair> found;  ///< none: one of the links has no shapes
+  std::optional<DecidedPair> found;  ///< none: a link has no shapes, or they were not looked at
+  std::string why = {};  ///< of a pair that stays open or is proved without having been found
 };
 
 /// Of every pair of the matrix, by what was decided.

@@ -32,9 +32,17 @@ bool is_point(const Geometry& geometry);
 /// Its kind and what is special of its size: "cylinder of length 0".
 std::string describe(const Geometry& geometry);
 
+/// A shape of a link that no Geometry says.
+struct UnreadShape {
+  bool visual = false;  ///< for drawing only
+  std::string what;     ///< "a plane"
+};
+
 struct Link {
   std::string name;
   std::vector<Geometry> collision, visual;
+  /// What the link has besides: nothing can be claimed to hold it, or to keep clear of it.
+  std::vector<UnreadShape> unread = {};
 };
 
 /// Connects a link to its parent: pose of the link = pose of the parent · origin · motion, where
