@@ -139,14 +139,22 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
     const auto at = disabled.find(key);
     if (stated.enabled || at == disabled.end() || at->second != &stated) continue;
     const auto on = enabled.find(key);
+    DisabledPair pair = stated.pair;
+    pair.statements.clear();
+    for (const detail::StatedPair& other : read.pairs) {
+      if (other.enabled || sorted(other.pair.a, other.pair.b) != key) continue;
+      pair.statements.insert(pair.statements.end(), other.pair.statements.begin(),
+                             other.pair.statements.end());
+      pair.grouped = pair.grouped || (other.expanded && on == enabled.end());
+    }
     if (on == enabled.end()) {
-      out.pairs.push_back(stated.pair);
+      out.pairs.push_back(std::move(pair));
     } else if (!stated.expanded) {
       fault(Kind::Contradicting,
             "the pair " + quoted(key) + " is disabled here, and enabled in line " +
                 std::to_string(on->second->pair.line),
             stated.pair.line);
-      out.pairs.push_back(stated.pair);
+      out.pairs.push_back(std::move(pair));
     }
   }
   std::ranges::stable_sort(out.faults, {}, &MatrixFault::line);
@@ -185,23 +193,26 @@ std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
   return out;
 }
 
-std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged) {
+std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged,
+                      const robot::Robot& robot) {
   std::vector<Stretch> gone;
   std::string enabled;
+  std::set<Pair> kept;
   for (const JudgedPair& pair : judged) {
-    if (pair.judgement != Judgement::Refuted) continue;
-    if (pair.stated.statement) {
-      gone.push_back(*pair.stated.statement);
-    } else if (matrix.end_of_statements) {
-      enabled += "  <enable_collisions link1=\"" + escape_xml(pair.stated.a) + "\" link2=\"" +
-                 escape_xml(pair.stated.b) + "\"/>\n";
-    } else {
+    if (pair.judgement != Judgement::Refuted) {
+      kept.insert(sorted(pair.stated.a, pair.stated.b));
+      continue;
+    }
+    gone.insert(gone.end(), pair.stated.statements.begin(), pair.stated.statements.end());
+    if (!pair.stated.grouped) continue;
+    if (!matrix.end_of_statements)
       throw Error(ErrorCode::InvalidArgument,
                   "line " + std::to_string(pair.stated.line) + " disables " +
                       quoted({pair.stated.a, pair.stated.b}) + " together with other pairs, and " +
                       name_of(matrix.format) +
                       " cannot state an exception: change the groups by hand");
-    }
+    enabled += "  <enable_collisions link1=\"" + escape_xml(pair.stated.a) + "\" link2=\"" +
+               escape_xml(pair.stated.b) + "\"/>\n";
   }
   // From the end on; what is inside of another stretch is gone with it.
   std::ranges::sort(gone, [](const Stretch& x, const Stretch& y) {
@@ -216,6 +227,12 @@ std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judge
     out.erase(stretch.begin, end - stretch.begin);
     next = stretch.begin;
   }
+  std::set<Pair> left;
+  for (const DisabledPair& pair : parse_matrix(out, "the corrected file", robot).pairs)
+    left.insert(sorted(pair.a, pair.b));
+  if (left != kept)
+    throw Error(ErrorCode::InvalidArgument,
+                "the refuted pairs cannot be taken out without others: change the file by hand");
   return out;
 }
 

@@ -210,7 +210,7 @@ void read_groups(const std::vector<Element>& elements, const std::string& name, 
       }
       for (const std::string& a : links)
         for (const std::string& b : expand(other))
-          out.pairs.push_back({{a, b, "", line, std::nullopt}, false, true});
+          out.pairs.push_back({{a, b, "", line}, false, true});
     }
   }
 }
@@ -230,7 +230,7 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
     for (const Element& e : elements)
       if (e.name == "exclude" && elements[e.parent].name == "contact")
         out.pairs.push_back({{attribute(e, "body1", name), attribute(e, "body2", name), "", e.line,
-                              with_line(text, e.place)}});
+                              {with_line(text, e.place)}}});
     return out;
   }
   if (has("drake:collision_filter_group")) {
@@ -247,14 +247,14 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
   for (const Element& e : elements) {
     if (e.name == "disable_collisions" || e.name == "enable_collisions") {
       out.pairs.push_back({{attribute(e, "link1", name), attribute(e, "link2", name),
-                            attribute_or(e, "reason"), e.line, with_line(text, e.place)},
+                            attribute_or(e, "reason"), e.line, {with_line(text, e.place)}},
                            e.name == "enable_collisions"});
     } else if (e.name == "disable_default_collisions") {
       const std::string link = attribute(e, "link", name);
       for (const std::string& other : links)
         if (other != link || links.size() == 1)
           out.pairs.push_back(
-              {{link, other, attribute_or(e, "reason"), e.line, std::nullopt}, false, true});
+              {{link, other, attribute_or(e, "reason"), e.line}, false, true});
     }
   }
   return out;

@@ -88,7 +88,7 @@ ReadMatrix read_yaml(const std::string& text, const std::string& name) {
     for (const YAML::Node& other : others) {
       if (!other.IsScalar()) refuse(name, other.Mark(), "a link's name is wanted");
       out.pairs.push_back({{entry.first.Scalar(), other.Scalar(), "", other.Mark().line + 1,
-                            item(text, place_of(other, text), flow)}});
+                            {item(text, place_of(other, text), flow)}}});
     }
     if (out.pairs.size() == before)
       out.faults.push_back({MatrixFault::Kind::EmptyGroup,

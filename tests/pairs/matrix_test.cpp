@@ -83,7 +83,7 @@ TEST(Matrix, SrdfIsJudgedAndOnlyWhatIsRefutedIsTakenOut) {
   const std::string gone =
       R"(<disable_collisions link1="d" link2="a" reason="Never"></disable_collisions>)";
   wanted.erase(wanted.find(gone), gone.size());
-  EXPECT_EQ(corrected(matrix, judged), wanted);
+  EXPECT_EQ(corrected(matrix, judged, robot), wanted);
 }
 
 TEST(Matrix, AStatementAloneOnItsLineIsTakenOutWithIt) {
@@ -91,7 +91,7 @@ TEST(Matrix, AStatementAloneOnItsLineIsTakenOutWithIt) {
   const std::string text =
       "<robot name=\"r\">\n  <disable_collisions link1=\"a\" link2=\"d\"/>\n</robot>\n";
   const Matrix matrix = parse_matrix(text, "m", robot);
-  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all())), "<robot name=\"r\">\n</robot>\n");
+  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot), "<robot name=\"r\">\n</robot>\n");
 }
 
 TEST(Matrix, FaultsHaveTheirLines) {
@@ -119,7 +119,7 @@ TEST(Matrix, DefaultsAreExceptedByEnabledPairs) {
   const Matrix matrix = parse_matrix(text, "m", robot);
   EXPECT_EQ(pairs_of(matrix), "ab2 ad2 ");
   EXPECT_EQ(faults_of(matrix), "");
-  const std::string out = corrected(matrix, judge(matrix, robot, all()));
+  const std::string out = corrected(matrix, judge(matrix, robot, all()), robot);
   EXPECT_NE(out.find("  <enable_collisions link1=\"a\" link2=\"d\"/>\n</robot>"), std::string::npos)
       << out;
   EXPECT_EQ(pairs_of(parse_matrix(out, "m", robot)), "ab2 ");
@@ -136,7 +136,7 @@ TEST(Matrix, MjcfExcludes) {
                                      "m", robot);
   EXPECT_EQ(matrix.format, MatrixFormat::Mjcf);
   EXPECT_EQ(pairs_of(matrix), "ad3 ac4 ");
-  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all())).find("body2=\"d\""), std::string::npos);
+  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot).find("body2=\"d\""), std::string::npos);
 }
 
 TEST(Matrix, DrakesGroupsAreExpandedAndEmptyOnesNamed) {
@@ -161,7 +161,50 @@ TEST(Matrix, DrakesGroupsAreExpandedAndEmptyOnesNamed) {
   EXPECT_EQ(matrix.format, MatrixFormat::Drake);
   EXPECT_EQ(pairs_of(matrix), "ac4 ad4 ");
   EXPECT_EQ(faults_of(matrix), "empty-group5 empty-group14 ");
-  EXPECT_ANY_THROW(corrected(matrix, judge(matrix, robot, all())));
+  EXPECT_ANY_THROW(corrected(matrix, judge(matrix, robot, all()), robot));
+}
+
+TEST(Matrix, EveryStatementOfARefutedPairIsTakenOut) {
+  const robot::Robot robot = chain();
+  const auto after = [&](const std::string& text) {
+    const Matrix matrix = parse_matrix(text, "m", robot);
+    const std::string out = corrected(matrix, judge(matrix, robot, all()), robot);
+    return pairs_of(parse_matrix(out, "m", robot)) + faults_of(parse_matrix(out, "m", robot));
+  };
+  EXPECT_EQ(after(R"(<robot name="r">
+<disable_collisions link1="a" link2="d"/>
+<disable_collisions link1="a" link2="c"/>
+<disable_collisions link1="d" link2="a"/>
+</robot>)"),
+            "ac2 ");
+  EXPECT_EQ(after(R"(<robot name="r">
+<disable_default_collisions link="a"/>
+<disable_collisions link1="a" link2="d"/>
+</robot>)"),
+            "ab2 ac2 ");
+  EXPECT_EQ(after(R"(<robot name="r">
+<disable_default_collisions link="a"/>
+<disable_default_collisions link="d"/>
+</robot>)"),
+            "ab2 ac2 db3 dc3 ");
+  EXPECT_EQ(after(R"(<robot name="r">
+<disable_default_collisions link="a"/>
+<disable_collisions link1="a" link2="d"/>
+<enable_collisions link1="a" link2="d"/>
+</robot>)"),
+            "ab2 ac2 ");
+  EXPECT_EQ(after(R"(<mujoco><contact>
+<exclude body1="a" body2="d"/>
+<exclude body1="d" body2="a"/>
+</contact></mujoco>)"),
+            "");
+#ifdef KABOUM_HAS_YAML
+  EXPECT_EQ(after("self_collision_ignore:\n  a: [d, c]\n  d: [a]\n"), "ac2 empty-group3 ");
+  EXPECT_EQ(after("self_collision_ignore:\n  a: [d, c, d]\n"), "ac2 ");
+  EXPECT_EQ(after("self_collision_ignore: {a: [d, d]}\n"), "empty-group1 ");
+  // Two lists that are one text: the second pair cannot be kept.
+  EXPECT_ANY_THROW(after("self_collision_ignore:\n  a: &x [d]\n  b: *x\n"));
+#endif
 }
 
 #ifdef KABOUM_HAS_YAML
@@ -178,7 +221,7 @@ TEST(Matrix, YamlOfBothKindsKeepsItsComments) {
   Matrix matrix = parse_matrix(curobo, "m", robot);
   EXPECT_EQ(matrix.format, MatrixFormat::Curobo);
   EXPECT_EQ(pairs_of(matrix), "ab5 ad5 ac5 bd6 ");
-  std::string out = corrected(matrix, judge(matrix, robot, all()));
+  std::string out = corrected(matrix, judge(matrix, robot, all()), robot);
   EXPECT_NE(out.find("\"a\": [\"b\", \"c\"],  # base"), std::string::npos) << out;
   EXPECT_NE(out.find("# not checked"), std::string::npos);
   const std::string xrdf = R"(format: xrdf
@@ -192,7 +235,7 @@ self_collision:
   matrix = parse_matrix(xrdf, "m", robot);
   EXPECT_EQ(matrix.format, MatrixFormat::Xrdf);
   EXPECT_EQ(pairs_of(matrix), "ad6 ac7 ");
-  out = corrected(matrix, judge(matrix, robot, all()));
+  out = corrected(matrix, judge(matrix, robot, all()), robot);
   EXPECT_NE(out.find("    a:\n      - c\n"), std::string::npos) << out;
 }
 #endif

@@ -113,7 +113,7 @@ int run(const PairsOptions& o) {
   if (judged) {
     write(o.junit, [&] { return tools::to_junit(*judged, o.fail_on_open); });
     write(o.sarif, [&] { return tools::to_sarif(*judged).dump(2) + "\n"; });
-    write(o.output, [&] { return pairs::corrected(judged->matrix, judged->pairs); });
+    write(o.output, [&] { return pairs::corrected(judged->matrix, judged->pairs, file.robot); });
   }
   tools::write_report(o.common, "kaboum-pairs", report);
   if (judged) {

@@ -30,9 +30,9 @@ struct DisabledPair {
   std::string a, b;    ///< names of links, as the file has them
   std::string reason;  ///< as the file has it; empty: it has none
   int line = 0;
-  /// What to take out of the file so that the pair is checked; empty: it is of a statement about
-  /// more pairs.
-  std::optional<Stretch> statement;
+  /// What to take out of the file so that the pair is checked: all that states it by itself.
+  std::vector<Stretch> statements = {};
+  bool grouped = false;  ///< a statement about more pairs disables it as well
 };
 
 /// What is wrong with a file, whatever the robot does.
@@ -87,9 +87,11 @@ struct JudgedPair {
 std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
                               const std::vector<DecidedPair>& decided);
 
-/// The file's text without refuted pairs; all else of it, its comments and its order stay.
+/// The file's text without refuted pairs; all else of it, its comments and its order stay. It has
+/// been read again: it disables none of them, and all others as before.
 /// @throws Error{InvalidArgument} where a refuted pair is part of a statement about several, and
-///   the format has no word for an exception
-std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged);
+///   the format has no word for an exception; or where pairs cannot be told apart in the text
+std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged,
+                      const robot::Robot& robot);
 
 }  // namespace kaboum::pairs
