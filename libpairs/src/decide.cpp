@@ -124,6 +124,11 @@ const char* name_of(Verdict verdict) {
   }
 }
 
+bool is_connected(const DecidedPair& pair) {
+  return pair.relation == Relation::Fixed ||
+         (pair.relation == Relation::Adjacent && pair.away && pair.away->verdict == Verdict::Never);
+}
+
 std::string text_of(const std::vector<double>& q) {
   std::string out;
   for (const double value : q) {

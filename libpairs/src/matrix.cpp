@@ -36,6 +36,27 @@ using Pair = std::pair<std::string, std::string>;
 
 Pair sorted(const std::string& a, const std::string& b) { return a < b ? Pair(a, b) : Pair(b, a); }
 
+/// Of adjacent links a contact at the joint neither proves nor refutes anything.
+Judgement judgement_of(const DecidedPair& pair) {
+  if (pair.verdict == Verdict::Never) return Judgement::Proved;
+  if (is_connected(pair)) return Judgement::Connected;
+  if (pair.relation == Relation::Adjacent && !pair.away) return Judgement::Open;
+  switch (pair.relation == Relation::Adjacent ? pair.away->verdict : pair.verdict) {
+    case Verdict::Always:
+      return Judgement::Always;
+    case Verdict::CanTouch:
+      return Judgement::Refuted;
+    default:
+      return Judgement::Open;
+  }
+}
+
+std::string why_open(const DecidedPair& pair) {
+  if (pair.relation != Relation::Adjacent || pair.verdict == Verdict::Open) return {};
+  return pair.away ? "one joint connects them, and it is not known whether they touch away from it"
+                   : "one joint connects them, and contacts at it are not told from others";
+}
+
 std::string quoted(const Pair& pair) { return "'" + pair.first + "', '" + pair.second + "'"; }
 
 }  // namespace
@@ -182,11 +203,10 @@ std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
       const DecidedPair& pair = *at->second;
       judged.found = pair;
       judged.why = pair.why;
-      judged.judgement = pair.verdict == Verdict::Never      ? Judgement::Proved
-                         : pair.relation != Relation::Moving ? Judgement::Connected
-                         : pair.verdict == Verdict::Always   ? Judgement::Always
-                         : pair.verdict == Verdict::CanTouch ? Judgement::Refuted
-                                                             : Judgement::Open;
+      judged.judgement = judgement_of(pair);
+      if (judged.judgement == Judgement::Refuted)
+        judged.q = pair.relation == Relation::Adjacent ? pair.away->q : pair.q;
+      if (judged.judgement == Judgement::Open && judged.why.empty()) judged.why = why_open(pair);
     }
     out.push_back(std::move(judged));
   }

@@ -229,7 +229,10 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
     out.format = MatrixFormat::Mjcf;
     for (const Element& e : elements)
       if (e.name == "exclude" && elements[e.parent].name == "contact")
-        out.pairs.push_back({{attribute(e, "body1", name), attribute(e, "body2", name), "", e.line,
+        out.pairs.push_back({{attribute(e, "body1", name),
+                              attribute(e, "body2", name),
+                              "",
+                              e.line,
                               {with_line(text, e.place)}}});
     return out;
   }
@@ -246,15 +249,17 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
   out.end_of_statements = elements.front().end_tag;
   for (const Element& e : elements) {
     if (e.name == "disable_collisions" || e.name == "enable_collisions") {
-      out.pairs.push_back({{attribute(e, "link1", name), attribute(e, "link2", name),
-                            attribute_or(e, "reason"), e.line, {with_line(text, e.place)}},
+      out.pairs.push_back({{attribute(e, "link1", name),
+                            attribute(e, "link2", name),
+                            attribute_or(e, "reason"),
+                            e.line,
+                            {with_line(text, e.place)}},
                            e.name == "enable_collisions"});
     } else if (e.name == "disable_default_collisions") {
       const std::string link = attribute(e, "link", name);
       for (const std::string& other : links)
         if (other != link || links.size() == 1)
-          out.pairs.push_back(
-              {{link, other, attribute_or(e, "reason"), e.line}, false, true});
+          out.pairs.push_back({{link, other, attribute_or(e, "reason"), e.line}, false, true});
     }
   }
   return out;

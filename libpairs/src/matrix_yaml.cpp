@@ -87,7 +87,10 @@ ReadMatrix read_yaml(const std::string& text, const std::string& name) {
     const std::size_t before = out.pairs.size();
     for (const YAML::Node& other : others) {
       if (!other.IsScalar()) refuse(name, other.Mark(), "a link's name is wanted");
-      out.pairs.push_back({{entry.first.Scalar(), other.Scalar(), "", other.Mark().line + 1,
+      out.pairs.push_back({{entry.first.Scalar(),
+                            other.Scalar(),
+                            "",
+                            other.Mark().line + 1,
                             {item(text, place_of(other, text), flow)}}});
     }
     if (out.pairs.size() == before)

@@ -178,6 +178,19 @@ expect 7 "link 'a' has no collision shape, only visual ones" "$P" drawn.urdf --j
 grep -q 'a b: open: ' out.txt || fail "$(cat out.txt)"
 grep -q "f m: proved: link 'f' has no shapes" out.txt || fail "$(cat out.txt)"
 
+# A carriage that hits the wall at the end of its rail: that is not at the joint, and is not accepted.
+{
+  echo '<robot name="r"><link name="rail"><collision><geometry><box size="1 .1 .1"/></geometry></collision>'
+  echo '<collision><origin xyz="2 0 .5"/><geometry><box size=".1 1 1"/></geometry></collision></link>'
+  box carriage 0 0 0.3 0.2 0.2 0.2
+  echo '<joint name="j" type="prismatic"><parent link="rail"/><child link="carriage"/><axis xyz="1 0 0"/>
+<limit lower="-1" upper="3" effort="1" velocity="1"/></joint></robot>'
+} >rail.urdf
+echo '<robot name="r"><disable_collisions link1="rail" link2="carriage" reason="Adjacent"/></robot>' >rail.srdf
+expect 7 '0 connected, 0 always in contact, 0 refuted, 1 open' "$P" rail.urdf --judge rail.srdf --srdf wrote.srdf
+grep -q 'open: .*one joint connects them, and contacts at it are not told from others' out.txt || fail "$(cat out.txt)"
+grep -q disable wrote.srdf && fail 'a carriage that hits a wall was switched off'
+
 # What is flat is looked at as well; points are not, and that is said.
 for what in '<cylinder radius="0.3" length="0"/>' '<sphere radius="0"/>' '<sphere radius="1e-200"/>'; do
   carried "$(box a 0 0 0 1 1 1)" "$(shape b "$what" '0 0 0')" >flat.urdf

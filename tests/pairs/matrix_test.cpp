@@ -36,9 +36,15 @@ DecidedPair decided(std::uint32_t a, std::uint32_t b, Verdict verdict,
   return out;
 }
 
+DecidedPair at_joint(std::optional<Verdict> away, Verdict verdict = Verdict::CanTouch) {
+  DecidedPair out = decided(0, 1, verdict, Relation::Adjacent);
+  if (away) out.away = AwayFromJoint{0.1, *away, {}, {0.7, 0, 0}};
+  return out;
+}
+
 std::vector<DecidedPair> all() {
-  return {decided(0, 1, Verdict::CanTouch, Relation::Adjacent), decided(0, 2, Verdict::Never),
-          decided(0, 3, Verdict::CanTouch), decided(1, 3, Verdict::Open)};
+  return {at_joint(Verdict::Never), decided(0, 2, Verdict::Never), decided(0, 3, Verdict::CanTouch),
+          decided(1, 3, Verdict::Open)};
 }
 
 std::string pairs_of(const Matrix& matrix) {
@@ -91,7 +97,26 @@ TEST(Matrix, AStatementAloneOnItsLineIsTakenOutWithIt) {
   const std::string text =
       "<robot name=\"r\">\n  <disable_collisions link1=\"a\" link2=\"d\"/>\n</robot>\n";
   const Matrix matrix = parse_matrix(text, "m", robot);
-  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot), "<robot name=\"r\">\n</robot>\n");
+  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot),
+            "<robot name=\"r\">\n</robot>\n");
+}
+
+TEST(Matrix, AContactAtAJointIsAcceptedOnlyWhereNoneIsAwayFromIt) {
+  const robot::Robot robot = chain();
+  const Matrix matrix =
+      parse_matrix("<robot name='r'><disable_collisions link1='a' link2='b'/></robot>", "m", robot);
+  const auto judged = [&](const DecidedPair& pair) {
+    return judge(matrix, robot, {pair}).front().judgement;
+  };
+  EXPECT_EQ(judged(at_joint(Verdict::Never)), Judgement::Connected);
+  EXPECT_EQ(judged(at_joint(Verdict::Open)), Judgement::Open);
+  EXPECT_EQ(judged(at_joint(std::nullopt)), Judgement::Open);
+  EXPECT_EQ(judged(at_joint(std::nullopt, Verdict::Always)), Judgement::Open);
+  EXPECT_EQ(judged(at_joint(std::nullopt, Verdict::Never)), Judgement::Proved);
+  EXPECT_EQ(judged(at_joint(Verdict::Always, Verdict::Always)), Judgement::Always);
+  EXPECT_EQ(judged(at_joint(Verdict::CanTouch)), Judgement::Refuted);
+  EXPECT_EQ(judge(matrix, robot, {at_joint(Verdict::CanTouch)}).front().q.front(), 0.7);
+  EXPECT_EQ(judged(decided(0, 1, Verdict::CanTouch, Relation::Fixed)), Judgement::Connected);
 }
 
 TEST(Matrix, FaultsHaveTheirLines) {
@@ -136,7 +161,8 @@ TEST(Matrix, MjcfExcludes) {
                                      "m", robot);
   EXPECT_EQ(matrix.format, MatrixFormat::Mjcf);
   EXPECT_EQ(pairs_of(matrix), "ad3 ac4 ");
-  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot).find("body2=\"d\""), std::string::npos);
+  EXPECT_EQ(corrected(matrix, judge(matrix, robot, all()), robot).find("body2=\"d\""),
+            std::string::npos);
 }
 
 TEST(Matrix, DrakesGroupsAreExpandedAndEmptyOnesNamed) {

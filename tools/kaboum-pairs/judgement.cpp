@@ -33,8 +33,10 @@ std::string finding_of(const JudgedPair& pair) {
     case Judgement::Proved:
       return out + ": at least " + short_text(pair.found->nearest.lower) + " apart";
     case Judgement::Refuted:
-      out += ": they touch at " + pairs::text_of(pair.found->q);
-      if (pair.found->depth.lower > 0)
+      out += ": they touch at " + pairs::text_of(pair.q);
+      if (pair.found->away)
+        out += ", farther than " + short_text(pair.found->away->beyond) + " from their joint";
+      else if (pair.found->depth.lower > 0)
         out += ", " + short_text(pair.found->depth.lower) + " to " +
                short_text(pair.found->depth.upper) + " deep";
       return out;
@@ -81,7 +83,7 @@ std::string line_of(const JudgedPair& pair) {
 std::string replay_of(const JudgedMatrix& judged, const JudgedPair& pair) {
   if (pair.judgement != Judgement::Refuted) return {};
   return "kaboum-scene make replay.json --robot robot=" + judged.robot +
-         " && kaboum-check replay.json --configuration=" + pairs::text_of(pair.found->q);
+         " && kaboum-check replay.json --configuration=" + pairs::text_of(pair.q);
 }
 
 std::string summary_of(const JudgedMatrix& judged) {

@@ -16,9 +16,10 @@ void describe(CLI::App& app, PairsOptions& o) {
   app.add_option("ROBOT", o.robot, "URDF, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
       ->type_name("FILE")
       ->required();
-  app.add_option("--srdf", o.srdf,
-                 "Write the pairs that need no check as SRDF: those that never touch, and those "
-                 "that are connected")
+  app.add_option(
+         "--srdf", o.srdf,
+         "Write the pairs that need no check as SRDF: those that never touch, those that fixed "
+         "joints connect, and those that one joint does that never touch away from it")
       ->type_name("FILE");
   CLI::Option* judge =
       app.add_option(

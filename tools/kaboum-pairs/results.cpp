@@ -99,11 +99,11 @@ std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& p
   std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + escape_xml(robot.name) + "\">\n";
   for (const DecidedPair& pair : pairs) {
     // As MoveIt's assistant calls them.
+    const bool never = pair.verdict == Verdict::Never;
+    if (!never && !pairs::is_connected(pair)) continue;
     const char* reason = pair.relation == Relation::Adjacent ? "Adjacent"
-                         : pair.verdict == Verdict::Never    ? "Never"
-                         : pair.relation == Relation::Fixed  ? "Default"
-                                                             : nullptr;
-    if (reason == nullptr) continue;
+                         : never                             ? "Never"
+                                                             : "Default";
     out += "  <disable_collisions link1=\"" + escape_xml(robot.links[pair.a].name) + "\" link2=\"" +
            escape_xml(robot.links[pair.b].name) + "\" reason=\"" + reason + "\"/>\n";
   }

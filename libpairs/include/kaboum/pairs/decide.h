@@ -78,6 +78,10 @@ struct DecidedPair {
   std::string why = {};  ///< of an open pair, where it could not be decided: what is not known
 };
 
+/// Whether contacts of a pair say nothing: fixed joints connect the links, or one joint does, and
+/// they never touch away from it. Of a joint that slides there is no such place.
+bool is_connected(const DecidedPair& pair);
+
 /// All pairs of links that have a surface or are unsure, ordered by a, then b. The same for any
 /// number of threads, unless the time is up.
 /// @throws Error{InvalidArgument} for a link with two surfaces, or that the robot does not have.

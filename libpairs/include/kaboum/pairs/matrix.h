@@ -67,10 +67,12 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
 
 /// What was found about a pair that a file disables.
 enum class Judgement {
-  Proved,     ///< it never touches, or one link has no shapes of any kind
-  Connected,  ///< one joint or fixed ones connect the links: their contact says nothing
-  Always,     ///< they touch in every configuration, which a check could only repeat
-  Refuted,    ///< a configuration shows a contact that is not looked for
+  Proved,  ///< it never touches, or one link has no shapes of any kind
+  /// Fixed joints connect the links, or one joint does, away from which they never touch: a contact
+  /// says nothing.
+  Connected,
+  Always,   ///< they touch in every configuration, which a check could only repeat
+  Refuted,  ///< a configuration shows a contact that is not looked for
   Open,
 };
 /// "proved", "connected", "always", "refuted", "open".
@@ -80,6 +82,7 @@ struct JudgedPair {
   DisabledPair stated;
   Judgement judgement = Judgement::Open;
   std::optional<DecidedPair> found;  ///< none: a link has no shapes, or they were not looked at
+  std::vector<double> q = {};        ///< shows the contact of a refuted pair; as DecidedPair::q
   std::string why = {};  ///< of a pair that stays open or is proved without having been found
 };
 
