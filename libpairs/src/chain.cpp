@@ -61,6 +61,9 @@ Chain::Chain(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) {
   after_ = fixed;
   find_limits(robot);
   if (!limits_) return;
+  own_limits_ = limits_;
+  for (const auto* way : {&up, &down})
+    for (const std::uint32_t j : *way) narrow(robot.joints[j]);
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     Joint& joint = joints_[k];
     joint.most = std::abs(joint.multiplier) * std::max(std::abs(limits_->low[joint.variable]),
@@ -81,19 +84,40 @@ void Chain::find_limits(const robot::Robot& robot) {
       continue;
     }
     // A turn after which all joints are where they were.
-    double multiplier = 0;
+    double multiplier = 0;  // the least; all others are multiples of it, exactly
     for (const Joint& joint : joints_) {
       if (joint.variable != i || joint.multiplier == 0) continue;
       if (!joint.revolute) return;
-      if (multiplier != 0 && std::abs(joint.multiplier) != multiplier) return;
-      multiplier = std::abs(joint.multiplier);
+      const double here = std::abs(joint.multiplier);
+      multiplier = multiplier == 0 ? here : std::min(multiplier, here);
     }
+    for (const Joint& joint : joints_)
+      if (joint.variable == i && multiplier != 0 && std::fmod(joint.multiplier, multiplier) != 0)
+        return;
     const double period = multiplier == 0 ? 0 : 2 * std::numbers::pi / multiplier * (1 + 0x1p-40);
     out.low.push_back(
         variable.lower.value_or(variable.upper ? *variable.upper - period : -period / 2));
     out.high.push_back(out.low.back() + period);
   }
   limits_ = std::move(out);
+}
+
+void Chain::narrow(const robot::Joint& joint) {
+  if (joint.type == robot::JointType::Fixed || joint.multiplier == 0 || !own_limits_) return;
+  const auto v = static_cast<std::size_t>(std::ranges::lower_bound(variables_, joint.variable) -
+                                          variables_.begin());
+  double &low = own_limits_->low[v], &high = own_limits_->high[v];
+  const auto bound = [&](const std::optional<double>& limit, bool lower) {
+    if (!limit) return;
+    const double value = (*limit - joint.offset) / joint.multiplier;
+    if (lower == (joint.multiplier > 0))
+      low = std::max(low, value);
+    else
+      high = std::min(high, value);
+  };
+  bound(joint.lower, true);
+  bound(joint.upper, false);
+  if (!(low <= high)) own_limits_.reset();
 }
 
 void Chain::place(std::span<const double> values, Placed& out) const {

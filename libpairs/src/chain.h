@@ -32,6 +32,9 @@ class Chain {
     std::vector<double> low, high;
   };
   [[nodiscard]] const std::optional<Limits>& limits() const { return limits_; }
+  /// Those within which joints that mimic others keep their own limits as well: where contacts may
+  /// be shown. nullopt: nowhere.
+  [[nodiscard]] const std::optional<Limits>& own_limits() const { return own_limits_; }
 
   /// Where b and the joints are, in the frame of a.
   struct Placed {
@@ -54,12 +57,13 @@ class Chain {
     double offset;
   };
   void find_limits(const robot::Robot& robot);
+  void narrow(const robot::Joint& joint);
 
   std::vector<std::uint32_t> variables_;
   std::vector<Joint> joints_;
   std::vector<Step> steps_;
   Transform after_;
-  std::optional<Limits> limits_;
+  std::optional<Limits> limits_, own_limits_;
   double extent_ = 0;
   std::size_t factors_ = 1;
 };

@@ -47,7 +47,15 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
     middle_.push_back(0.5 * low[v] + 0.5 * high[v]);
     half_.push_back(std::max(high[v] - middle_[v], middle_[v] - low[v]) * (1 + 0x1p-40));
   }
-  best_values_ = middle_;
+  shows_ = shows_ && chain_.own_limits();
+  best_values_ = shows_ ? within_own_limits(middle_) : middle_;
+}
+
+std::vector<double> Search::within_own_limits(std::vector<double> values) const {
+  const auto& [low, high] = *chain_.own_limits();
+  for (std::size_t v = 0; v < values.size(); ++v)
+    values[v] = std::clamp(values[v], low[v], high[v]);
+  return values;
 }
 
 Bracket Search::nearest() const {
@@ -71,7 +79,8 @@ Contact::Nearest Search::measure(const std::vector<double>& values, double gap,
 
 bool Search::climb(std::vector<double> values) {
   const double touching = 1e-11 * inner_.gaps().reach();
-  const auto& [low, high] = *chain_.limits();
+  const auto& [low, high] = *chain_.own_limits();
+  values = within_own_limits(std::move(values));
   Contact::Nearest at = measure(values, 0, kMostSteps);
   for (int step = 0; step < 60 && at.upper > touching && !stopped(); ++step) {
     // Derivative of the distance: all joints move b.
@@ -117,7 +126,7 @@ bool Search::climb(std::vector<double> values) {
 }
 
 void Search::show_contact(std::vector<double> values) {
-  const auto& [low, high] = *chain_.limits();
+  const auto& [low, high] = *chain_.own_limits();
   const std::vector<double> still(values.size(), 0);
   const auto depth_at = [&](const std::vector<double>& v, std::size_t corners) {
     motion_.set(v, still);
@@ -161,14 +170,14 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   stop_ = &stop;
   searched_ = true;
   if (!shows_) return;
-  const auto& [low, high] = *chain_.limits();
+  const auto& [low, high] = *chain_.own_limits();
   const std::size_t samples =
       middle_.empty() ? 1 : std::min(samples_, std::max(kFirstSamples, 2 * sampled_));
   std::vector<std::pair<double, std::vector<double>>> near;
   const double touching = 1e-11 * inner_.gaps().reach();
   for (; sampled_ < samples && !stop(); ++sampled_) {
     const std::size_t i = sampled_;
-    std::vector<double> values = middle_;
+    std::vector<double> values = within_own_limits(middle_);
     for (std::size_t v = 0; v < values.size() && i > 0; ++v)
       values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
     const Contact::Nearest at = measure(values, 0.3 * std::min(nearest_, 1e3), kMostSteps / 10);

@@ -84,6 +84,8 @@ class Search {
   bool meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
                    const std::function<bool()>& stop);
   void end_proof();
+  /// The nearest values at which contacts may be shown.
+  [[nodiscard]] std::vector<double> within_own_limits(std::vector<double> values) const;
   [[nodiscard]] bool stopped() const { return stop_ != nullptr && *stop_ && (*stop_)(); }
 
   Chain chain_;

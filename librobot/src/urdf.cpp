@@ -393,6 +393,8 @@ class Assembly {
       const JointEntry& other = *order_[it->second];
       if (!other.mimicry) {
         joint.variable = robot_.joints[it->second].variable;
+        joint.lower = order_[index]->variable.lower;
+        joint.upper = order_[index]->variable.upper;
         if (const auto own = order_[index]->variable.velocity; own && joint.multiplier != 0) {
           std::optional<double>& most = robot_.variables[joint.variable].velocity;
           const double here = *own / std::abs(joint.multiplier);

@@ -243,6 +243,64 @@ TEST(DecidedPairs, NothingIsNeverOfALinkThatMayLackAShape) {
   EXPECT_EQ(pair.away->verdict, Verdict::Open);
 }
 
+/// An arm that turns with a slide, or with a continuous joint below it; nothing else moves.
+TestRobot two_joints(robot::JointType first, double multiplier) {
+  TestRobot out = two_links(first, 0, 0.01);
+  out.robot.links.push_back({"c", {}, {}});
+  out.robot.joints[0].axis = Vec3::UnitZ();
+  robot::Joint follower;
+  follower.name = "k";
+  follower.type = robot::JointType::Revolute;
+  follower.parent = 1;
+  follower.axis = Vec3::UnitZ();
+  follower.multiplier = multiplier;
+  out.robot.joints.push_back(follower);
+  out.surfaces = {{0, box_mesh({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1}), {}},
+                  {2, box_mesh({-1.1, -0.1, -0.1}, {-0.9, 0.1, 0.1}), {}}};
+  return out;
+}
+
+TEST(DecidedPairs, ContactsAreShownWithinTheOwnLimitsOfJointsThatMimic) {
+  TestRobot of = two_joints(robot::JointType::Prismatic, 314.15);
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::CanTouch);
+  for (const bool turned_round : {false, true}) {
+    of.robot.joints[1].multiplier = turned_round ? -314.15 : 314.15;
+    of.robot.joints[1].lower = turned_round ? -0.1 : -0.2;
+    of.robot.joints[1].upper = turned_round ? 0.2 : 0.1;
+    const DecidedPair far = decide_pairs(of.robot, of.surfaces, {.most_boxes = 3'000}).front();
+    EXPECT_EQ(far.verdict, Verdict::Open);
+    EXPECT_EQ(far.nearest.lower, 0);
+    EXPECT_GT(far.nearest.upper, 1);
+  }
+  // Half a turn is where they meet.
+  of.robot.joints[1].lower = -3.1;
+  const DecidedPair near = decide_pairs(of.robot, of.surfaces, {}).front();
+  ASSERT_EQ(near.verdict, Verdict::CanTouch);
+  EXPECT_LE(314.15 * near.q[0], 3.1 * (1 + 1e-12));
+  // It cannot be where its leader has it at all.
+  of.robot.joints[1].lower = 1;
+  of.robot.joints[1].upper = 2;
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {.most_boxes = 3'000}).front().verdict,
+            Verdict::Open);
+}
+
+TEST(DecidedPairs, JointsWithoutLimitsAreLookedAtForOneTurnOfTheSlowest) {
+  for (const double multiplier : {2.0, -3.0, 0.25, 1.0}) {
+    TestRobot of = two_joints(robot::JointType::Revolute, multiplier);
+    of.robot.variables[0] = {"j", {}, {}};
+    EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::CanTouch)
+        << multiplier;
+    for (geom::Vec3& v : of.surfaces[1].outer.vertices) v.z() += 0.3;
+    EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Never)
+        << multiplier;
+  }
+  // No turn of the first is one of both.
+  TestRobot of = two_joints(robot::JointType::Revolute, 1.5);
+  of.robot.variables[0] = {"j", {}, {}};
+  for (geom::Vec3& v : of.surfaces[1].outer.vertices) v.z() += 0.3;
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Open);
+}
+
 TEST(DecidedPairs, OuterMeshesProveAndInnerOnesShow) {
   TestRobot of = arm_over_table(0.001);
   // Outer meshes meet; inner ones do not: neither can be said.

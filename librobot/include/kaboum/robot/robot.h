@@ -55,6 +55,9 @@ struct Joint {
   Vec3 axis = Vec3::UnitZ();   ///< of unit length, in the joint's frame
   std::uint32_t variable = 0;  ///< not for fixed joints; shared by joints that mimic one another
   double multiplier = 1, offset = 0;
+  /// Its own limits, where it mimics another joint and its file has some. The variable's limits are
+  /// the other joint's, and may drive this one beyond. [rad or length]
+  std::optional<double> lower = {}, upper = {};
 };
 
 /// A degree of freedom, and its limits [rad or length].
