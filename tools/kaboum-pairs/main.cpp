@@ -27,8 +27,8 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
                                        std::vector<std::string>& notes) {
   notes = file.robot.notes;
   for (const std::string& note :
-       robot::notes_on(robot::bare_links(file.robot, o.choice.visual, o.choice.links),
-                       o.choice.visual, ": there is nothing of this to look at"))
+       robot::notes_on({{}, robot::bare_links(file.robot, o.choice.visual, o.choice.links).other},
+                       o.choice.visual, ": nothing of this is looked at"))
     notes.push_back(note);
   const std::vector<pairs::LinkSurface> surfaces =
       tools::naming(o.robot, [&] { return tools::surfaces_of(file, o.choice, notes); });
