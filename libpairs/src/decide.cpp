@@ -85,7 +85,8 @@ std::vector<double> configuration(const robot::Robot& robot, const Search& searc
 }
 
 /// The parts of adjacent links that are not at their joint.
-std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const DecidedPair& pair,
+std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
+                                       std::pair<std::uint32_t, std::uint32_t> links,
                                        const Shapes& a, const Shapes& b, const Search& whole,
                                        const DecideOptions& options,
                                        const std::function<bool()>& stop) {
@@ -99,7 +100,7 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot, const DecidedP
     out.verdict = Verdict::Never;
     return out;
   }
-  Search search(robot, pair.a, pair.b, of_a, of_b, options.samples);
+  Search search(robot, links.first, links.second, of_a, of_b, options.samples);
   search.begin(stop);
   for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
   search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
@@ -170,10 +171,12 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   struct Pair {
     std::size_t a, b;
     std::unique_ptr<Search> search;
+    std::optional<AwayFromJoint> away;
   };
   std::vector<Pair> pairs;
   for (std::size_t a = 0; a < surfaces.size(); ++a)
-    for (std::size_t b = a + 1; b < surfaces.size(); ++b) pairs.push_back({a, b, nullptr});
+    for (std::size_t b = a + 1; b < surfaces.size(); ++b)
+      pairs.push_back({a, b, nullptr, std::nullopt});
 
   std::atomic<std::size_t> decided = 0;
   const auto stop = [&] {
@@ -200,6 +203,17 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
     pair.search->begin(stop);
   });
   round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
+  // Before pairs that are hard take all of the time.
+  parallel_for(std::size_t{0}, pairs.size(),
+               [&](std::size_t i) {
+                 Pair& pair = pairs[i];
+                 if (pair.search == nullptr || pair.search->verdict() == Verdict::Never) return;
+                 const std::pair links(surfaces[pair.a]->link, surfaces[pair.b]->link);
+                 if (relation_of(robot, shaped, links.first, links.second) == Relation::Adjacent)
+                   pair.away = look_away(robot, links, shapes[pair.a], shapes[pair.b], *pair.search,
+                                         options, stop);
+               },
+               {.alone = true});
   // More and more boxes, so that what is easy is decided before the time is up.
   for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
     const bool last = boxes >= options.most_boxes;
@@ -215,7 +229,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   std::vector<DecidedPair> out(pairs.size());
   parallel_for(std::size_t{0}, pairs.size(),
                [&](std::size_t i) {
-                 const auto& [a, b, search] = pairs[i];
+                 auto& [a, b, search, away] = pairs[i];
                  DecidedPair& pair = out[i];
                  pair.a = surfaces[a]->link;
                  pair.b = surfaces[b]->link;
@@ -230,8 +244,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                  pair.depth = search->depth();
                  pair.boxes = search->boxes();
                  pair.q = configuration(robot, *search);
-                 if (pair.relation == Relation::Adjacent && pair.verdict != Verdict::Never)
-                   pair.away = look_away(robot, pair, shapes[a], shapes[b], *search, options, stop);
+                 if (pair.verdict != Verdict::Never) pair.away = std::move(away);
                  if (unsure.empty()) return;
                  doubt(pair);
                  if (pair.away) doubt(*pair.away);
