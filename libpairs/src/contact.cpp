@@ -315,9 +315,10 @@ double Contact::depth_above(const BoxMotion& box) const {
   };
   for (const Vec3& d : directions) look(d);
   // Down from the best one, in smaller and smaller steps.
+  Vec3 from = at;
   for (double step = 0.3; step > 1e-3;) {
     bool better = false;
-    const Vec3 from = at;
+    from = at;
     for (const Vec3& d : directions) better = look(from + step * d.normalized()) || better;
     if (!better) step /= 2;
   }

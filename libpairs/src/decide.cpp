@@ -110,6 +110,38 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
   return out;
 }
 
+/// Two surfaces, and what is sought of them.
+struct Sought {
+  std::size_t a, b;
+  std::unique_ptr<Search> search;
+  std::optional<AwayFromJoint> away;
+};
+
+DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const LinkSurface& a,
+                     const LinkSurface& b, Sought found) {
+  DecidedPair pair;
+  pair.a = a.link;
+  pair.b = b.link;
+  pair.relation = relation_of(robot, shaped, pair.a, pair.b);
+  const std::string unsure = unsure_of(robot, a, b);
+  if (found.search == nullptr) {
+    pair.why = unsure;
+    return pair;
+  }
+  pair.verdict = found.search->verdict();
+  pair.nearest = found.search->nearest();
+  pair.depth = found.search->depth();
+  pair.boxes = found.search->boxes();
+  pair.q = configuration(robot, *found.search);
+  if (pair.verdict != Verdict::Never) pair.away = std::move(found.away);
+  if (unsure.empty()) return pair;
+  doubt(pair);
+  if (pair.away) doubt(*pair.away);
+  pair.depth.upper = pair.depth.lower > 0 ? kInfinite : 0;
+  if (pair.verdict == Verdict::Open) pair.why = unsure;
+  return pair;
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -168,12 +200,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
     shaped[l] = robot.links[l].collision.empty() ? 0 : 1;
   for (const LinkSurface* s : surfaces) shaped[s->link] = 1;
 
-  struct Pair {
-    std::size_t a, b;
-    std::unique_ptr<Search> search;
-    std::optional<AwayFromJoint> away;
-  };
-  std::vector<Pair> pairs;
+  std::vector<Sought> pairs;
   for (std::size_t a = 0; a < surfaces.size(); ++a)
     for (std::size_t b = a + 1; b < surfaces.size(); ++b)
       pairs.push_back({a, b, nullptr, std::nullopt});
@@ -190,23 +217,23 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   const auto round = [&](const auto& work) {
     parallel_for(std::size_t{0}, left.size(),
                  [&](std::size_t i) {
-                   Pair& pair = pairs[left[i]];
+                   Sought& pair = pairs[left[i]];
                    work(pair);
                    if (pair.search->decided()) ++decided;
                  },
                  {.alone = true});
     std::erase_if(left, [&](std::size_t i) { return pairs[i].search->decided(); });
   };
-  round([&](Pair& pair) {
+  round([&](Sought& pair) {
     pair.search = std::make_unique<Search>(robot, surfaces[pair.a]->link, surfaces[pair.b]->link,
                                            shapes[pair.a], shapes[pair.b], options.samples);
     pair.search->begin(stop);
   });
-  round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
+  round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
   // Before pairs that are hard take all of the time.
   parallel_for(std::size_t{0}, pairs.size(),
                [&](std::size_t i) {
-                 Pair& pair = pairs[i];
+                 Sought& pair = pairs[i];
                  if (pair.search == nullptr || pair.search->verdict() == Verdict::Never) return;
                  const std::pair links(surfaces[pair.a]->link, surfaces[pair.b]->link);
                  if (relation_of(robot, shaped, links.first, links.second) == Relation::Adjacent)
@@ -217,8 +244,8 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   // More and more boxes, so that what is easy is decided before the time is up.
   for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
     const bool last = boxes >= options.most_boxes;
-    if (boxes > 500) round([&](Pair& pair) { pair.search->look_for_contacts(stop); });
-    round([&](Pair& pair) {
+    if (boxes > 500) round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
+    round([&](Sought& pair) {
       const std::size_t most = std::min(boxes, options.most_boxes);
       if (pair.search->boxes() / 2 < most)
         pair.search->go_on(most - pair.search->boxes() / 2, stop);
@@ -229,27 +256,8 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
   std::vector<DecidedPair> out(pairs.size());
   parallel_for(std::size_t{0}, pairs.size(),
                [&](std::size_t i) {
-                 auto& [a, b, search, away] = pairs[i];
-                 DecidedPair& pair = out[i];
-                 pair.a = surfaces[a]->link;
-                 pair.b = surfaces[b]->link;
-                 pair.relation = relation_of(robot, shaped, pair.a, pair.b);
-                 const std::string unsure = unsure_of(robot, *surfaces[a], *surfaces[b]);
-                 if (search == nullptr) {
-                   pair.why = unsure;
-                   return;
-                 }
-                 pair.verdict = search->verdict();
-                 pair.nearest = search->nearest();
-                 pair.depth = search->depth();
-                 pair.boxes = search->boxes();
-                 pair.q = configuration(robot, *search);
-                 if (pair.verdict != Verdict::Never) pair.away = std::move(away);
-                 if (unsure.empty()) return;
-                 doubt(pair);
-                 if (pair.away) doubt(*pair.away);
-                 pair.depth.upper = pair.depth.lower > 0 ? kInfinite : 0;
-                 if (pair.verdict == Verdict::Open) pair.why = unsure;
+                 out[i] = found_of(robot, shaped, *surfaces[pairs[i].a], *surfaces[pairs[i].b],
+                                   std::move(pairs[i]));
                },
                {.alone = true});
   return out;

@@ -69,7 +69,7 @@ Contact::Nearest Search::measure(const std::vector<double>& values, double gap,
                                  std::size_t most_steps) {
   const std::vector<double> still(values.size(), 0);
   motion_.set(values, still);
-  const Contact::Nearest out = inner_.nearest(motion_, gap, most_steps);
+  Contact::Nearest out = inner_.nearest(motion_, gap, most_steps);
   if (out.upper < nearest_) {
     nearest_ = out.upper;
     best_values_ = values;

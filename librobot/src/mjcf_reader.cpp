@@ -174,7 +174,7 @@ class Reader {
 
   /// The rotation that an element states in one of five ways.
   [[nodiscard]] Mat3 rotation(const XMLElement& e, const Attributes& a) const {
-    const auto unit = [&](Vec3 v, const char* what) {
+    const auto unit = [&](const Vec3& v, const char* what) {
       const double length = v.stableNorm();
       if (!(length > 1e-14) || !std::isfinite(length))
         fail(e, std::string(what) + " has no direction");
@@ -376,8 +376,9 @@ class Reader {
           from_euler({angle(i * turn.x()), angle(i * turn.y()), angle(i * turn.z())});
       std::string number = std::to_string(i);
       number.insert(0, digits_of_all - number.size(), '0');
+      if (sep != nullptr) number.insert(0, *sep);
       read_body(e, link, frame * Transform{linear, place}, class_of(e, class_here),
-                suffix + (sep != nullptr ? *sep : "") + number);
+                suffix + number);
       place += linear * offset;
     }
   }

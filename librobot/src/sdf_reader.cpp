@@ -220,7 +220,7 @@ class Reader {
     }
     add_link(kWorld, nullptr);
     std::vector<std::pair<std::uint32_t, std::string>> places;  // links whose joints are next
-    const auto add_joints = [&](std::uint32_t link, const std::string named) {  // links move
+    const auto add_joints = [&](std::uint32_t link, const std::string& named) {  // links move
       for (XMLElement* e : movers[named]) add_moved(link, named, *e);
     };
     add_joints(0, kWorld);
@@ -233,7 +233,8 @@ class Reader {
       read_link(add_below(0, link, fixed, e), *e);
     }
     for (std::size_t l = 1; l < out_.robot.links.size(); ++l)  // grows
-      if (has_element(l)) add_joints(static_cast<std::uint32_t>(l), out_.robot.links[l].name);
+      if (has_element(l))
+        add_joints(static_cast<std::uint32_t>(l), std::string(out_.robot.links[l].name));
     if (std::ranges::count_if(link_elements_, [](const auto* e) { return e != nullptr; }) !=
         std::ssize(order_["link"]))
       throw Error(ErrorCode::InvalidInput, name_ + ": joints of some links lead in a circle");
