@@ -159,7 +159,10 @@ verify::Inclusion decide(const geom::Mesh& mesh, const Bounds& bounds) {
       claim = necessary;
     } else {
       claim.answer = Answer::Undecided;
-      claim.reason = "the answer lies within what poses are rounded by";
+      claim.reason =
+          "bodies within its shapes do not hold it, and bodies round them do: cylinders without "
+          "balls "
+          "stand for prisms, and poses are rounded";
     }
   };
   between(inside.surface, outside.surface);
@@ -226,8 +229,9 @@ std::string sentence_of(const LinkAnswer& link) {
                                                 : "");
   if (in.surface.answer == Answer::Refuted && in.surface.witness)
     return std::to_string(in.surface.inner_triangles.size()) + " of its " +
-           std::to_string(link.triangles) + " triangles stick out of its " + bodies + ", by " +
-           number(in.surface.witness->depth) + " at " + text_of(in.surface.witness->point);
+           std::to_string(link.triangles) + " triangles stick out of its " + bodies +
+           ", one of them by " + number(in.surface.witness->depth) + " at " +
+           text_of(in.surface.witness->point);
   if (in.solid.answer == Answer::Refuted && in.solid.witness)
     return "every triangle is inside, but a void is left in the solid at " +
            text_of(in.solid.witness->point);

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 
+#include "common/shell_word.h"
 #include "results.h"
 
 namespace kaboum::tools {
@@ -81,8 +83,10 @@ std::string line_of(const JudgedPair& pair) {
 }
 
 std::string replay_of(const JudgedMatrix& judged, const JudgedPair& pair) {
-  if (pair.judgement != Judgement::Refuted) return {};
-  return "kaboum-scene make replay.json --robot robot=" + judged.robot +
+  // Scenes take URDFs.
+  const bool urdf = std::filesystem::path(judged.robot).extension() == ".urdf";
+  if (pair.judgement != Judgement::Refuted || !urdf) return {};
+  return "kaboum-scene make replay.json --force --robot " + shell_word("robot=" + judged.robot) +
          " && kaboum-check replay.json --configuration=" + pairs::text_of(pair.q);
 }
 

@@ -1,5 +1,6 @@
 // kaboum-pairs: which links of a robot can touch each other, decided by exact meshes.
 
+#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot/robot_file.h>
 
@@ -97,6 +98,13 @@ int run(const PairsOptions& o) {
   if (matrix) {
     judged = tools::JudgedMatrix{o.robot, o.judge, std::move(*matrix), {}};
     judged->pairs = pairs::judge(judged->matrix, file.robot, pairs);
+    const std::vector<pairs::MatrixFault>& faults = judged->matrix.faults;
+    if (judged->pairs.empty() && !faults.empty())
+      throw Error(ErrorCode::InvalidInput,
+                  o.judge +
+                      ": none of its statements is about a pair of this robot's links; is it "
+                      "another robot's? line " +
+                      std::to_string(faults.front().line) + ": " + faults.front().text);
     report["matrix"] = tools::matrix_json(*judged);
   }
   if (o.json) {

@@ -36,15 +36,6 @@ void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerd
   log(quiet, in_words(verdicts));
 }
 
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
 RobotCheck check_of(const std::string& original, const std::string& result,
                     const RobotOptions& options, const certify::PreparationOptions& preparation,
                     const std::optional<Length>& epsilon,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/shell_word.h"
 #include "options.h"
 
 /// What is said with the verdict on a robot that was made: exit code, report, and the command that
@@ -22,9 +23,6 @@ Json report_of(const certify::LinkVerdict& link);
 /// One line for each link that is not held, and one for all.
 void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerdict>& verdicts,
                   bool quiet);
-
-/// A word as the shell reads it.
-std::string shell_word(const std::string& word);
 
 /// The command that decides it from the files alone, and what to expect of it.
 struct RobotCheck {
