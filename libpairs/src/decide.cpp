@@ -110,6 +110,24 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
   return out;
 }
 
+/// Those that have something, by link.
+/// @throws Error{InvalidArgument} when a link is not the robot's, or has two.
+std::vector<const LinkSurface*> in_order(const robot::Robot& robot,
+                                         const std::vector<LinkSurface>& given) {
+  std::vector<const LinkSurface*> surfaces;
+  for (const LinkSurface& surface : given) {
+    if (surface.link >= robot.links.size())
+      throw Error(ErrorCode::InvalidArgument, "a surface of a link that the robot does not have");
+    if (!surface.outer.empty() || !surface.unsure.empty()) surfaces.push_back(&surface);
+  }
+  std::ranges::sort(surfaces, {}, [](const LinkSurface* s) { return s->link; });
+  for (std::size_t i = 1; i < surfaces.size(); ++i)
+    if (surfaces[i - 1]->link == surfaces[i]->link)
+      throw Error(ErrorCode::InvalidArgument,
+                  "two surfaces of link '" + robot.links[surfaces[i]->link].name + "'");
+  return surfaces;
+}
+
 /// Two surfaces, and what is sought of them.
 struct Sought {
   std::size_t a, b;
@@ -178,18 +196,7 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const DecideOptions& options) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  std::vector<const LinkSurface*> surfaces;
-  for (const LinkSurface& surface : given) {
-    if (surface.link >= robot.links.size())
-      throw Error(ErrorCode::InvalidArgument, "a surface of a link that the robot does not have");
-    if (!surface.outer.empty() || !surface.unsure.empty()) surfaces.push_back(&surface);
-  }
-  std::ranges::sort(surfaces, {}, [](const LinkSurface* s) { return s->link; });
-  for (std::size_t i = 1; i < surfaces.size(); ++i)
-    if (surfaces[i - 1]->link == surfaces[i]->link)
-      throw Error(ErrorCode::InvalidArgument,
-                  "two surfaces of link '" + robot.links[surfaces[i]->link].name + "'");
-
+  const std::vector<const LinkSurface*> surfaces = in_order(robot, given);
   std::vector<Shapes> shapes(surfaces.size());
   parallel_for(
       std::size_t{0}, surfaces.size(),

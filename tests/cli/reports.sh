@@ -47,8 +47,9 @@ run state "$BIN/kaboum-check" cell.json --distance
 run motion "$BIN/kaboum-check" cell.json --path path.csv
 run move "$BIN/kaboum-move" cell.json --from 0 --to 1 -o moved.csv --trajectory samples.csv
 expect 1 '' "$BIN/bound-verify" mesh --outer wide.off box.off --report reports/refuted.json
-printf '<robot name="arm">\n<disable_collisions link1="no" link2="such"/>\n</robot>\n' >arm.srdf
-sed 's#<link name="tool"/>#<link name="tool"><collision><geometry><mesh filename="wide.off"/></geometry></collision></link>#' arm.urdf >two.urdf
+printf '<robot name="arm">\n<disable_collisions link1="no" link2="such"/>\n<disable_collisions link1="base" link2="far"/>\n</robot>\n' >arm.srdf
+sed 's#<link name="tool"/>#<link name="tool"><collision><geometry><mesh filename="wide.off"/></geometry></collision></link>#' arm.urdf |
+  sed 's#</robot>#<link name="far"><collision><geometry><box size="1 1 1"/></geometry></collision></link><joint name="f" type="fixed"><parent link="tool"/><child link="far"/><origin xyz="0 0 100"/></joint></robot>#' >two.urdf
 run links "$BIN/kaboum-pairs" two.urdf --judge arm.srdf
 run ik "$BIN/kaboum-ik" arm.urdf --pose-of 0.5
 cat >domain.pddl <<'END'
