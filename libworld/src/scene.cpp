@@ -134,7 +134,7 @@ class Parser : detail::SceneRobot {
         fail(*rank, "a rank from 0 to 100 is expected: the lowest is tried first");
       out.rank = static_cast<unsigned>(value);
     }
-    require_tool(need(g, "name"), is_family(out));
+    if (is_family(out)) require_tool(need(g, "name"));
     world_.objects.back().grasps.push_back(std::move(out));
   }
 
@@ -217,16 +217,15 @@ class Parser : detail::SceneRobot {
     return out.feature;
   }
 
-  /// Refuses a grasp that is called after a tool that no robot has: it would never be tried. Robots
-  /// without tools at all may still have a single one attached by it.
-  void require_tool(const Located& name, bool family) const {
+  /// Refuses a family that is called after a tool that no robot has: it would never be tried. Single
+  /// grasps may be those of attachments.
+  void require_tool(const Located& name) const {
     const std::size_t slash = name.text.find('/');
     if (slash == std::string::npos || world_.robots.empty()) return;
     const std::string tool = name.text.substr(0, slash);
     std::vector<std::string> tools;
     for (const RobotModel& robot : world_.robots)
       for (const ToolFrame& frame : robot.tools) tools.push_back(frame.name);
-    if (!family && tools.empty()) return;
     if (std::ranges::find(tools, tool) == tools.end())
       fail(name, "no robot has the tool '" + tool + "', which alone may use this grasp" +
                      did_you_mean(tool, tools));
