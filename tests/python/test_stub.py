@@ -147,7 +147,7 @@ def test_every_front_end_has_every_option(function):
     ({"max_bodies": 2.0}, "max_bodies must be an int"),
     ({"max_bodies": True}, "max_bodies must be an int"),
     ({"simplify": float("nan")}, "simplify must be a number from 0 to 1"),
-    ({"epsilon": "1mm"}, "epsilon must be a positive number"),
+    ({"epsilon": "1mn"}, "epsilon must be a positive number"),
     ({"epsilon": -1}, "epsilon must be a positive number"),
     ({"effort": "fastt"}, "did you mean 'fast'"),
     ({"drop_sheets": 1}, "drop_sheets must be True or False"),
