@@ -15,8 +15,6 @@
 namespace kaboum::tools {
 namespace {
 
-using verify::Answer;
-
 Json point_json(const geom::Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 Json claim_json(const verify::Claim& claim) {
