@@ -217,8 +217,8 @@ class Parser : detail::SceneRobot {
     return out.feature;
   }
 
-  /// Refuses a family that is called after a tool that no robot has: it would never be tried. Single
-  /// grasps may be those of attachments.
+  /// Refuses a family that is called after a tool that no robot has: it would never be tried.
+  /// Single grasps may be those of attachments.
   void require_tool(const Located& name) const {
     const std::size_t slash = name.text.find('/');
     if (slash == std::string::npos || world_.robots.empty()) return;
