@@ -16,9 +16,9 @@
 
 #include "common/cli.h"
 
-/// What a query of each kind of body costs: pairs of balls, capsules, boxes and polytopes near
-/// contact, and robots in scenes at equal epsilon, whose links are held by polytopes, capsules,
-/// boxes or whichever is cheapest.
+/// Times of queries by kind of body: pairs of balls, capsules, boxes and polytopes near contact,
+/// and robots in scenes at equal epsilon, whose links are held by polytopes, capsules, boxes or
+/// whichever is cheapest.
 ///
 ///   kinds-benchmark                        the table of pairs
 ///   kinds-benchmark EPSILON ROBOT...       robots (URDF) among boxes; epsilon in metres or percent

@@ -2,7 +2,6 @@
 // them. docs/algorithms/sphere-covers.md.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
-#include <kaboum/base/random.h>
 #include <kaboum/bcd/balls.h>
 #include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/float32.h>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "ball_relaxation.h"
+#include "cover_points.h"
 #include "parallel_body.h"
 #include "set_cover.h"
 
@@ -38,9 +38,6 @@ constexpr int kPatchRounds = 150;                              ///< of points ad
 constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 600;  ///< while balls move, and after it
 constexpr int kPieceCuts = 24;                                 ///< of a triangle
 constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
-/// Points of the inside that are looked at, of which every so manieth is to be held at first.
-constexpr std::size_t kInnerPoints = 20'000, kInnerShown = 29;
-constexpr std::size_t kMostVertices = 3'000;  ///< of the mesh, that are points to be held
 
 /// Amounts of work of a search.
 struct SearchEffort {
@@ -72,7 +69,11 @@ class BallSearch {
         box_(geom::bounding_box(mesh)),
         relaxation_([this](const Vec3& c) { return body_->radius_about(geom::to_float32(c)); },
                     points_, kPointSlack, 1) {
-    sample();
+    CoverPoints points =
+        sample_cover_points(mesh, winding_, options.epsilon, effort_.points, kMostPoints);
+    surface_ = std::move(points.surface);
+    points_ = std::move(points.first);
+    inner_ = std::move(points.inside);
     points_.insert(points_.end(), options.held.begin(), options.held.end());
     inner_.insert(inner_.end(), options.held.begin(), options.held.end());
   }
@@ -135,68 +136,6 @@ class BallSearch {
   }
 
   // --- points and candidates ---
-
-  struct SurfacePoint {
-    Vec3 at, inwards;
-  };
-
-  /// Points of the surface, evenly by area; vertices; points of the inside, of a grid.
-  void sample() {
-    std::vector<double> sums;
-    double area = 0;
-    for (const auto& [i, j, k] : mesh_.triangles) {
-      area += 0.5 * (mesh_.vertices[j] - mesh_.vertices[i])
-                        .cross(mesh_.vertices[k] - mesh_.vertices[i])
-                        .norm();
-      sums.push_back(area);
-    }
-    std::size_t count = effort_.points;
-    if (options_.epsilon) {
-      const double squares = area / (*options_.epsilon * *options_.epsilon);
-      count = std::clamp(static_cast<std::size_t>(std::min(4 * squares, 1e9)), count, kMostPoints);
-    }
-    const double step = area / static_cast<double>(count);
-    double next = 0.5 * step;
-    for (std::size_t t = 0; t < sums.size(); ++t) {
-      const auto& [i, j, k] = mesh_.triangles[t];
-      const Vec3 &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
-      const Vec3 normal = (b - a).cross(c - a);
-      for (; next < sums[t]; next += step) {
-        double u = random_.between(0, 1), v = random_.between(0, 1);
-        if (u + v > 1) {
-          u = 1 - u;
-          v = 1 - v;
-        }
-        surface_.push_back({a + u * (b - a) + v * (c - a), -normal.normalized()});
-      }
-    }
-    for (const SurfacePoint& p : surface_) points_.push_back(p.at);
-    const std::size_t stride = mesh_.vertices.size() / kMostVertices + 1;
-    for (std::size_t v = 0; v < mesh_.vertices.size(); v += stride)
-      points_.push_back(mesh_.vertices[v]);
-    sample_inside();
-  }
-
-  void sample_inside() {
-    const Vec3 size = box_.max - box_.min;
-    const double volume = size.prod();
-    if (!(volume > 0)) return;
-    const double step = std::cbrt(volume / static_cast<double>(kInnerPoints));
-    for (double x = box_.min.x() + 0.5 * step; x < box_.max.x(); x += step)
-      for (double y = box_.min.y() + 0.5 * step; y < box_.max.y(); y += step)
-        for (double z = box_.min.z() + 0.5 * step; z < box_.max.z(); z += step)
-          inner_.emplace_back(x, y, z);
-    std::vector<char> is_inside(inner_.size());
-    kaboum::parallel_for(std::size_t{0}, inner_.size(), [&](std::size_t i) {
-      const std::optional<int> winding = winding_(inner_[i]);
-      is_inside[i] = winding && *winding >= 1;
-    });
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < inner_.size(); ++i)
-      if (is_inside[i] != 0) inner_[count++] = inner_[i];
-    inner_.resize(count);
-    for (std::size_t i = 0; i < inner_.size(); i += kInnerShown) points_.push_back(inner_[i]);
-  }
 
   /// Two balls that hold a point of the surface and have their centres inwards of it: the one whose
   /// centre is farthest from it, and the largest one.
@@ -728,7 +667,6 @@ class BallSearch {
   geom::DistanceQuery query_;
   geom::WindingNumber winding_;
   geom::Box3 box_;
-  Random random_{1};
   std::unique_ptr<ParallelBody> body_;  ///< what balls may not leave
   std::vector<SurfacePoint> surface_;
   std::vector<Vec3> points_;  ///< to be held

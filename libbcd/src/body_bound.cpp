@@ -1,4 +1,4 @@
-// How many bodies are certainly too few: of more points than bodies, two are in the same one.
+// A number of bodies that is certainly too small: of more points than bodies, two are in one.
 // docs/algorithms/convex-decomposition.md, "More bodies".
 
 #include "body_bound.h"
@@ -16,7 +16,7 @@ namespace {
 
 /// Corners looked at: so many times the bodies, between these.
 constexpr std::size_t kCornersPerBody = 6, kFewestCorners = 64, kMostCorners = 320;
-/// Where the way between two corners is looked at: the middle first, which is the farthest mostly.
+/// Shares of the way between two corners that are looked at: the middle first, mostly the farthest.
 constexpr std::array<double, 5> kOnTheWay{0.5, 0.3, 0.7, 0.15, 0.85};
 /// Corners that the search begins with, in turn.
 constexpr std::size_t kStarts = 12;
@@ -95,7 +95,7 @@ class Apart {
   [[nodiscard]] bool seem_apart(std::size_t i, std::size_t j) const {
     return guess_[i * corners_.size() + j] != 0;
   }
-  /// Whether a point between two corners is far.
+  /// True if one of the points looked at on the way between two corners is far from the solid.
   template <class Far>
   [[nodiscard]] bool any_on_the_way(std::size_t i, std::size_t j, Far&& far) const {
     const Vec3 &a = corners_[i], &b = corners_[j];

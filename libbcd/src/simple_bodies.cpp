@@ -2,7 +2,6 @@
 // search, fewer by one in place of two. docs/algorithms/capsules-and-boxes.md.
 #include <kaboum/base/error.h>
 #include <kaboum/base/parallel.h>
-#include <kaboum/base/random.h>
 #include <kaboum/bcd/simple_bodies.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/float32.h>
@@ -16,6 +15,7 @@
 #include <numeric>
 #include <utility>
 
+#include "cover_points.h"
 #include "fitting.h"
 #include "principal_box.h"
 #include "set_cover.h"
@@ -31,8 +31,7 @@ constexpr double kLeft = 5e-3, kTriangleSpare = 2e-3, kPointSpare = 0.02, kCaps 
 constexpr int kPatches = 60;               ///< rounds of points added where no body is
 constexpr std::size_t kAddedPoints = 200;  ///< in a round
 constexpr int kTriangleCuts = 24;          ///< of a triangle
-constexpr std::size_t kMostSurface = 6'000, kMostCorners = 3'000, kInside = 20'000;
-constexpr std::size_t kInsideShown = 29;  ///< every so manieth is to be held at first
+constexpr std::size_t kMostSurface = 6'000;
 constexpr std::size_t kMostFrames = 4;
 
 struct SimpleBody {
@@ -88,7 +87,11 @@ class SimpleBodySearch {
         box_(geom::bounding_box(mesh)) {
     const double largest = std::max(box_.min.cwiseAbs().maxCoeff(), box_.max.cwiseAbs().maxCoeff());
     spacing_ = geom::float32_spacing(largest + box_.diagonal());
-    sample();
+    CoverPoints points =
+        sample_cover_points(mesh, winding_, options.epsilon, effort_.points, kMostSurface);
+    surface_ = std::move(points.surface);
+    points_ = std::move(points.first);
+    inner_ = std::move(points.inside);
     points_.insert(points_.end(), options.held.begin(), options.held.end());
     find_frames();
   }
@@ -121,71 +124,8 @@ class SimpleBodySearch {
  private:
   static constexpr std::size_t kAny = kMostSimpleBodies;
 
-  struct SurfacePoint {
-    Vec3 at, inwards;
-  };
-
   void show(const char* stage, double share) const {
     if (options_.progress) options_.progress({stage, share});
-  }
-
-  // --- points ---
-
-  /// Points of the surface, evenly by area; vertices; points of the inside, of a grid.
-  void sample() {
-    std::vector<double> sums;
-    double area = 0;
-    for (const auto& [i, j, k] : mesh_.triangles) {
-      area += 0.5 * (mesh_.vertices[j] - mesh_.vertices[i])
-                        .cross(mesh_.vertices[k] - mesh_.vertices[i])
-                        .norm();
-      sums.push_back(area);
-    }
-    std::size_t count = effort_.points;
-    if (options_.epsilon) {
-      const double squares = area / (*options_.epsilon * *options_.epsilon);
-      count = std::clamp(static_cast<std::size_t>(std::min(4 * squares, 1e9)), count, kMostSurface);
-    }
-    const double step = area / static_cast<double>(count);
-    double next = 0.5 * step;
-    for (std::size_t t = 0; t < sums.size(); ++t) {
-      const auto& [i, j, k] = mesh_.triangles[t];
-      const Vec3 &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
-      const Vec3 normal = (b - a).cross(c - a);
-      for (; next < sums[t]; next += step) {
-        double u = random_.between(0, 1), v = random_.between(0, 1);
-        if (u + v > 1) {
-          u = 1 - u;
-          v = 1 - v;
-        }
-        surface_.push_back({a + u * (b - a) + v * (c - a), -normal.normalized()});
-      }
-    }
-    for (const SurfacePoint& p : surface_) points_.push_back(p.at);
-    const std::size_t stride = mesh_.vertices.size() / kMostCorners + 1;
-    for (std::size_t v = 0; v < mesh_.vertices.size(); v += stride)
-      points_.push_back(mesh_.vertices[v]);
-    sample_inside();
-  }
-
-  void sample_inside() {
-    const double volume = (box_.max - box_.min).prod();
-    if (!(volume > 0)) return;
-    const double step = std::cbrt(volume / static_cast<double>(kInside));
-    for (double x = box_.min.x() + 0.5 * step; x < box_.max.x(); x += step)
-      for (double y = box_.min.y() + 0.5 * step; y < box_.max.y(); y += step)
-        for (double z = box_.min.z() + 0.5 * step; z < box_.max.z(); z += step)
-          inner_.emplace_back(x, y, z);
-    std::vector<char> is_inside(inner_.size());
-    kaboum::parallel_for(std::size_t{0}, inner_.size(), [&](std::size_t i) {
-      const std::optional<int> winding = winding_(inner_[i]);
-      is_inside[i] = winding && *winding >= 1;
-    });
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < inner_.size(); ++i)
-      if (is_inside[i] != 0) inner_[count++] = inner_[i];
-    inner_.resize(count);
-    for (std::size_t i = 0; i < inner_.size(); i += kInsideShown) points_.push_back(inner_[i]);
   }
 
   /// Axes that most of the surface is square to: of each frame the first normal has most area of
@@ -921,7 +861,6 @@ class SimpleBodySearch {
   geom::DistanceQuery query_;
   geom::WindingNumber winding_;
   geom::Box3 box_;
-  Random random_{1};
   double spacing_ = 0;  ///< of float32 numbers [length]
   double epsilon_ = 0, spare_ = 0;
   std::unique_ptr<ParallelBody> body_;  ///< what bodies may not leave

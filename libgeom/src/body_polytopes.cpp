@@ -72,8 +72,7 @@ SpherePoints sphere_points(int level) {
   return sphere;
 }
 
-Mesh inscribed_polytope(const ConvexBody& body, const SpherePoints& sphere,
-                        std::span<const Vec3> besides) {
+Mesh inscribed_polytope(const ConvexBody& body, const SpherePoints& sphere) {
   if (body.radius == 0) return body.core;
   const Mesh core = bare(body.core);
   std::vector<Vec3> points = sums(core, body.radius, sphere);
@@ -83,7 +82,6 @@ Mesh inscribed_polytope(const ConvexBody& body, const SpherePoints& sphere,
     for (const std::uint32_t v : {a, b, c})
       points.emplace_back(core.vertices[v] + body.radius * (1 - 1e-15) / n.norm() * n);
   }
-  points.insert(points.end(), besides.begin(), besides.end());
   return convex_hull(points).value_or(Mesh{});
 }
 

@@ -2,27 +2,26 @@
 #include <kaboum/verify/ball_cover.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <queue>
 
-#include "body_bounds.h"
 #include "cell_sample.h"
 #include "nearest.h"
 #include "number.h"
-#include "parallel.h"
+#include "union_cover.h"
 
 namespace kaboum::verify {
 namespace {
 
-constexpr int kTriangleCuts = 50;  ///< weights remain multiples of 2^-52
-constexpr int kBoxCuts = 40;
-constexpr std::size_t kPartsOfOne = std::size_t{1} << 20U;  ///< of one triangle
-constexpr std::size_t kTrianglesAtOnce = 4096;
+using union_cover::Corner;
+using union_cover::Corners;
+using union_cover::Extent;
+using union_cover::kSqrt3Up;
+using union_cover::largest_of;
+
 constexpr int kTurns = 12;               ///< of a plane that is to separate a box
 constexpr double kUnderflow = 0x1p-500;  ///< more than what squares lose, as a length
-constexpr double kSqrt3Up = 1.7320508076;
 
 struct Ball {
   Vec3 center;
@@ -37,23 +36,9 @@ std::vector<Ball> balls_of(const geom::ConvexSet& set) {
   return out;
 }
 
-double largest_of(const Vec3& p) { return p.cwiseAbs().maxCoeff(); }
-
 /// Error of a distance between points that were computed from numbers up to `largest` by a dozen
 /// roundings. [length]
 double slack_of(double largest) { return 64 * kUnit * largest + kUnderflow; }
-
-/// A point of a triangle, by weights that are multiples of 2^-52 and sum up to 1.
-struct Corner {
-  std::array<double, 3> weight;
-  Vec3 at;  ///< rounded
-};
-
-using Corners = std::array<Vec3, 3>;
-
-Corner corner_of(const Corners& t, const std::array<double, 3>& weight) {
-  return {weight, weight[0] * t[0] + weight[1] * t[1] + weight[2] * t[2]};
-}
 
 /// |Σ wᵢ (vᵢ − c)|² ≤ r².
 bool exactly_within(const Ball& ball, const Corners& t, const Corner& p) {
@@ -88,388 +73,102 @@ bool is_within(const Ball& ball, const Vec3& p) {
   return sign_of(r * r - dot(d, d)) != Sign::Negative;
 }
 
-// --- triangles -------------------------------------------------------------------------------
-
-struct Part {
-  std::array<Corner, 3> corner;
-  int cuts = 0;
-  std::vector<std::uint32_t> near;  ///< all balls that meet it are among these
-};
-
-struct TriangleAnswer {
-  Answer answer = Answer::Verified;
-  std::size_t parts = 0;
-  Vec3 at = Vec3::Zero();  ///< refuted: in no ball, rounded
-  bool is_corner = false;
-};
-
-class TriangleCover {
+/// What decides unions of balls.
+class Balls {
  public:
-  TriangleCover(const Corners& triangle, const std::vector<Ball>& balls)
-      : t_(triangle), balls_(balls) {
-    for (const Vec3& v : t_) largest_ = std::max(largest_, largest_of(v));
+  static constexpr const char* kOne = "ball";
+  static constexpr const char* kMany = "balls";
+
+  explicit Balls(const geom::ConvexSet& set) : balls_(balls_of(set)) {}
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(balls_.size()); }
+  [[nodiscard]] bool holds(std::uint32_t b, const Corners& t, const Corner& c,
+                           double largest) const {
+    return is_within(balls_[b], t, c, largest);
+  }
+  [[nodiscard]] bool holds(std::uint32_t b, const Vec3& p) const { return is_within(balls_[b], p); }
+
+  [[nodiscard]] bool may_meet(std::uint32_t b, const Extent& extent, double largest) const {
+    const Ball& ball = balls_[b];
+    const double slack = 4 * slack_of(largest + largest_of(ball.center) + ball.radius),
+                 reach = ball.radius + slack;
+    for (int k = 0; k < 3; ++k)
+      if (ball.center[k] + reach < extent.box.min[k] || ball.center[k] - reach > extent.box.max[k])
+        return false;
+    // Not: keeps all where numbers overflow.
+    return !((extent.middle - ball.center).norm() - extent.reach - slack > ball.radius);
   }
 
-  TriangleAnswer decide(std::vector<std::uint32_t> near) {
-    Part all{{corner_of(t_, {1, 0, 0}), corner_of(t_, {0, 1, 0}), corner_of(t_, {0, 0, 1})},
-             0,
-             std::move(near)};
-    for (const Corner& c : all.corner)
-      if (!is_covered(c, all.near)) return refuted(c, true);
-    std::vector<Part> open{std::move(all)};
-    while (!open.empty()) {
-      Part part = std::move(open.back());
-      open.pop_back();
-      ++out_.parts;
-      if (in_one_ball(part)) continue;
-      if (part.cuts >= kTriangleCuts || out_.parts >= kPartsOfOne) {
-        out_.answer = Answer::Undecided;
-        out_.at = part.corner[0].at;
-        return out_;
-      }
-      if (const std::optional<Corner> outside = halve(std::move(part), open))
-        return refuted(*outside, false);
-    }
-    return out_;
+  /// Powers instead of distances: their voids have their farthest points where theirs is least.
+  [[nodiscard]] bool is_settled(union_cover::Cell& cell) const {
+    keep_active(cell);
+    return in_one_ball(cell) || cell.active.size() < 4 || is_separated(cell);
   }
 
  private:
-  TriangleAnswer refuted(const Corner& c, bool is_corner) {
-    out_.answer = Answer::Refuted;
-    out_.at = c.at;
-    out_.is_corner = is_corner;
-    return out_;
-  }
-
-  [[nodiscard]] bool is_covered(const Corner& c, const std::vector<std::uint32_t>& near) const {
-    return std::ranges::any_of(
-        near, [&](std::uint32_t b) { return is_within(balls_[b], t_, c, largest_); });
-  }
-
-  [[nodiscard]] bool in_one_ball(const Part& part) const {
-    return std::ranges::any_of(part.near, [&](std::uint32_t b) {
-      return std::ranges::all_of(
-          part.corner, [&](const Corner& c) { return is_within(balls_[b], t_, c, largest_); });
-    });
-  }
-
-  /// Cuts the longest side at its middle. @return the middle, where it is in no ball
-  [[nodiscard]] std::optional<Corner> halve(Part part, std::vector<Part>& open) const {
-    std::size_t longest = 0;
-    double most = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double length = (part.corner[(k + 1) % 3].at - part.corner[k].at).squaredNorm();
-      if (!(length > most)) continue;
-      most = length;
-      longest = k;
-    }
-    const std::size_t next = (longest + 1) % 3;
-    std::array<double, 3> weight;
-    for (std::size_t i = 0; i < 3; ++i)
-      weight[i] = 0.5 * (part.corner[longest].weight[i] + part.corner[next].weight[i]);
-    const Corner middle = corner_of(t_, weight);
-    if (!is_covered(middle, part.near)) return middle;
-    for (const std::size_t replaced : {longest, next}) {
-      Part half;
-      half.corner = part.corner;
-      half.corner[replaced] = middle;
-      half.cuts = part.cuts + 1;
-      keep_near(half, part.near);
-      open.push_back(std::move(half));
-    }
-    return std::nullopt;
-  }
-
-  void keep_near(Part& part, const std::vector<std::uint32_t>& known) const {
-    const Vec3 middle = (part.corner[0].at + part.corner[1].at + part.corner[2].at) / 3;
-    double reach = 0;
-    for (const Corner& c : part.corner) reach = std::max(reach, (c.at - middle).norm());
-    for (const std::uint32_t b : known) {
-      const Ball& ball = balls_[b];
-      const double slack = slack_of(largest_ + largest_of(ball.center) + ball.radius);
-      // Not: keeps all where numbers overflow.
-      if (!((middle - ball.center).norm() - reach - 4 * slack > ball.radius))
-        part.near.push_back(b);
-    }
-  }
-
-  const Corners& t_;
-  const std::vector<Ball>& balls_;
-  double largest_ = 0;
-  TriangleAnswer out_;
-};
-
-std::vector<std::uint32_t> balls_near(const geom::Box3& box, const std::vector<Ball>& balls) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t b = 0; b < balls.size(); ++b) {
-    const Ball& ball = balls[b];
-    const double reach = ball.radius + slack_of(largest_of(ball.center) + ball.radius);
-    bool apart = false;
-    for (int k = 0; k < 3; ++k)
-      apart = apart || ball.center[k] + reach < box.min[k] || ball.center[k] - reach > box.max[k];
-    if (!apart) out.push_back(b);
-  }
-  return out;
-}
-
-/// Of all triangles; those after the limit was reached are Undefined.
-std::vector<TriangleAnswer> decide_triangles(const geom::Mesh& mesh, const std::vector<Ball>& balls,
-                                             std::size_t most) {
-  std::vector<TriangleAnswer> out(mesh.triangles.size());
-  for (TriangleAnswer& answer : out) answer.answer = Answer::Undefined;
-  std::size_t parts = 0;
-  for (std::size_t i = 0; i < out.size() && parts <= most; i += kTrianglesAtOnce) {
-    const std::size_t end = std::min(out.size(), i + kTrianglesAtOnce);
-    parallel_for(i, end, [&](std::size_t t) {
-      const geom::Triangle& v = mesh.triangles[t];
-      const Corners corners{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
-      geom::Box3 box;
-      for (const Vec3& p : corners) box.extend(p);
-      out[t] = TriangleCover(corners, balls).decide(balls_near(box, balls));
-    });
-    for (std::size_t t = i; t < end; ++t) parts += out[t].parts;
-  }
-  return out;
-}
-
-// --- the inside ------------------------------------------------------------------------------
-
-struct Box {
-  Vec3 center;
-  double half;
-  int cuts;
-  std::vector<std::uint32_t> active;  ///< all balls of least power somewhere in it are among these
-};
-
-/// Search of a point of the solid in no ball, all triangles being in balls.
-class VoidSearch {
- public:
-  VoidSearch(const geom::Mesh& mesh, const MeshPair& meshes, const std::vector<Ball>& balls)
-      : meshes_(meshes),
-        nearest_(meshes, kOutside),
-        balls_(balls),
-        box_(geom::bounding_box(mesh)) {}
-
-  Claim decide(std::size_t most) {
-    Claim claim;
-    claim.answer = Answer::Verified;
-    std::vector<Box> open{root()};
-    std::size_t seen = 0;
-    std::optional<Vec3> left_open;
-    while (!open.empty()) {
-      Box box = std::move(open.back());
-      open.pop_back();
-      if (++seen > most || !std::isfinite(box.half)) {
-        left_open = box.center;
-        break;
-      }
-      if (is_apart(box)) continue;
-      keep_active(box);
-      if (in_one_ball(box) || box.active.size() < 4 || is_separated(box)) continue;
-      if (is_free(box.center, box.active)) {
-        const std::optional<int> winding =
-            winding_at(meshes_, kOutside, box.center * meshes_.scale());
-        if (winding && *winding >= 1) return refuted(box.center);
-        if (winding && is_without_triangles(box)) continue;
-      }
-      if (box.cuts >= deepest_) {
-        left_open = box.center;
-        continue;
-      }
-      for (int i = 0; i < 8; ++i) {
-        const Vec3 to(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-        open.push_back(
-            {box.center + 0.5 * box.half * to, 0.5 * box.half, box.cuts + 1, box.active});
-      }
-    }
-    if (left_open) {
-      claim.answer = Answer::Undecided;
-      claim.reason = "the balls leave too little slack, or too many boxes are needed, inside";
-      claim.witness = Witness{*left_open, 0, false};
-    }
-    return claim;
-  }
-
- private:
-  /// Corners and middles of all boxes are multiples of a power of two that doubles hold.
-  Box root() {
-    const double extent = (box_.max - box_.min).maxCoeff();
-    int exponent = 0;
-    std::frexp(extent, &exponent);
-    const double size = std::ldexp(1.0, exponent + 1), step = std::ldexp(size, -8);
-    Vec3 low = box_.min;
-    for (int k = 0; k < 3; ++k) low[k] = step * std::floor(low[k] / step);
-    const double most = std::max(largest_of(box_.min), largest_of(box_.max)) + 2 * size;
-    int largest = 0;
-    std::frexp(most / size, &largest);
-    deepest_ = std::max(0, std::min(kBoxCuts, 50 - largest));
-    Box out{low + Vec3::Constant(0.5 * size), 0.5 * size, 0, {}};
-    for (std::uint32_t b = 0; b < balls_.size(); ++b) out.active.push_back(b);
-    return out;
-  }
-
-  [[nodiscard]] bool is_apart(const Box& box) const {
-    for (int k = 0; k < 3; ++k)
-      if (box.center[k] + box.half < box_.min[k] || box.center[k] - box.half > box_.max[k])
-        return true;
-    return false;
-  }
-
   /// Leaves out balls that have a larger power than another one all over the box: the difference is
   /// linear.
-  void keep_active(Box& box) const {
+  void keep_active(union_cover::Cell& cell) const {
     const auto power = [&](const Ball& ball) {
-      return (box.center - ball.center).squaredNorm() - ball.radius * ball.radius;
+      return (cell.center - ball.center).squaredNorm() - ball.radius * ball.radius;
     };
     const auto terms = [&](const Ball& ball) {
-      return (box.center - ball.center).squaredNorm() + ball.radius * ball.radius;
+      return (cell.center - ball.center).squaredNorm() + ball.radius * ball.radius;
     };
-    const auto least =
-        std::ranges::min_element(box.active, {}, [&](std::uint32_t b) { return power(balls_[b]); });
+    const auto least = std::ranges::min_element(cell.active, {},
+                                                [&](std::uint32_t b) { return power(balls_[b]); });
     const Ball& best = balls_[*least];
-    const double far = largest_of(box.center) + box.half;
+    const double far = largest_of(cell.center) + cell.half;
     std::vector<std::uint32_t> kept;
-    for (const std::uint32_t b : box.active) {
+    for (const std::uint32_t b : cell.active) {
       const Ball& ball = balls_[b];
-      const double change = 2 * box.half * (ball.center - best.center).cwiseAbs().sum();
+      const double change = 2 * cell.half * (ball.center - best.center).cwiseAbs().sum();
       const double largest = far + largest_of(ball.center) + largest_of(best.center);
       const double error =
           64 * kUnit * (terms(ball) + terms(best) + change + largest * largest) + kUnderflow;
       if (!(power(ball) - power(best) - change > error)) kept.push_back(b);
     }
-    box.active = std::move(kept);
+    cell.active = std::move(kept);
   }
 
-  [[nodiscard]] bool in_one_ball(const Box& box) const {
-    return std::ranges::any_of(box.active, [&](std::uint32_t b) {
+  [[nodiscard]] bool in_one_ball(const union_cover::Cell& cell) const {
+    return std::ranges::any_of(cell.active, [&](std::uint32_t b) {
       Vec3 corner;  // the farthest
       for (int k = 0; k < 3; ++k)
-        corner[k] = box.center[k] + (balls_[b].center[k] > box.center[k] ? -box.half : box.half);
-      return is_within(balls_[b], corner);
+        corner[k] =
+            cell.center[k] + (balls_[b].center[k] > cell.center[k] ? -cell.half : cell.half);
+      return holds(b, corner);
     });
   }
 
   /// A plane has the box on one side and the centres of all its balls on the other.
-  [[nodiscard]] bool is_separated(const Box& box) const {
+  [[nodiscard]] bool is_separated(const union_cover::Cell& cell) const {
     Vec3 normal = Vec3::Zero();
-    for (const std::uint32_t b : box.active) normal += balls_[b].center - box.center;
+    for (const std::uint32_t b : cell.active) normal += balls_[b].center - cell.center;
     for (int turn = 0; turn < kTurns; ++turn) {
       const double length = normal.norm();
       if (!(length > 0) || !std::isfinite(length)) return false;
       normal /= length;
       double least = std::numeric_limits<double>::infinity();
       Vec3 worst = Vec3::Zero();
-      double largest = largest_of(box.center) + box.half;
-      for (const std::uint32_t b : box.active) {
-        const Vec3 to = balls_[b].center - box.center;
+      double largest = largest_of(cell.center) + cell.half;
+      for (const std::uint32_t b : cell.active) {
+        const Vec3 to = balls_[b].center - cell.center;
         largest = std::max(largest, largest_of(balls_[b].center));
         if (const double height = normal.dot(to); height < least) {
           least = height;
           worst = to;
         }
       }
-      if (least > box.half * normal.cwiseAbs().sum() * kUp + 4 * slack_of(largest)) return true;
+      if (least > cell.half * normal.cwiseAbs().sum() * kUp + 4 * slack_of(largest)) return true;
       // Turned to have the lowest one higher, by more where it is nearer.
-      normal = 0.5 * (turn % 2 + 1) * normal + worst / std::max(worst.norm(), box.half);
+      normal = 0.5 * (turn % 2 + 1) * normal + worst / std::max(worst.norm(), cell.half);
     }
     return false;
   }
 
-  [[nodiscard]] bool is_free(const Vec3& p, const std::vector<std::uint32_t>& active) const {
-    return std::ranges::none_of(active, [&](std::uint32_t b) { return is_within(balls_[b], p); });
-  }
-
-  [[nodiscard]] bool is_without_triangles(const Box& box) const {
-    const Vec3 p = box.center * meshes_.scale();
-    const double largest = std::max(meshes_.largest_coordinate(), largest_of(p));
-    return nearest_.all_beyond(
-        p, kSqrt3Up * box.half * meshes_.scale() + 4 * rounding_of_distances(largest));
-  }
-
-  [[nodiscard]] Claim refuted(const Vec3& p) const {
-    Claim claim;
-    claim.answer = Answer::Refuted;
-    claim.reason = "a point inside the solid is in no ball";
-    double depth = std::numeric_limits<double>::infinity();
-    for (const Ball& ball : balls_) depth = std::min(depth, (p - ball.center).norm() - ball.radius);
-    claim.witness = Witness{p, std::max(0.0, depth), true};
-    return claim;
-  }
-
-  const MeshPair& meshes_;
-  NearestTriangle nearest_;
-  const std::vector<Ball>& balls_;
-  geom::Box3 box_;
-  int deepest_ = 0;
+  std::vector<Ball> balls_;
 };
-
-Claim undecided(std::string why) {
-  Claim claim;
-  claim.answer = Answer::Undecided;
-  claim.reason = std::move(why);
-  return claim;
-}
-
-/// Beneath places of triangles that are in no ball.
-Claim solid_beneath(const geom::Mesh& mesh, const MeshPair& meshes, const std::vector<Ball>& balls,
-                    const std::vector<TriangleAnswer>& found) {
-  constexpr std::size_t kPlaces = 2000;
-  std::size_t looked = 0;
-  for (std::size_t t = 0; t < found.size() && looked < kPlaces; ++t) {
-    if (found[t].answer != Answer::Refuted) continue;
-    const geom::Triangle& v = mesh.triangles[t];
-    const Vec3 &a = mesh.vertices[v[0]], &b = mesh.vertices[v[1]], &c = mesh.vertices[v[2]];
-    const Vec3 normal = (b - a).cross(c - a).normalized(), middle = (a + b + c) / 3;
-    if (!normal.allFinite()) continue;
-    ++looked;
-    const double size = (middle - found[t].at).norm();
-    for (const double share : {0.3, 0.01, 1e-4}) {
-      const Vec3 p = found[t].at + share * (middle - found[t].at) - 0.5 * share * size * normal;
-      if (!p.allFinite() ||
-          std::ranges::any_of(balls, [&](const Ball& ball) { return is_within(ball, p); }))
-        continue;
-      const std::optional<int> winding = winding_at(meshes, kOutside, p * meshes.scale());
-      if (!winding || *winding < 1) continue;
-      Claim claim;
-      claim.answer = Answer::Refuted;
-      claim.reason = "a point inside the solid is in no ball";
-      claim.witness = Witness{p, share * size, true};
-      claim.inner_triangles = {static_cast<std::uint32_t>(t)};
-      return claim;
-    }
-  }
-  return undecided("triangles stick out, and no point of the solid was found that does");
-}
-
-Claim surface_claim(const geom::ConvexSet& set, const std::vector<TriangleAnswer>& found,
-                    Inclusion& out) {
-  Claim claim;
-  claim.answer = Answer::Verified;
-  Vec3 open = Vec3::Zero();
-  for (std::uint32_t t = 0; t < found.size(); ++t) {
-    const TriangleAnswer& one = found[t];
-    if (one.answer == Answer::Verified) continue;
-    if (one.answer != Answer::Refuted) {
-      if (out.left_out++ == 0) open = one.at;
-      continue;
-    }
-    const double depth = distance_to_bodies(set, one.at);
-    claim.inner_triangles.push_back(t);
-    if (!claim.witness || depth > claim.witness->depth)
-      claim.witness = Witness{one.at, depth, one.is_corner};
-  }
-  if (!claim.inner_triangles.empty()) {
-    claim.answer = Answer::Refuted;
-    claim.reason = "a point of a triangle is in no ball";
-  } else if (out.left_out > 0) {
-    claim = undecided("of " + std::to_string(out.left_out) +
-                      " triangles it was not decided whether the balls hold them: there is too "
-                      "little slack, or too many parts are needed");
-    claim.witness = Witness{open, 0, false};
-  }
-  out.limited = out.left_out > 0;
-  return claim;
-}
 
 // --- distances -------------------------------------------------------------------------------
 
@@ -726,34 +425,7 @@ bool is_set_of_balls(const geom::ConvexSet& set) {
 
 Inclusion verify_ball_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                             const InclusionOptions& options) {
-  const MeshPair meshes(geom::Mesh{}, original);
-  Inclusion out;
-  out.inner_open_edges = meshes.unbalanced(mask_of(kOutside), false);
-  out.inner_closed = out.inner_open_edges == 0;
-  out.triangles_without_area = meshes.without_area(kOutside) + meshes.repeated(kOutside).size();
-  if (original.triangles.empty()) {
-    out.solid.reason = out.surface.reason = "the inner mesh has no triangles";
-    return out;
-  }
-  const std::vector<Ball> balls = balls_of(set);
-  if (options.progress) options.progress("parts of triangles in balls");
-  const std::vector<TriangleAnswer> found = decide_triangles(original, balls, options.max_cells);
-  out.surface = surface_claim(set, found, out);
-  if (!out.inner_closed) {
-    out.solid.reason = "the meshes are not closed and have different borders";
-  } else if (meshes.tree(kOutside).empty()) {
-    out.solid.reason = "no triangle of the inner mesh has an area, so that it has no solid";
-  } else if (options.surface_only) {
-    out.solid.reason = "only the surface claim was asked for";
-  } else if (out.surface.answer == Answer::Verified) {
-    if (options.progress) options.progress("boxes inside the solid");
-    out.solid = VoidSearch(original, meshes, balls).decide(options.max_cells);
-  } else if (out.surface.answer == Answer::Refuted) {
-    out.solid = solid_beneath(original, meshes, balls, found);
-  } else {
-    out.solid = undecided("it is not known whether the balls hold all triangles");
-  }
-  return out;
+  return union_cover::decide(original, set, Balls(set), options);
 }
 
 DistanceClaim verify_ball_excess(const geom::ConvexSet& set, const geom::Mesh& original,

@@ -24,17 +24,6 @@ bool holds(const geom::ConvexBody& body, const geom::Mesh& polytope) {
   return std::ranges::all_of(polytope.vertices, [&](const Vec3& p) { return contains(body, p); });
 }
 
-/// Points of the body that a polytope within it might miss.
-std::vector<Vec3> held_by(const geom::ConvexBody& body, std::span<const Vec3> points) {
-  const geom::Box3 box = geom::bounding_box(body);
-  std::vector<Vec3> out;
-  for (const Vec3& p : points)
-    if ((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all() &&
-        contains(body, p))
-      out.push_back(p);
-  return out;
-}
-
 /// The body with a radius so much smaller that rounding does not move points out of it.
 geom::ConvexBody shrunk(geom::ConvexBody body) {
   double largest = 0;
@@ -45,11 +34,10 @@ geom::ConvexBody shrunk(geom::ConvexBody body) {
 
 /// A polytope within a body; no triangles where there is none but for rounding.
 std::optional<geom::Mesh> inner_polytope(const geom::ConvexBody& body,
-                                         const geom::SpherePoints& sphere,
-                                         std::span<const Vec3> held) {
+                                         const geom::SpherePoints& sphere) {
   const geom::ConvexBody smaller = shrunk(body);
   if (smaller.radius == 0) return body.core;  // of a segment or a point: nothing
-  geom::Mesh out = geom::inscribed_polytope(smaller, sphere, held_by(body, held));
+  geom::Mesh out = geom::inscribed_polytope(smaller, sphere);
   return holds(body, out) ? std::optional(std::move(out)) : std::nullopt;
 }
 
@@ -59,11 +47,10 @@ struct OneBody {
   double gap = 0;
 };
 
-std::optional<OneBody> bounds_of(const geom::ConvexBody& body, const geom::SpherePoints& sphere,
-                                 std::span<const Vec3> held) {
+std::optional<OneBody> bounds_of(const geom::ConvexBody& body, const geom::SpherePoints& sphere) {
   if (!geom::is_convex(body)) return std::nullopt;
   if (body.radius == 0) return OneBody{body.core, body.core};
-  auto inside = inner_polytope(body, sphere, held);
+  auto inside = inner_polytope(body, sphere);
   if (!inside || (!inside->triangles.empty() && !geom::is_convex(*inside))) return std::nullopt;
   OneBody out{*std::move(inside), geom::circumscribed_polytope(body, sphere)};
   const RoundedHull hull{body.core.vertices, body.radius};
@@ -109,15 +96,14 @@ double distance_to_bodies(const geom::ConvexSet& set, const Vec3& p) {
   return std::max(0.0, nearest);
 }
 
-std::optional<BodyBounds> bounds_of(const geom::ConvexSet& set, int level,
-                                    std::span<const Vec3> held) {
+std::optional<BodyBounds> bounds_of(const geom::ConvexSet& set, int level) {
   const geom::SpherePoints sphere = geom::sphere_points(level);
   const auto rounded = [](const geom::ConvexBody& body) { return body.radius > 0; };
   const auto many = static_cast<std::size_t>(std::ranges::count_if(set.bodies, rounded));
   if (2 * many * sphere.points.size() > kMostVertices) return std::nullopt;
   std::vector<std::optional<OneBody>> found(set.bodies.size());
   parallel_for(std::size_t{0}, found.size(),
-               [&](std::size_t i) { found[i] = bounds_of(set.bodies[i], sphere, held); });
+               [&](std::size_t i) { found[i] = bounds_of(set.bodies[i], sphere); });
   BodyBounds out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i]) return std::nullopt;

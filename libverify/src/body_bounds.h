@@ -5,7 +5,6 @@
 #include <kaboum/verify/sweep.h>
 
 #include <optional>
-#include <span>
 #include <utility>
 
 namespace kaboum::verify {
@@ -25,11 +24,9 @@ inline constexpr int kFirstBoundsLevel = 2, kLastBoundsLevel = 4;
 /// ball about a vertex of a body's core passes a plane of the outer one. Bodies of radius 0 are
 /// their own bounds.
 ///
-/// @param held  points that inner polytopes are to hold where bodies do, such as a mesh's corners
 /// @return nullopt where a body is not convex, the polytopes would have too many vertices, or
 ///   rounding spoils them
-std::optional<BodyBounds> bounds_of(const geom::ConvexSet& set, int level,
-                                    std::span<const geom::Vec3> held = {});
+std::optional<BodyBounds> bounds_of(const geom::ConvexSet& set, int level);
 
 /// Whether a point is in a body, exactly: within its radius of its core. @pre is_convex(body)
 bool contains(const geom::ConvexBody& body, const geom::Vec3& p);
@@ -69,10 +66,10 @@ bool is_verified(const Claims& claims) {
 /// for which it is harder to hold, `necessary(bounds)` of the one for which it is easier.
 /// @param open  the answer where there are no bounds
 template <class Result, class Sufficient, class Necessary>
-Result decide_between(const geom::ConvexSet& set, std::span<const geom::Vec3> held, Result open,
-                      const Sufficient& sufficient, const Necessary& necessary) {
+Result decide_between(const geom::ConvexSet& set, Result open, const Sufficient& sufficient,
+                      const Necessary& necessary) {
   for (int level = kFirstBoundsLevel; level <= kLastBoundsLevel; ++level) {
-    const std::optional<BodyBounds> bounds = bounds_of(set, level, held);
+    const std::optional<BodyBounds> bounds = bounds_of(set, level);
     if (!bounds) break;
     Result first = sufficient(*bounds);
     if (is_verified(first)) return first;

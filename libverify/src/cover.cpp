@@ -191,7 +191,7 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
   };
   if (geom::margin_of(set) == 0.0) return of(set);
   Inclusion out = decide_between(
-      set, {}, open_inclusion(verify_convexity(set).convex),
+      set, open_inclusion(verify_convexity(set).convex),
       [&](const BodyBounds& bounds) { return of(bounds.outside); },
       [&](const BodyBounds& bounds) { return of(bounds.inside); });
   for (Claim* claim : {&out.solid, &out.surface}) claim->inner_triangles.clear();  // polytopes'
@@ -216,7 +216,7 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
     open.answer = Answer::Undecided;
     open.reason = kNoBounds;
     return decide_between(
-        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.outside, -bounds.gap); },
+        set, open, [&](const BodyBounds& bounds) { return of(bounds.outside, -bounds.gap); },
         [&](const BodyBounds& bounds) { return of(bounds.inside, bounds.gap); });
   }
   const double margin = *one_radius;

@@ -38,7 +38,7 @@ Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, doubl
     open.answer = Answer::Undecided;
     open.reason = "the bodies are too many to be bounded by polytopes";
     return decide_between(
-        set, {}, open, [&](const BodyBounds& bounds) { return of(bounds.inside); },
+        set, open, [&](const BodyBounds& bounds) { return of(bounds.inside); },
         [&](const BodyBounds& bounds) { return of(bounds.outside); });
   }
   const geom::Mesh sum = sum_of(set);

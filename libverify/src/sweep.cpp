@@ -563,7 +563,7 @@ SweepClaims verify_sweep_between(std::span<const MovingShape> shapes, const Wayp
     return verify_sweep(shapes, path, polytopes, options);
   };
   return decide_between(
-      set, {}, std::move(open), [&](const BodyBounds& bounds) { return with(bounds.inside); },
+      set, std::move(open), [&](const BodyBounds& bounds) { return with(bounds.inside); },
       [&](const BodyBounds& bounds) { return with(bounds.outside); });
 }
 

@@ -1,6 +1,6 @@
 // Allowed pairs of links as SRDF, which MoveIt reads.
 
-#include <kaboum/base/xml_text.h>
+#include <kaboum/pairs/srdf.h>
 #include <kaboum/world/allowed_pairs.h>
 
 namespace kaboum::world {
@@ -22,14 +22,12 @@ const char* reason_in_srdf(AllowedPair::Reason reason) {
 
 }  // namespace
 
-std::string to_srdf(const RobotModel& robot, const std::vector<AllowedPair>& pairs) {
-  std::string out =
-      "<?xml version=\"1.0\"?>\n<robot name=\"" + escape_xml(robot.kinematics.name) + "\">\n";
-  for (const AllowedPair& pair : pairs)
-    out += "  <disable_collisions link1=\"" + escape_xml(robot.kinematics.links[pair.a].name) +
-           "\" link2=\"" + escape_xml(robot.kinematics.links[pair.b].name) + "\" reason=\"" +
-           reason_in_srdf(pair.reason) + "\"/>\n";
-  return out + "</robot>\n";
+std::string to_srdf(const RobotModel& robot, const std::vector<AllowedPair>& allowed) {
+  std::vector<pairs::UncheckedPair> disabled;
+  disabled.reserve(allowed.size());
+  for (const AllowedPair& pair : allowed)
+    disabled.push_back({pair.a, pair.b, reason_in_srdf(pair.reason)});
+  return pairs::srdf_text(robot.kinematics, disabled);
 }
 
 }  // namespace kaboum::world

@@ -1,13 +1,9 @@
 # shellcheck shell=sh disable=SC2154
 # kaboum-scene and kaboum-check: scenes of files, free and other answers, what is refused.
 . "$(dirname "$0")/common.sh"
-cube() {
-  printf 'OFF\n8 12 0\n0 0 0\n%s 0 0\n%s 1 0\n0 1 0\n0 0 1\n%s 0 1\n%s 1 1\n0 1 1\n' "$1" "$1" "$1" "$1"
-  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
-}
 mkdir meshes
-cube 1 >meshes/cube.off
-cube 3 >meshes/bar.off
+slab 1 >meshes/cube.off
+slab 3 >meshes/bar.off
 link() { echo "<link name=\"$1\"><collision><geometry><mesh filename=\"meshes/$2.off\"/></geometry></collision></link>"; }
 joint() {
   echo "<joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/><origin xyz=\"$4\"/>
@@ -85,7 +81,7 @@ expect 2 'a PNG is written' "$BIN/kaboum-check" near.json --preview near.jpg
 absent near.jpg
 expect 2 'would overwrite\|same file\|input' "$BIN/kaboum-check" near.json --report near.json
 # Things in regions.
-cube 1 | awk 'NR > 2 && NR <= 10 { print $1 * 9 - 4, $2 * 9 - 4, $3 * 9 - 4; next } { print }' >meshes/room.off
+slab 1 | awk 'NR > 2 && NR <= 10 { print $1 * 9 - 4, $2 * 9 - 4, $3 * 9 - 4; next } { print }' >meshes/room.off
 expect 0 '' "$BIN/kaboum-scene" make room.json --robot arm=arm.urdf --object box=meshes/cube.off --region room=meshes/room.off --no-cache
 python3 -c '
 import json, sys
@@ -121,7 +117,7 @@ expect 3 'line [0-9]*, column [0-9]*: cell/box.glb is not the file' "$BIN/kaboum
 cp kept.glb cell/box.glb
 # Nor what they were made from.
 cp meshes/cube.off kept.off
-cube 2 >meshes/cube.off
+slab 2 >meshes/cube.off
 expect 3 'meshes/cube.off has changed since cell/.*.glb was made from it' "$BIN/kaboum-check" near.json
 cp near.json old.json
 python3 - <<'END'
@@ -151,7 +147,7 @@ shows 0 '^free$' "$BIN/kaboum-check" hand.json
 # Only what is out of date is made anew: the bar's set is a file that nobody wrote to.
 cp cell/arm/upper.glb upper.glb
 touch -d '2001-01-01' cell/arm/upper.glb
-cube 1.5 >meshes/cube.off
+slab 1.5 >meshes/cube.off
 expect 0 '4 sets made anew' "$BIN/kaboum-scene" update hand.json --no-cache
 cmp -s cell/arm/upper.glb upper.glb || fail "the bar's set has changed"
 [ "$(date -r cell/arm/upper.glb +%Y)" = 2001 ] || fail "the bar's set was written"
@@ -205,7 +201,7 @@ shows 0 '^free$' "$BIN/kaboum-check" deep.json --configuration=-1,0
 expect 2 'inner sets of links: no robot' "$BIN/kaboum-scene" make bad.json --object box=meshes/cube.off --inner-links
 # They are made anew as the outer ones are, by the same options.
 cp meshes/bar.off kept.off
-cube 4 >meshes/bar.off
+slab 4 >meshes/bar.off
 expect 3 'has changed since' "$BIN/kaboum-check" deep.json
 expect 0 '2 sets made anew' "$BIN/kaboum-scene" update deep.json --no-cache
 [ "$(grep -c '"inner"' deep.json)" = 4 ] || fail "the update loses inner sets"

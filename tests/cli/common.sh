@@ -100,3 +100,14 @@ tetrahedron_gltf() {
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
     "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0}' >t.gltf
 }
+
+# json FILE CONDITION: of the report r.
+json() {
+  python3 -c "import json, sys; r = json.load(open(sys.argv[1])); sys.exit(not ($2))" "$1" || fail "$1: not $2"
+}
+
+# slab X: a block of X by 1 by 1, OFF.
+slab() {
+  printf 'OFF\n8 12 0\n0 0 0\n%s 0 0\n%s 1 0\n0 1 0\n0 0 1\n%s 0 1\n%s 1 1\n0 1 1\n' "$1" "$1" "$1" "$1"
+  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
+}

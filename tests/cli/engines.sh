@@ -11,13 +11,9 @@ import jsonschema
 jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
 END
 }
-cube() {
-  printf 'OFF\n8 12 0\n0 0 0\n%s 0 0\n%s 1 0\n0 1 0\n0 0 1\n%s 0 1\n%s 1 1\n0 1 1\n' "$1" "$1" "$1" "$1"
-  printf '3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n'
-}
 mkdir meshes
-cube 1 >meshes/cube.off
-cube 3 >meshes/bar.off
+slab 1 >meshes/cube.off
+slab 3 >meshes/bar.off
 link() { echo "<link name=\"$1\"><collision><geometry><mesh filename=\"meshes/$2.off\"/></geometry></collision></link>"; }
 joint() {
   echo "<joint name=\"$1\" type=\"revolute\"><parent link=\"$2\"/><child link=\"$3\"/><origin xyz=\"$4\"/>

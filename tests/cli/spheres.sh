@@ -3,11 +3,6 @@
 B=$BIN/bcd-decompose
 V=$BIN/bound-verify
 
-# json FILE CONDITION: of the report r.
-json() {
-  python3 -c "import json, sys; r = json.load(open(sys.argv[1])); sys.exit(not ($2))" "$1" || fail "$1: not $2"
-}
-
 printf 'OFF\n8 12 0\n0 0 0\n4 0 0\n0 1 0\n4 1 0\n0 0 1\n4 0 1\n0 1 1\n4 1 1\n' >bar.off
 for t in '0 2 1' '1 2 3' '4 5 6' '5 7 6' '0 1 4' '1 5 4' '2 6 3' '3 6 7' '0 4 2' '2 4 6' '1 3 5' '3 7 5'; do
   echo "3 $t" >>bar.off

@@ -14,6 +14,7 @@
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
 #include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/robot_folder/simple_shapes.h>
 #include <kaboum/robot_folder/sphere_text.h>
 #include <kaboum/scene/robot_pairs.h>
 
@@ -25,7 +26,6 @@
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/output.h"
-#include "robots/simple_output.h"
 #include "words.h"
 
 namespace kaboum::tools {
@@ -256,13 +256,13 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     io::write_file(o.output, robot_folder::sphere_text(format, run.robot, bodies,
                                                        run.request.parameters(), o.output));
   } else {
-    const SimpleShapes shapes = simple_shapes(bodies.artefact());
+    const robot_folder::SimpleShapes shapes = robot_folder::simple_shapes(bodies.artefact());
     distance += shapes.beyond;
     const std::optional<Length>& epsilon = run.request.set.epsilon;
     if (run.request.epsilons.empty() && epsilon && !epsilon->percent)
       reached = reached && distance <= epsilon->value;
-    io::write_file(o.output,
-                   urdf_of_shapes(run.robot, bodies, shapes, run.request.parameters(), o.output));
+    io::write_file(o.output, robot_folder::urdf_of_shapes(run.robot, bodies, shapes,
+                                                          run.request.parameters(), o.output));
   }
   log(o.common.quiet, o.output + ": " +
                           (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")

@@ -2,7 +2,7 @@
 
 #include "results.h"
 
-#include <kaboum/base/xml_text.h>
+#include <kaboum/pairs/srdf.h>
 
 #include <algorithm>
 #include <array>
@@ -95,19 +95,17 @@ std::string summary_of(const std::vector<DecidedPair>& pairs, double seconds) {
          count(Verdict::Open) + " open (" + number(seconds) + " s)";
 }
 
-std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& pairs) {
-  std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + escape_xml(robot.name) + "\">\n";
-  for (const DecidedPair& pair : pairs) {
-    // As MoveIt's assistant calls them.
+std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& decided) {
+  std::vector<pairs::UncheckedPair> disabled;
+  for (const DecidedPair& pair : decided) {
     const bool never = pair.verdict == Verdict::Never;
     if (!never && !pairs::is_connected(pair)) continue;
-    const char* reason = pair.relation == Relation::Adjacent ? "Adjacent"
-                         : never                             ? "Never"
-                                                             : "Default";
-    out += "  <disable_collisions link1=\"" + escape_xml(robot.links[pair.a].name) + "\" link2=\"" +
-           escape_xml(robot.links[pair.b].name) + "\" reason=\"" + reason + "\"/>\n";
+    disabled.push_back({pair.a, pair.b,
+                        pair.relation == Relation::Adjacent ? "Adjacent"
+                        : never                             ? "Never"
+                                                            : "Default"});
   }
-  return out + "</robot>\n";
+  return pairs::srdf_text(robot, disabled);
 }
 
 }  // namespace kaboum::tools

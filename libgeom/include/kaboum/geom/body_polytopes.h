@@ -2,7 +2,6 @@
 
 #include <kaboum/geom/convex_set.h>
 
-#include <span>
 #include <vector>
 
 namespace kaboum::geom {
@@ -24,10 +23,8 @@ SpherePoints sphere_points(int level);
 /// Every point of the body is within r · (1 − inner) and rounding of it. Rounding may move a vertex
 /// out of the body, by 2^-52 of the coordinates and the radius; who needs to know decides exactly.
 /// @return without triangles where the radius is too small for the coordinates' digits
-/// @param besides  points of the body that the polytope has to hold, too
 /// @pre the body is convex (is_convex)
-Mesh inscribed_polytope(const ConvexBody& body, const SpherePoints& sphere,
-                        std::span<const Vec3> besides = {});
+Mesh inscribed_polytope(const ConvexBody& body, const SpherePoints& sphere);
 
 /// A polytope round a convex body: the hull of v + s · q with s = r / inner, a little more for
 /// rounding. Every point of it is within r · (1 / inner − 1), and rounding, of the body. That it

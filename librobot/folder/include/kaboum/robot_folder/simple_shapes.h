@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace kaboum::tools {
+namespace kaboum::robot_folder {
 
 /// A sphere, a capsule or a box as files of robots state it.
 struct SimpleShape {
@@ -36,4 +36,4 @@ std::string urdf_of_shapes(const robot::RobotFile& robot, const certify::Certifi
                            const SimpleShapes& shapes, const std::string& parameters,
                            const std::string& file);
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot_folder

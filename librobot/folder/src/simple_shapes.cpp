@@ -1,21 +1,13 @@
 // Capsules and boxes of robots in the formats of engines.
-#include "simple_output.h"
-
-#include <kaboum/base/error.h>
-#include <kaboum/robot_folder/new_shapes.h>
-#include <tinyxml2.h>
+#include <kaboum/robot_folder/simple_shapes.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iomanip>
 #include <limits>
-#include <set>
-#include <sstream>
 
-#include "common/cli.h"
+#include "collision_urdf.h"
 
-namespace kaboum::tools {
+namespace kaboum::robot_folder {
 namespace {
 
 using geom::Vec3;
@@ -24,16 +16,6 @@ using Kind = SimpleShape::Kind;
 /// Of lengths: more than what a dozen operations and a rotation from its angles err by, which is
 /// 300 · 2^-53 (docs/algorithms/capsules-and-boxes.md, "Robots").
 constexpr double kPoseRounding = 0x1p-44;
-
-std::string decimal(double x) {
-  std::ostringstream out;
-  out << std::setprecision(17) << x;
-  return out.str();
-}
-
-std::string decimals(const Vec3& p) {
-  return decimal(p.x()) + " " + decimal(p.y()) + " " + decimal(p.z());
-}
 
 /// Angles whose rotation is about that of the matrix.
 Vec3 rpy_of(const Eigen::Matrix3d& m) {
@@ -116,32 +98,6 @@ double beyond_of(const SimpleShape& box, const robot::LinkBody& body) {
   return out * (1 + 1e-12);
 }
 
-/// Two hyphens end comments of XML.
-std::string comment_text(const robot::RobotFile& robot, const std::string& parameters) {
-  std::string text = "Spheres, capsules and boxes of the links of " +
-                     robot.path.filename().string() +
-                     ", in their frames. Each link's hold the link's shapes.\nbcd-decompose " +
-                     std::string(version()) + " " + parameters + "\nsha256 " + robot.sha256;
-  for (std::size_t i = 1; i < text.size(); ++i)
-    if (text[i] == '-' && text[i - 1] == '-') text[i] = '_';
-  return " " + text + " ";
-}
-
-std::string printed(const tinyxml2::XMLDocument& document) {
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
-  return printer.CStr();
-}
-
-/// A <collision> with an origin; its <geometry>.
-tinyxml2::XMLElement* add_collision(tinyxml2::XMLElement& link, const Vec3& xyz, const Vec3& rpy) {
-  tinyxml2::XMLElement* collision = link.InsertNewChildElement("collision");
-  tinyxml2::XMLElement* origin = collision->InsertNewChildElement("origin");
-  origin->SetAttribute("xyz", decimals(xyz).c_str());
-  origin->SetAttribute("rpy", decimals(rpy).c_str());
-  return collision->InsertNewChildElement("geometry");
-}
-
 void add_shape(tinyxml2::XMLElement& link, const SimpleShape& shape) {
   switch (shape.kind) {
     case Kind::Box:
@@ -170,19 +126,6 @@ void add_shape(tinyxml2::XMLElement& link, const SimpleShape& shape) {
         ->SetAttribute("radius", radius.c_str());
 }
 
-/// Meshes that are drawn keep their files.
-void keep_references(tinyxml2::XMLElement& element, const std::filesystem::path& from,
-                     const std::filesystem::path& to) {
-  for (tinyxml2::XMLElement* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    if (const char* name = child->Attribute("filename");
-        name != nullptr && std::string_view(child->Name()) == "mesh")
-      child->SetAttribute("filename",
-                          robot_folder::moved_reference(std::string(name), from, to).c_str());
-    keep_references(*child, from, to);
-  }
-}
-
 }  // namespace
 
 SimpleShapes simple_shapes(const std::vector<robot::LinkBody>& bodies) {
@@ -202,32 +145,12 @@ SimpleShapes simple_shapes(const std::vector<robot::LinkBody>& bodies) {
 std::string urdf_of_shapes(const robot::RobotFile& robot, const certify::CertifiedBodies& bodies,
                            const SimpleShapes& shapes, const std::string& parameters,
                            const std::string& file) {
-  tinyxml2::XMLDocument document;
-  tinyxml2::XMLElement* root = nullptr;
-  if (document.Parse(robot.text.data(), robot.text.size()) == tinyxml2::XML_SUCCESS)
-    root = document.RootElement();
-  if (root == nullptr || std::string_view(root->Name()) != "robot")
-    throw Error(ErrorCode::InvalidInput,
-                robot.path.string() + ": only a URDF can have other shapes");
-  namespace fs = std::filesystem;
-  const auto folder_of = [](const fs::path& path) {
-    return path.has_parent_path() ? path.parent_path() : fs::path(".");
-  };
-  keep_references(*root, folder_of(robot.path), folder_of(file));
-  std::set<std::uint32_t> held;
-  for (const robot::LinkShape& shape : bodies.certificate().shapes) held.insert(shape.link);
-  for (tinyxml2::XMLElement* link = root->FirstChildElement("link"); link != nullptr;
-       link = link->NextSiblingElement("link")) {
-    const char* name = link->Attribute("name");
-    const std::optional<std::uint32_t> index =
-        name == nullptr ? std::nullopt : robot.robot.find_link(name);
-    if (!index || !held.contains(*index)) continue;
-    while (tinyxml2::XMLElement* old = link->FirstChildElement("collision")) link->DeleteChild(old);
+  const auto add = [&](tinyxml2::XMLElement& link, std::uint32_t index) {
     for (const SimpleShape& shape : shapes.shapes)
-      if (shape.link == *index) add_shape(*link, shape);
-  }
-  root->InsertFirstChild(document.NewComment(comment_text(robot, parameters).c_str()));
-  return printed(document);
+      if (shape.link == index) add_shape(link, shape);
+  };
+  return urdf_with(robot, bodies, add, origin_of("Spheres, capsules and boxes", robot, parameters),
+                   file);
 }
 
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot_folder

@@ -1,6 +1,7 @@
 // Capsules and boxes as a URDF has them, against the bodies that they hold, in 60 digits.
 #include <gtest/gtest.h>
 #include <kaboum/certify/link_bodies.h>
+#include <kaboum/robot_folder/simple_shapes.h>
 
 #include <algorithm>
 #include <array>
@@ -10,9 +11,7 @@
 #include <regex>
 #include <sstream>
 
-#include "robots/simple_output.h"
-
-namespace kaboum::tools {
+namespace kaboum::robot_folder {
 namespace {
 
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>,
@@ -155,4 +154,4 @@ TEST(SimpleOutput, BoxesHoldTheirPointsHoweverLittleTheyAreTilted) {
 }
 
 }  // namespace
-}  // namespace kaboum::tools
+}  // namespace kaboum::robot_folder
