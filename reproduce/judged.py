@@ -24,17 +24,20 @@ def surfaces(call, name, original, here, more=()):
     return row
 
 
-BAD_INPUT = 3  # bodies that are not convex, exactly. They are taken as one mesh then
+BAD_INPUT = 3  # bodies that are not convex, exactly (they are taken as one mesh then), or a mesh that is not closed
 
 
 def verdict(call, name, original, here, is_set):
     """What bound-verify says of whether the original's solid is inside, and the bracket of how far it sticks out [percent], None where
-    nothing is decided. Faces of the original that enclose nothing may stick out of what encloses the solid."""
+    nothing is decided, and where a mesh is not closed: simplifiers of surfaces may leave gaps, and gaps bound no solid. Faces of the original that enclose nothing may stick out of what encloses the solid."""
     result = f"{name}-verdict-report.json"
     command = ["cover", original, here] if is_set else ["mesh", "--outer", original, here]
-    if call(f"{name}-verdict", call.programs / "bound-verify", [*command, "--quiet", "--report", result], [original, call.folder / here], [result],
-            (0, 1, 7)) is None:
+    code = call(f"{name}-verdict", call.programs / "bound-verify", [*command, "--quiet", "--report", result], [original, call.folder / here], [result],
+                (0, 1, 7) if is_set else (0, 1, 7, BAD_INPUT))
+    if code is None:
         return "not decided", None
+    if code == BAD_INPUT:
+        return "not a closed mesh", None
     report = call.report(result)
     solid, surface = report["claims"]["solid"], report["claims"].get("surface", {})
     if solid["answer"] == "verified":

@@ -324,7 +324,8 @@ SECTIONS = {
     "sets": sets.section, "ring": ring.section, "sweeps": sweeps.section, "collisions": sweeps.collisions_section,
     "sampling": sampling.section, "figure-5-3": illustrations.figure_5_3_section, "circular-rearrange": scenarios.circular_section,
     "stacked": scenarios.stacked_section, "assembly": scenarios.assembly_section, "exact-meshes": scenarios.exact_section,
-    "whole-searches": scenarios.whole_searches_section, "remove": scenarios.remove_section, "executions": executions.section,
+    "whole-searches": scenarios.whole_searches_section, "engine-searches": scenarios.engine_searches_section,
+    "remove": scenarios.remove_section, "executions": executions.section,
     "simplifiers": peers.simplifiers_section, "wraps": peers.wraps_section, "coacd": peers.coacd_section, "motions": peers.motions_section,
     "resources": resources_section}
 NOT_QUICK = {"same-share", "table-b-1"}

@@ -41,7 +41,7 @@ from runs import Run, Runner  # noqa: E402
 PROGRAMS = pathlib.Path(sys.argv.pop(1)).resolve()
 BRACKET = models.own(ROOT)[0]
 # Sections that take long, and say of the programs what other tests do.
-SLOW = {"ring", "collisions", "sampling", "circular-rearrange", "stacked", "assembly", "exact-meshes", "whole-searches", "remove", "executions", "simplifiers",
+SLOW = {"ring", "collisions", "sampling", "circular-rearrange", "stacked", "assembly", "exact-meshes", "whole-searches", "engine-searches", "remove", "executions", "simplifiers",
         "wraps", "motions", "figure-5-3"}
 
 
