@@ -5,19 +5,19 @@
 #include <kaboum/collide/bounding_set.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "lengths.h"
-#include "twos.h"
+#include "meeting.h"
 
 namespace kaboum::collide {
 namespace {
 
 using detail::kSumUp;
-using detail::Mask;
 using detail::require_length;
-using detail::Twos;
 using geom::Box3;
 using geom::Vec3;
 
@@ -78,36 +78,34 @@ std::optional<Polytope> shrunk(const geom::Mesh& hull, double by) {
 
 }  // namespace
 
-/// Pairs of bodies whose boxes meet.
+/// Pairs of bodies whose boxes meet, 64 bodies of b after the other.
 struct BoxPairs {
   const PosedSet &a, &b;
   double slack;
+
+  static constexpr std::size_t kBlock = 64;
 
   /// Calls visit(i, j) for them until it is true.
   template <typename Visit>
   [[nodiscard]] bool any(const Visit& visit) const {
     const std::size_t n = a.set().size(), m = b.set().size();
-    const Box3 all = enlarged(b.box(), slack);
-    if (n == 0 || m == 0 || !overlap(a.box(), all)) return false;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!overlap(a.box(i), all)) continue;
-      const Box3 own = enlarged(a.box(i), slack);
-      for (std::size_t j = 0; j < m; j += 2) {
-        const Mask meet = meeting(own, j);
-        if ((meet[0] | meet[1]) == 0) continue;
-        for (std::size_t k = 0; k < 2 && j + k < m; ++k)
-          if (meet[k] != 0 && visit(i, j + k)) return true;
+    const Box3 all = enlarged(b.box(), slack), whole = enlarged(a.box(), slack);
+    if (n == 0 || m == 0 || !overlap(whole, b.box())) return false;
+    const detail::BoxRows rows{{b.low(0), b.low(1), b.low(2)}, {b.high(0), b.high(1), b.high(2)}};
+    for (std::size_t from = 0; from < m; from += kBlock) {
+      // Most are far from all of a.
+      const std::uint64_t near = detail::meeting_boxes(rows, from, std::min(m - from, kBlock), whole);
+      for (std::size_t i = 0; i < n && near != 0; ++i) {
+        const Box3 one = a.box(i);
+        if (!overlap(one, all)) continue;
+        const Box3 own = enlarged(one, slack);
+        for (std::uint64_t left = near; left != 0; left &= left - 1) {
+          const std::size_t j = from + static_cast<std::size_t>(std::countr_zero(left));
+          if (overlap(own, b.box(j)) && visit(i, j)) return true;
+        }
       }
     }
     return false;
-  }
-
-  /// Of two bodies from j on, which meet it: all bits of them are set.
-  [[nodiscard]] Mask meeting(const Box3& own, std::size_t j) const {
-    Mask out = ~Mask{};
-    for (std::size_t k = 0; k < 3; ++k)
-      out &= (Twos{b.high(k)}[j] >= own.min[k]) & (Twos{b.low(k)}[j] <= own.max[k]);
-    return out;
   }
 };
 

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <cstring>
 
 namespace kaboum::collide::detail {
 
 /// Two bodies at once.
 using Two [[gnu::vector_size(16)]] = double;
-using Mask [[gnu::vector_size(16)]] = std::int64_t;
 
 /// Numbers of many bodies, two from any place on.
 struct Twos {
