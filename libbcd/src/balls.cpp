@@ -16,7 +16,8 @@
 
 #include "ball_relaxation.h"
 #include "cover_points.h"
-#include "parallel_body.h"
+#include "options.h"
+#include "regional_body.h"
 #include "set_cover.h"
 
 namespace kaboum::bcd {
@@ -170,8 +171,8 @@ class BallSearch {
   }
 
   void set_distance(double epsilon) {
-    body_ =
-        std::make_unique<ParallelBody>(query_, winding_, epsilon * (1 - kBallSlack), kCoarseCaps);
+    body_ = std::make_unique<RegionalBody>(query_, winding_, epsilon * (1 - kBallSlack),
+                                           kCoarseCaps, options_.regions, epsilon);
     written_.clear();
   }
 
@@ -667,7 +668,7 @@ class BallSearch {
   geom::DistanceQuery query_;
   geom::WindingNumber winding_;
   geom::Box3 box_;
-  std::unique_ptr<ParallelBody> body_;  ///< what balls may not leave
+  std::unique_ptr<RegionalBody> body_;  ///< what balls may not leave
   std::vector<SurfacePoint> surface_;
   std::vector<Vec3> points_;  ///< to be held
   std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
@@ -702,7 +703,7 @@ CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& optio
   const geom::SolidMesh closed = geom::close_holes(input);
   const geom::Box3 box = geom::bounding_box(closed.mesh());
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *options.epsilon) {
+  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *finest_epsilon(options)) {
     CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

@@ -358,8 +358,12 @@ Concavity with_hull(std::span<const Vec3> points, const SolidField& solid,
 
 Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
                              geom::HullBuilder& builder, bool perturbed, double limit) {
-  return with_hull(points, solid, builder, perturbed, limit,
-                   [](Sampler& sampler) { sampler.run(); });
+  const double weight = solid.weight(points);
+  Concavity out = with_hull(points, solid, builder, perturbed, limit / weight,
+                            [](Sampler& sampler) { sampler.run(); });
+  out.weight = weight;
+  out.worst *= weight;
+  return out;
 }
 
 void add_witness(std::span<const Vec3> hull, const SolidField& solid,
@@ -369,8 +373,10 @@ void add_witness(std::span<const Vec3> hull, const SolidField& solid,
     concavity = estimate_concavity(hull, solid, builder);
     return;
   }
+  concavity.worst /= concavity.weight;
   Sampler(hull, hull.size(), builder, solid, std::numeric_limits<double>::infinity(), concavity)
       .run_witness(witness);
+  concavity.worst *= concavity.weight;
 }
 
 Concavity estimate_fourth(std::span<const Vec3> points, const SolidField& solid,

@@ -12,17 +12,18 @@ namespace kaboum::bcd {
 /// How far a hull goes from the solid, by samples of its facets: guides the search.
 struct Concavity {
   double fourth = 0;  ///< ∫ d⁴ over the facets, d the field
-  double worst = 0;   ///< largest distance
+  double worst = 0;   ///< largest distance, times the weight
+  double weight = 1;  ///< of regions that the hull may meet (SolidField::weight)
   Vec3 at = Vec3::Zero();
   double volume = 0;
   bool flat = true;  ///< no hull: the points are coplanar; the rest is that of a thin plate
 };
 
 /// Builds the hull of the points (left in `builder`) and samples it. Stops once the distance
-/// exceeds `limit`; the rest is then of no use. With `perturbed` points are moved by less than a
-/// billionth of their extent first: points in one plane, which the builder would have to decide
-/// exactly, then cost no more than others. The builder's indices remain valid, unless the result is
-/// flat.
+/// exceeds `limit`, weighted; the rest is then of no use. With `perturbed` points are moved by less
+/// than a billionth of their extent first: points in one plane, which the builder would have to
+/// decide exactly, then cost no more than others. The builder's indices remain valid, unless the
+/// result is flat.
 Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
                              geom::HullBuilder& builder, bool perturbed = false,
                              double limit = std::numeric_limits<double>::infinity());

@@ -12,7 +12,7 @@ namespace kaboum::bcd {
 
 bool add_witness(SearchState& state, const Finished& f) {
   if (f.excess.lower <= kMisjudged * f.body.concavity.worst) return false;
-  return state.add_witness({f.excess.at, f.excess.lower}, f.body.hull);
+  return state.add_witness({f.excess.at, f.excess.lower / f.excess.weight}, f.body.hull);
 }
 
 /// At most this many bodies, the first attempts of all that come nearest to the solid; none when

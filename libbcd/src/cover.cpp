@@ -132,7 +132,7 @@ CoverCandidate cover_closed(const geom::SolidMesh& input, const CoverOptions& op
 
 CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& options) {
   require_sound(options);
-  if (too_coarse(input.mesh(), options.epsilon)) {
+  if (too_coarse(input.mesh(), finest_epsilon(options))) {
     CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;
@@ -143,6 +143,7 @@ CoverCandidate find_cover(const geom::SolidMesh& input, const CoverOptions& opti
                 "the mesh is closed and lies in one plane, so it bounds no solid");
   const geom::SolidMesh closed = geom::close_holes(input);
   CoverCandidate result = cover_closed(closed, options);
+  if (!options.regions.empty()) result.excess_lower = 0;  // of weighted distances
   result.statistics.filled_triangles = closed.filled_triangles();
   return result;
 }

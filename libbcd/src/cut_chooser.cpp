@@ -61,7 +61,8 @@ double CutChooser::score(const CutNode& node, const Plane& plane, double limit) 
   // reach as far but for the thickness.
   Box3 box;
   for (const Vec3& p : node.hull) box.extend(p);
-  const bool plate = thinnest < kPlate * box.diagonal() || high - low < node.concavity.worst;
+  const bool plate = thinnest < kPlate * box.diagonal() ||
+                     high - low < node.concavity.worst / node.concavity.weight;
   const double penalty = plate ? kPlatePenalty : 1;
   CutScratch& s = cut_scratch();
   s.lower.clear();
@@ -172,7 +173,7 @@ void CutChooser::add_pit_planes(const CutNode& node, std::vector<Candidate>& out
     g[k] = solid_.field(x + step * Vec3::Unit(k)) - solid_.field(x - step * Vec3::Unit(k));
   if (g.norm() > kLeastSlope * step) {
     g.normalize();
-    const Vec3 y = x - node.concavity.worst * g;
+    const Vec3 y = x - node.concavity.worst / node.concavity.weight * g;
     out.push_back({{g, g.dot(y)}});
     const Vec3 u = g.unitOrthogonal(), w = g.cross(u);
     for (int k = 0; k < 4; ++k) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "best_first.h"
@@ -306,8 +307,11 @@ class Measure {
 
 }  // namespace
 
-std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
-                            const ExcessOptions& options, double floor, double ceiling) {
+namespace {
+
+/// Of bodies that have no weight.
+std::vector<Excess> measure_alike(const std::vector<Mesh>& bodies, const SolidField& solid,
+                                  const ExcessOptions& options, double floor, double ceiling) {
   std::vector<Measure> measures;
   measures.reserve(bodies.size());
   for (const Mesh& body : bodies) measures.emplace_back(body, solid, options);
@@ -320,6 +324,36 @@ std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& s
   std::vector<Excess> out(bodies.size());
   parallel_for(std::size_t{0}, bodies.size(),
                [&](std::size_t i) { out[i] = measures[i].run(floor); });
+  return out;
+}
+
+}  // namespace
+
+std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
+                            const ExcessOptions& options, double floor, double ceiling) {
+  std::map<double, std::vector<std::size_t>> of_weight;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    of_weight[solid.weight(bodies[i].vertices)].push_back(i);
+  std::vector<Excess> out(bodies.size());
+  for (const auto& [weight, which] : of_weight) {
+    if (which.size() == bodies.size() && weight == 1)
+      return measure_alike(bodies, solid, options, floor, ceiling);
+    std::vector<Mesh> some;
+    some.reserve(which.size());
+    for (const std::size_t i : which) some.push_back(bodies[i]);
+    ExcessOptions how = options;
+    how.absolute_gap /= weight;
+    how.cutoff /= weight;
+    const std::vector<Excess> found =
+        measure_alike(some, solid, how, floor / weight, ceiling / weight);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      Excess& one = out[which[k]];
+      one = found[k];
+      one.weight = weight;
+      one.lower *= weight;
+      one.upper *= weight;
+    }
+  }
   return out;
 }
 

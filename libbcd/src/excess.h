@@ -10,8 +10,9 @@ namespace kaboum::bcd {
 
 /// Certified bracket of the largest distance of a body's points to the solid and its triangles.
 struct Excess {
-  double lower = 0, upper = 0;
-  Vec3 at = Vec3::Zero();  ///< a point of the body with distance ≥ lower
+  double lower = 0, upper = 0;  ///< times the weight
+  double weight = 1;            ///< of regions that the body may meet (SolidField::weight)
+  Vec3 at = Vec3::Zero();       ///< a point of the body with distance ≥ lower
 };
 
 struct ExcessOptions {
@@ -30,7 +31,8 @@ struct ExcessOptions {
 
 /// One bracket per body. Branch and bound over facets and, for pits and cavities that a body spans,
 /// over its inside. Distances below `floor`, and below a share of the largest among all bodies or
-/// of `ceiling` if that is less, are only told to be below it.
+/// of `ceiling` if that is less, are only told to be below it. All distances, those of
+/// the options too, are weighted.
 std::vector<Excess> measure(const std::vector<Mesh>& bodies, const SolidField& solid,
                             const ExcessOptions& options, double floor = 0,
                             double ceiling = std::numeric_limits<double>::infinity());

@@ -145,7 +145,8 @@ Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
     Simplified& shape = shapes[open[i]];
     if (first) {
       if (!body.concavity.flat)
-        shape = simplify(body.hull, options.max_vertices, free_cost, state_.solid());
+        shape = simplify(body.hull, options.max_vertices, free_cost / body.concavity.weight,
+                         state_.solid());
       round.hulls[i] = rounded(body, shape, options.max_vertices);
     } else {
       round.hulls[i] = rounded(body, {shape.needed, 0, {}}, options.max_vertices);

@@ -2,6 +2,7 @@
 #include "fitting.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -150,7 +151,49 @@ double room(const ParallelBody& body, const AxesBox& box, int k, bool high, doub
   return best;
 }
 
-void grow(const ParallelBody& body, AxesBox& box, std::span<const int> order, double share) {
+namespace {
+
+/// How far a face may be moved so that the box stays apart from a region; negative where it is not.
+/// [length]
+double room_apart(const geom::Region& region, const AxesBox& box, int k, bool high) {
+  const std::vector<Vec3> corners = box.corners();
+  const double slack = kApartSlack * (box.high - box.low).maxCoeff();
+  const Vec3 way = (high ? 1.0 : -1.0) * box.axes.col(k);
+  std::vector<geom::HalfSpace> sides = region.sides;
+  if (sides.empty()) {
+    // The plane at the ball that is square to the way to the nearest point of the box.
+    const Vec3 q = box.axes.transpose() * (region.center - box.center);
+    const Vec3 near = box.center + box.axes * q.cwiseMax(box.low).cwiseMin(box.high);
+    const Vec3 n = (near - region.center).normalized();
+    if (!(n.norm() > 0.5)) return -1;
+    sides.push_back({n, n.dot(region.center) + region.radius});
+  }
+  double best = -1;
+  for (const geom::HalfSpace& side : sides) {
+    double height = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : corners) height = std::min(height, side.normal.dot(p));
+    height -= side.offset + slack;
+    const double slope = side.normal.dot(way);
+    if (height >= 0)
+      best = std::max(best, slope < 0 ? height / -slope : std::numeric_limits<double>::infinity());
+  }
+  return best;
+}
+
+}  // namespace
+
+double room(const RegionalBody& body, const AxesBox& box, int k, bool high, double most) {
+  double out = room(body.whole(), box, k, high, most);
+  for (const RegionalBody::Part& part : body.parts()) {
+    const double apart = room_apart(part.region, box, k, high);
+    if (apart >= out) continue;
+    const bool begins = part.body->signed_distance(box.center).upper < part.body->distance();
+    out = std::min(out, std::max(apart, begins ? room(*part.body, box, k, high, out) : -1.0));
+  }
+  return out;
+}
+
+void grow(const RegionalBody& body, AxesBox& box, std::span<const int> order, double share) {
   const double far = 4 * body.distance() + (box.high - box.low).maxCoeff();
   double least = 0.02 * body.distance();
   for (int turn = 0; turn < 40; ++turn) {
@@ -190,6 +233,18 @@ double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, dou
     best = std::min(best, distance_from_cap(cap, h, from, to) - rounding);
   });
   return best < least || !std::isfinite(best) ? 0.0 : std::max(best, 0.0);
+}
+
+double clearance(const RegionalBody& body, const Vec3& from, const Vec3& to, double least) {
+  double out = clearance(body.whole(), from, to, least);
+  const std::array<Vec3, 2> ends{from, to};
+  for (const RegionalBody::Part& part : body.parts()) {
+    const double apart = (1 - kApartSlack) * geom::distance_from(part.region, ends);
+    if (apart >= out) continue;
+    const bool begins = part.body->signed_distance(from).upper < part.body->distance();
+    out = std::min(out, std::max(apart, begins ? clearance(*part.body, from, to, least) : 0.0));
+  }
+  return out < least ? 0.0 : std::max(out, 0.0);
 }
 
 AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare) {

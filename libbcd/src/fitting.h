@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "parallel_body.h"
+#include "regional_body.h"
 
 namespace kaboum::bcd {
 
@@ -32,19 +32,22 @@ struct Capsule {
 /// How far the face of a box along axis k (its high one, or its low one) may be moved outwards so
 /// that the box meets no cap: at most `most`; negative where the box meets one already. [length]
 double room(const ParallelBody& body, const AxesBox& box, int k, bool high, double most);
+double room(const RegionalBody& body, const AxesBox& box, int k, bool high, double most);
 
 /// Moves faces of a box outwards, in turns, as far as the body allows.
 /// @param share  of the room that each turn takes; 1: faces in order
-void grow(const ParallelBody& body, AxesBox& box, std::span<const int> order, double share);
+void grow(const RegionalBody& body, AxesBox& box, std::span<const int> order, double share);
 
 /// Whether a box with a point in the body meets no cap.
-inline bool fits(const ParallelBody& body, const AxesBox& box) {
+inline bool fits(const RegionalBody& body, const AxesBox& box) {
   return room(body, box, 0, true, 0) >= 0;
 }
 
 /// The distance of a segment with a point in the body to the nearest cap, or less; 0 where it meets
 /// one, or where it is less than `least`. [length]
 double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, double least = 0);
+/// The same, and no more than the regions allow. [length]
+double clearance(const RegionalBody& body, const Vec3& from, const Vec3& to, double least = 0);
 
 /// The box along the axes round points, enlarged by `spare` on all sides.
 AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare);

@@ -35,6 +35,10 @@ double work_allowed(const SearchSettings& settings, std::size_t triangles) {
 void require_sound(const SearchSettings& settings, const SearchRun& run) {
   if (run.epsilon && !(*run.epsilon > 0))
     throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
+  for (const geom::BoundedRegion& one : run.regions)
+    if (!run.epsilon || !(one.epsilon > 0))
+      throw Error(ErrorCode::InvalidArgument,
+                  "regions need an epsilon above 0 each, and one for all else");
   if (settings.max_bodies && *settings.max_bodies == 0)
     throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
   if (settings.max_vertices < 8)
@@ -70,6 +74,13 @@ bool too_coarse(const geom::Mesh& mesh, const std::optional<double>& epsilon) {
   const double diagonal = geom::bounding_box(mesh).diagonal();
   return spacing > (epsilon ? std::min(kSpacingWithEpsilon * diagonal, kSpacingOfEpsilon * *epsilon)
                             : kSpacingOfDiagonal * diagonal);
+}
+
+std::optional<double> finest_epsilon(const SearchRun& run) {
+  std::optional<double> out = run.epsilon;
+  for (const geom::BoundedRegion& one : run.regions)
+    if (out) out = std::min(*out, one.epsilon);
+  return out;
 }
 
 }  // namespace kaboum::bcd

@@ -15,4 +15,7 @@ bool too_coarse(const geom::Mesh& mesh, const std::optional<double>& epsilon);
 /// max_work, or its default for an input of so many triangles. [s]
 double work_allowed(const SearchSettings& settings, std::size_t triangles);
 
+/// The least epsilon of all and of regions; nullopt where none is given. [length]
+std::optional<double> finest_epsilon(const SearchRun& run);
+
 }  // namespace kaboum::bcd

@@ -43,7 +43,7 @@ std::vector<bmesh::DecimateResult> coarser(const geom::SolidMesh& closed, std::s
 
 std::optional<Simpler> pre_step(const geom::SolidMesh& input, const CoverOptions& options) {
   const geom::Mesh& closed = input.mesh();
-  if (options.pre_step == PreStep::Off ||
+  if (options.pre_step == PreStep::Off || !options.regions.empty() ||
       (options.pre_step == PreStep::Auto && closed.triangles.size() <= kLarge))
     return std::nullopt;
   const double epsilon = options.epsilon ? kShare * *options.epsilon

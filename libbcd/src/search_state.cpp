@@ -4,13 +4,20 @@
 
 #include <utility>
 
+#include "options.h"
+
 namespace kaboum::bcd {
 
 SearchState::SearchState(const Mesh& closed, const CoverOptions& options, double work, Tuning how)
     : options_(options),
       tuning_(std::move(how)),
-      solid_(closed, tuning_.grid, options.epsilon.value_or(0), false, work),
-      tree_(solid_, tuning_.search, options.safety) {}
+      solid_(closed, tuning_.grid, finest_epsilon(options).value_or(0), false, work),
+      tree_(solid_, tuning_.search, options.safety) {
+  if (!options.regions.empty()) {
+    solid_.weigh(options.regions, *options.epsilon);
+    tree_.reestimate();
+  }
+}
 
 bool SearchState::spent(double share) {
   const Work& work = solid_.work();

@@ -17,6 +17,7 @@
 
 #include "cover_points.h"
 #include "fitting.h"
+#include "options.h"
 #include "principal_box.h"
 #include "set_cover.h"
 
@@ -201,8 +202,10 @@ class SimpleBodySearch {
 
   void set_distance(double epsilon) {
     epsilon_ = epsilon;
-    body_ = std::make_unique<ParallelBody>(query_, winding_, epsilon * (1 - kLeft), kCaps);
-    spare_ = kPointSpare * epsilon + 2 * spacing_;
+    body_ = std::make_unique<RegionalBody>(query_, winding_, epsilon * (1 - kLeft), kCaps,
+                                           options_.regions, epsilon);
+    finest_ = options_.regions.empty() ? epsilon : std::min(epsilon, *finest_epsilon(options_));
+    spare_ = kPointSpare * finest_ + 2 * spacing_;
   }
 
   static SimpleBody ball(const Vec3& center, double radius) {
@@ -610,7 +613,7 @@ class SimpleBodySearch {
   /// Points of a triangle in no body, by cutting it until parts are in one.
   void find_free(const std::array<Vec3, 3>& triangle, const std::vector<SimpleBody>& bodies,
                  std::size_t most, std::vector<Vec3>& out) const {
-    const double spare = kTriangleSpare * epsilon_ + 4 * spacing_;
+    const double spare = kTriangleSpare * finest_ + 4 * spacing_;
     std::vector<const SimpleBody*> near;
     const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
     double reach = 0;
@@ -673,7 +676,7 @@ class SimpleBodySearch {
     });
     std::vector<Vec3> all;
     for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
-    const double spare = kTriangleSpare * epsilon_;
+    const double spare = kTriangleSpare * finest_;
     if (all.empty())
       for (const std::vector<Vec3>* points : {&inner_, &options_.held})
         for (const Vec3& p : *points)
@@ -861,9 +864,10 @@ class SimpleBodySearch {
   geom::DistanceQuery query_;
   geom::WindingNumber winding_;
   geom::Box3 box_;
-  double spacing_ = 0;  ///< of float32 numbers [length]
-  double epsilon_ = 0, spare_ = 0;
-  std::unique_ptr<ParallelBody> body_;  ///< what bodies may not leave
+  double spacing_ = 0;               ///< of float32 numbers [length]
+  double epsilon_ = 0, finest_ = 0;  ///< for all, and the least of a region [length]
+  double spare_ = 0;
+  std::unique_ptr<RegionalBody> body_;  ///< what bodies may not leave
   std::vector<SurfacePoint> surface_;
   std::vector<Vec3> points_;  ///< to be held
   std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
@@ -886,7 +890,7 @@ CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBody
   const geom::SolidMesh closed = geom::close_holes(input);
   const geom::Box3 box = geom::bounding_box(closed.mesh());
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *options.epsilon) {
+  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *finest_epsilon(options)) {
     CoverCandidate coarse;
     coarse.stop = Stop::TooCoarse;
     return coarse;

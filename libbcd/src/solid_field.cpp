@@ -237,4 +237,19 @@ double SolidField::field(const Vec3& p) const {
   return beyond.isZero(0) ? inside : inside + spacing_ * beyond.norm();
 }
 
+void SolidField::weigh(const std::vector<geom::BoundedRegion>& regions, double epsilon) {
+  regions_.clear();
+  for (const geom::BoundedRegion& one : regions)
+    if (one.epsilon < epsilon) regions_.push_back({one.name, one.region, epsilon / one.epsilon});
+}
+
+double SolidField::weight(std::span<const Vec3> hull) const {
+  double out = 1;
+  for (const geom::BoundedRegion& one : regions_)
+    if (one.epsilon > out && !hull.empty() &&
+        !(geom::distance_from(one.region, hull) > 1e-9 * diagonal_))
+      out = one.epsilon;
+  return out;
+}
+
 }  // namespace kaboum::bcd

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/work.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/region.h>
 #include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
@@ -78,6 +79,11 @@ class SolidField {
   /// What the square of a witness's distance from the next one is about. [length²]
   [[nodiscard]] double witness_area() const { return witness_area_; }
   [[nodiscard]] double spacing() const { return spacing_; }
+  /// From now on a hull that may meet a region counts as so many times as far from the solid as
+  /// epsilon is larger than the region's.
+  void weigh(const std::vector<geom::BoundedRegion>& regions, double epsilon);
+  /// The number that distances of the points' hull are multiplied with, 1 at least.
+  [[nodiscard]] double weight(std::span<const Vec3> hull) const;
   /// Of all that looks at this solid.
   [[nodiscard]] Work& work() const { return work_; }
   [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
@@ -92,6 +98,7 @@ class SolidField {
   double diagonal_;
   geom::DistanceQuery surface_;
   geom::WindingNumber winding_;
+  std::vector<geom::BoundedRegion> regions_;  ///< each with the weight in place of epsilon
   struct Corner {
     Vec3 a, ab, ac;
   };

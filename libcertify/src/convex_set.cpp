@@ -10,6 +10,7 @@
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/region_excess.h>
 
 #include <algorithm>
 #include <array>
@@ -49,6 +50,7 @@ const char* flaw_of_kind(const SetRequest& r) {
 bcd::SearchRun run_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
   bcd::SearchRun run;
   if (const auto epsilon = r.wanted_epsilon()) run.epsilon = epsilon->of(diagonal);
+  run.regions = geom::bounded(r.regions, diagonal);
   if (hooks.progress)
     run.progress = [&](const bcd::Progress& p) {
       hooks.progress(p.stage + " " + std::to_string(static_cast<int>(100 * p.fraction)) + " %");
@@ -108,7 +110,22 @@ struct Refutation {
   std::vector<geom::Vec3> left_out;  ///< points of the solid that are in no body
 };
 
-Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geom::ConvexSet& set) {
+/// @throws Error{InvalidArgument} on what does not go together with regions
+void require_possible_regions(const SetRequest& r) {
+  if (r.regions.empty()) return;
+  const auto refuse = [](bool condition, const char* what) {
+    if (condition)
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string("an epsilon of regions does not go with ") + what);
+  };
+  refuse(r.direction != SetRequest::Direction::Outer, "bodies inside the solid");
+  refuse(r.max_bodies.has_value() || r.max_total_vertices.has_value(),
+         "a limit on the number of bodies or vertices");
+  refuse(r.min_thickness > 0, "a least thickness");
+}
+
+Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double diagonal,
+                         const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies)
     if (r.min_thickness > 0 &&
         geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
@@ -129,6 +146,13 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, const geo
     for (const verify::Claim* claim : {&cover.inclusion.solid, &cover.inclusion.surface})
       if (claim->answer != verify::Answer::Verified && claim->witness)
         out.left_out.push_back(claim->witness->point);
+    for (const geom::BoundedRegion& region : geom::bounded(r.regions, diagonal)) {
+      if (!out.reason.empty()) break;
+      const verify::DistanceClaim claim =
+          verify::verify_region_excess(set, solid, region, true, options);
+      if (claim.answer != verify::Answer::Verified)
+        out.reason = "in the region " + region.name + ": " + claim.reason;
+    }
     return out;
   }
   // Of a solid that is deep nowhere: nothing is claimed to lie in it.
@@ -326,6 +350,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     if (hooks.note) hooks.note(text);
   };
   const bool outer = request.direction == SetRequest::Direction::Outer;
+  require_possible_regions(request);
   SetRequest asked = request;
   // A flat sheet that is closed by its own fill has no volume.
   const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : geom::prepare;
@@ -338,6 +363,9 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   if (!given.why.empty()) note(why_wrapped(given.why));
   if (wrap) note(in_words(wrap->certificate()));
   const geom::Mesh& solid = prepared.solid.mesh();
+  if (wrap && !request.regions.empty())
+    throw Error(ErrorCode::InvalidInput,
+                "an epsilon of regions needs a mesh that bounds a solid, without a wrap");
   if (outer) require_area(solid);
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
@@ -359,7 +387,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    Refutation found = refutation_of(request, solid, set);
+    Refutation found = refutation_of(request, solid, diagonal, set);
     if (found.reason.empty() && wrap && !given.wrapped.empty())
       found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;

@@ -1,9 +1,11 @@
 // The options of a set: their table, the request that they come to, and its record.
 
 #include <kaboum/base/length_unit.h>
+#include <kaboum/base/sha256.h>
 #include <kaboum/certify/set_options.h>
 
 #include <array>
+#include <sstream>
 #include <utility>
 
 #include "request.h"
@@ -228,6 +230,7 @@ SetRequest in_own_unit(SetRequest request) {
     if (length) length = length->in(request.unit);
   };
   bring(request.epsilon);
+  for (geom::RequestedRegion& one : request.regions) one.epsilon = one.epsilon.in(request.unit);
   if (request.wrap) bring(request.wrap->offset);
   if (request.wrap) bring(request.wrap->seal);
   return request;
@@ -238,10 +241,38 @@ std::optional<Length> SetRequest::wanted_epsilon() const {
   return Length{1, true};
 }
 
+namespace {
+
+/// What states regions, as for options of the table.
+constexpr const char* kRegionsOption = "epsilon-map";
+
+/// A word that stands for regions: a hash of all of their numbers.
+std::string word_of(const std::vector<geom::RequestedRegion>& regions) {
+  std::ostringstream text;
+  text << std::hexfloat;
+  const auto put = [&](const geom::Vec3& p) {
+    text << ' ' << p.x() << ' ' << p.y() << ' ' << p.z();
+  };
+  for (const geom::RequestedRegion& one : regions) {
+    text << one.name << '\n' << one.epsilon.text() << ' ' << one.region.radius;
+    put(one.region.center);
+    for (const geom::HalfSpace& side : one.region.sides) {
+      put(side.normal);
+      text << ' ' << side.offset;
+    }
+    text << '\n';
+  }
+  return "sha256:" + sha256(text.str());
+}
+
+}  // namespace
+
 std::string SetRequest::parameters() const {
   SetOptions options = options_of(*this);
   options.request.epsilon = wanted_epsilon();
-  return record_of(set_options(), options);
+  std::string out = record_of(set_options(), options);
+  if (!regions.empty()) out += std::string(" --") + kRegionsOption + ' ' + word_of(regions);
+  return out;
 }
 
 geom::Provenance origin_of(const SetRequest& request, const std::string& sha256) {

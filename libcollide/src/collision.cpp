@@ -94,7 +94,8 @@ struct BoxPairs {
     const detail::BoxRows rows{{b.low(0), b.low(1), b.low(2)}, {b.high(0), b.high(1), b.high(2)}};
     for (std::size_t from = 0; from < m; from += kBlock) {
       // Most are far from all of a.
-      const std::uint64_t near = detail::meeting_boxes(rows, from, std::min(m - from, kBlock), whole);
+      const std::uint64_t near =
+          detail::meeting_boxes(rows, from, std::min(m - from, kBlock), whole);
       for (std::size_t i = 0; i < n && near != 0; ++i) {
         const Box3 one = a.box(i);
         if (!overlap(one, all)) continue;

@@ -2,6 +2,7 @@
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/mesh_verdict.h>
+#include <kaboum/verify/region_excess.h>
 
 #include <algorithm>
 #include <limits>
@@ -122,6 +123,20 @@ void decide_distances(const MeshQuestion& q, const InclusionOptions& options, Me
   }
 }
 
+void decide_regions(const MeshQuestion& q, const InclusionOptions& options, MeshVerdict& out) {
+  const geom::Mesh& to = q.measured != nullptr ? q.measured->mesh : q.original;
+  const bool to_solid = q.measured != nullptr || out.inclusion.inner_closed;
+  for (const geom::BoundedRegion& region : q.regions) {
+    options.progress("distance in the region " + region.name);
+    DistanceClaim claim = verify_region_excess(*q.set, to, region, to_solid, options);
+    if (claim.answer == Answer::Refuted && q.measured != nullptr && !q.measured->has_solid) {
+      claim.answer = Answer::Undecided;
+      claim.reason = "which solid the triangles bound is not known";
+    }
+    out.regions.push_back({region, std::move(claim)});
+  }
+}
+
 Inclusion inclusion_of(const MeshQuestion& q, const geom::Mesh& inner,
                        const InclusionOptions& options) {
   if (q.relation == Relation::Cover) return verify_cover(inner, *q.set, options).inclusion;
@@ -170,6 +185,7 @@ Answer answer_of(const MeshVerdict& verdict, Claims claims) {
   if (claims != Claims::Solid) enclosure.push_back(verdict.inclusion.surface.answer);
   if (verdict.convex) besides.push_back(verdict.convex->answer);
   for (const DistanceVerdict& d : verdict.distances) besides.push_back(d.claim.answer);
+  for (const RegionVerdict& r : verdict.regions) besides.push_back(r.claim.answer);
   if (verdict.depth) besides.push_back(verdict.depth->answer);
   if (verdict.exact_points) besides.push_back(verdict.exact_points->answer);
   const auto any = [](const std::vector<Answer>& answers, Answer a) {
@@ -211,6 +227,7 @@ MeshVerdict decide(const MeshQuestion& q,
   }
   if (enclosure) enclosure(out);
   if (q.bound) decide_distances(q, options, out);
+  if (q.relation == Relation::Cover) decide_regions(q, options, out);
   out.answer = answer_of(out, q.claims);
   return out;
 }

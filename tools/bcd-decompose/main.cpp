@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/epsilon_map.h"
 #include "common/set_format.h"
 #include "options.h"
 #include "robot.h"
@@ -75,6 +76,7 @@ int decompose_mesh(const DecomposeOptions& o) {
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
+    if (!o.epsilon_map.empty()) inputs.push_back(o.epsilon_map);
     inputs.insert(inputs.end(), made.other_files.begin(), made.other_files.end());
     write_depfile(o.depfile, {o.output}, inputs);
   }
@@ -92,12 +94,14 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
   std::vector<std::string> inputs{o.input};
   if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
   if (!o.repair.empty()) inputs.push_back(o.repair);
+  if (!o.epsilon_map.empty()) inputs.push_back(o.epsilon_map);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},
                  {"--html-report", o.robot.html},
                  {"--preview", o.preview},
                  {"--depfile", o.depfile}},
                 inputs);
+  o.set.request.regions = read_epsilon_map(o.epsilon_map);
   const ThreadLimit threads(o.common.threads);
   if (is_robot(o.input) && o.robot_bodies + o.robot_vertices == 0) certify::be_of_robot(o.set);
   try {

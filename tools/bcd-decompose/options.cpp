@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/epsilon_map.h"
 #include "common/request_options.h"
 #include "common/set_format.h"
 
@@ -88,6 +89,10 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
 void describe(CLI::App& app, DecomposeOptions& o) {
   add_input(app, o);
   add_request_options(app, certify::set_options(), o.set, o.stated);
+  add_epsilon_map(app, o.epsilon_map,
+                  "Regions (boxes, half-spaces and balls in the coordinates of INPUT, a JSON file: "
+                  "docs/formats.md) with an epsilon each: no point of the bodies in one is farther "
+                  "than that from the solid, and elsewhere --epsilon counts; for one mesh");
   add_require_closed(app, o.set.preparation);
   add_output(app, o);
   add_robot_options(app, o.robot, true);
@@ -122,6 +127,13 @@ void describe(CLI::App& app, DecomposeOptions& o) {
 
 void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   require_none(certify::contradiction(o.set, o.stated));
+  if (app.count("--epsilon-map") != 0) {
+    if (is_robot(o.input))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--epsilon-map is for one mesh; --epsilons states those of a robot's links");
+    require_absent(app, "--epsilon-map",
+                   {"--max-bodies", "--max-total-vertices", "--min-thickness", "--direction"});
+  }
   if (o.set.preparation.mode != certify::PreparationOptions::Mode::Auto)
     require_absent(app, "--prepare", {"--require-closed"});
   if (is_robot(o.input))

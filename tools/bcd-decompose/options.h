@@ -24,7 +24,8 @@ struct DecomposeOptions {
   double explode = picture::kExplode;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   certify::SphereShare share = certify::SphereShare::Farthest;
-  std::string repair;  ///< spheres of the robot that are to be changed; empty: none
+  std::string epsilon_map;  ///< file of regions; empty: none
+  std::string repair;       ///< spheres of the robot that are to be changed; empty: none
   bool no_cache = false, srdf = false;
   RobotOptions robot;
   CommonOptions common;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "common/epsilon_map.h"
 #include "common/verdict.h"
 #include "mesh_report.h"
 #include "witness_file.h"
@@ -18,7 +19,7 @@ using verify::Answer;
 
 void require_possible(const VerifyMeshOptions& o, const CommonOptions& common) {
   require_apart({{"--report", common.report}, {"--witness", o.witness}},
-                {o.original, o.approximation});
+                {o.original, o.approximation, o.epsilon_map.empty() ? o.original : o.epsilon_map});
   require_witness_format(o.witness);
 }
 
@@ -64,6 +65,16 @@ std::optional<verify::PointQuestion> points_of(const MeshCase& run) {
   return verify::PointQuestion{exact->points, exact->of_face, exact->rounding};
 }
 
+/// @throws Error where a length is none of this mesh's.
+std::vector<geom::BoundedRegion> regions_of(const MeshCase& run,
+                                            const std::vector<geom::RequestedRegion>& asked) {
+  return naming(run.asked.original, [&] {
+    std::vector<geom::RequestedRegion> regions = asked;
+    for (geom::RequestedRegion& one : regions) one.epsilon = one.epsilon.in(unit_of(run));
+    return geom::bounded(regions, run.diagonal);
+  });
+}
+
 }  // namespace
 
 int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
@@ -71,6 +82,7 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   if (o.original == "-" && o.approximation == "-")
     throw Error(ErrorCode::InvalidArgument, "only one of the two files can be standard input");
+  const std::vector<geom::RequestedRegion> regions = read_epsilon_map(o.epsilon_map);
   MeshCase run = read(o, common.quiet);
   if (o.how.epsilon)
     set_bound(run, naming(o.original, [&] { return o.how.epsilon->in(unit_of(run)); }));
@@ -94,7 +106,8 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       [&](const std::string& what) { progress.show(what); },
                                       points_of(run),
                                       run.original.subject ? &*run.original.subject : nullptr,
-                                      run.original.measured ? &*run.original.measured : nullptr};
+                                      run.original.measured ? &*run.original.measured : nullptr,
+                                      regions_of(run, regions)};
   run.verdict = verify::decide(question, [&](const verify::MeshVerdict& enclosure) {
     run.verdict = enclosure;
     say(lines_of_enclosure(run));  // at once: a distance may take long

@@ -19,6 +19,7 @@ struct VerifyMeshOptions {
   std::string witness;
   bool set = false;  ///< the approximation is a set, whatever the file looks like
   verify::MeshVerdictOptions how;
+  std::string epsilon_map;  ///< file of regions with bounds of their own, of a cover; empty: none
 };
 
 /// Decides the claims, prints and reports them.

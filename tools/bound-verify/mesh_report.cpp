@@ -180,6 +180,16 @@ std::vector<std::string> lines_of_distances(const MeshCase& run) {
   std::vector<std::string> lines;
   for (const verify::DistanceVerdict& distance : run.verdict.distances)
     lines.push_back(line(distance, *run.bound));
+  for (const verify::RegionVerdict& one : run.verdict.regions) {
+    std::string text =
+        "distance in the region " + one.region.name + ": " + name_of(one.claim.answer) + ": ";
+    text += one.claim.answer == Answer::Verified ? "nowhere more than " + number(one.region.epsilon)
+                                                 : one.claim.reason;
+    if (one.claim.answer == Answer::Refuted)
+      text += "; at least " + number(one.claim.largest) + ", at " + point(one.claim.at) +
+              ", claimed " + number(one.region.epsilon);
+    lines.push_back(std::move(text));
+  }
   if (const auto& depth = run.verdict.depth)
     lines.push_back(line(
         "depth",
@@ -322,6 +332,12 @@ Json json_of_claims(const MeshCase& run) {
     if (run.asked.relation != Relation::Cover) continue;
     json["margin"] = margin_json(run.approximation.set);
     json["to_solid"] = distance.between == Between::UnionToSolid;
+  }
+  for (const verify::RegionVerdict& one : v.regions) {
+    Json json = to_json(one.claim);
+    json["name"] = one.region.name;
+    json["bound"] = one.region.epsilon;
+    claims["regions"].push_back(std::move(json));
   }
   if (v.exact_points) {
     const verify::PointClaim& points = *v.exact_points;

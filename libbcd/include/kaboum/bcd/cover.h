@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/region.h>
 #include <kaboum/geom/solid_mesh.h>
 
 #include <cstddef>
@@ -68,6 +69,9 @@ struct SearchRun {
   /// Outwards: largest distance allowed from a point of the bodies to the solid and its triangles.
   /// Inwards: largest depth allowed of what is in no body. [length]
   std::optional<double> epsilon;
+  /// Outwards, with epsilon: points of the bodies that lie in a region are no farther than the
+  /// region's own epsilon, where that is less.
+  std::vector<geom::BoundedRegion> regions;
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
   double safety = 1;

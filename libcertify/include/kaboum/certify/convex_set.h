@@ -8,6 +8,7 @@
 #include <kaboum/certify/wrap.h>
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/region.h>
 
 #include <functional>
 #include <optional>
@@ -39,6 +40,9 @@ struct SetRequest : bcd::CoverSettings {
   /// Farthest that a point of an outer set may be from the solid, or deepest that a point left out
   /// by an inner set may be. By default 1 % where no limit is given, else none.
   std::optional<Length> epsilon;
+  /// Of outer sets with an epsilon: points of the bodies that lie in a region are within the
+  /// region's own one, which counts where it is less. In the coordinates of what is decomposed.
+  std::vector<geom::RequestedRegion> regions;
 
   /// certify_file multiplies the file's coordinates by it first (io::scale).
   double scale = 1;

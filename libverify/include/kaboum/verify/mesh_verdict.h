@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/region.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/distance.h>
@@ -38,6 +39,8 @@ struct MeshQuestion {
   const Subject* subject = nullptr;
   /// Mesh that a cover's distances are measured to, closed; null: the original.
   const MeasuredMesh* measured = nullptr;
+  /// Of a cover: bounds of the distances of what lies in regions. [length]
+  std::vector<geom::BoundedRegion> regions{};
 
   [[nodiscard]] const geom::Mesh& inner() const {
     return relation == Relation::Inner ? approximation : original;
@@ -58,6 +61,12 @@ enum class Between {
 /// "distance from the union to the solid".
 const char* name_of(Between between);
 
+/// What was decided of the bodies' points in a region.
+struct RegionVerdict {
+  geom::BoundedRegion region;
+  DistanceClaim claim;
+};
+
 struct DistanceVerdict {
   Between between = Between::ApproximationToOriginal;
   DistanceClaim claim;
@@ -71,6 +80,7 @@ struct MeshVerdict {
   /// Depth by which what refutes the claims sticks out, the margin of a cover taken off.
   std::optional<Bracket> solid_depth, surface_depth;
   std::vector<DistanceVerdict> distances;
+  std::vector<RegionVerdict> regions;  ///< as asked for
   std::optional<Claim>
       depth;  ///< of an inner set: that it leaves out nothing deeper than the bound
   /// Claim of the points of exact faces, where they were asked for: they refute, and prove nothing.

@@ -1,0 +1,137 @@
+// --epsilon-map: a file that says how near bodies are to be in regions.
+
+#include "epsilon_map.h"
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli.h"
+
+namespace kaboum::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kMapForm =
+    "give {\"regions\": [{\"epsilon\": \"0.2%\", \"box\": [[0, 0, 0], [1, 1, 1]]}, …]}, each with "
+    "one of box, half_space and ball";
+
+/// One region of the file, with what messages call it.
+class RegionReader {
+ public:
+  RegionReader(const json& entry, std::string what) : entry_(entry), what_(std::move(what)) {}
+
+  geom::RequestedRegion read() const {
+    if (!entry_.is_object()) fail(kMapForm);
+    int shapes = 0;
+    geom::RequestedRegion out;
+    out.name = what_;
+    for (const auto& [key, value] : entry_.items()) {
+      if (key == "name") {
+        if (!value.is_string()) fail("name is no text");
+        out.name = "'" + value.get<std::string>() + "'";
+      } else if (key == "epsilon") {
+        out.epsilon = length(value);
+      } else if (key == "box" || key == "half_space" || key == "ball") {
+        ++shapes;
+        out.region = key == "box" ? box(value) : key == "ball" ? ball(value) : half_space(value);
+      } else {
+        fail("there is no member '" + key + "'; " + kMapForm);
+      }
+    }
+    if (shapes != 1) fail("one of box, half_space and ball is needed, and no other one");
+    if (!(out.epsilon.value > 0)) fail("epsilon is missing");
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(ErrorCode::InvalidInput, what_ + ": " + why);
+  }
+
+  Length length(const json& value) const {
+    if (value.is_number() && value.get<double>() > 0 && std::isfinite(value.get<double>()))
+      return {value.get<double>()};
+    if (value.is_string())
+      if (const auto parsed = parse_length(value.get<std::string>())) return *parsed;
+    fail("epsilon must be a positive number, or a text such as \"0.2%\" or \"2mm\"");
+  }
+
+  double number(const json& value, const char* name) const {
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      fail(std::string(name) + " must be a number");
+    return value.get<double>();
+  }
+
+  geom::Vec3 point(const json& value, const char* name) const {
+    if (!value.is_array() || value.size() != 3) fail(std::string(name) + " must be three numbers");
+    return {number(value[0], name), number(value[1], name), number(value[2], name)};
+  }
+
+  const json& member(const json& of, const char* name, std::size_t count) const {
+    if (!of.is_object() || !of.contains(name) || of.size() != count)
+      fail(std::string("half_space has normal and offset, ball has center and radius, and no "
+                       "other members: ") +
+           name + " is looked for");
+    return of.at(name);
+  }
+
+  geom::Region box(const json& value) const {
+    if (!value.is_array() || value.size() != 2) fail("box must be two corners");
+    const geom::Vec3 low = point(value[0], "box"), high = point(value[1], "box");
+    if (!(low.array() <= high.array()).all()) fail("box: the lower corner comes first");
+    return geom::box_region({low, high});
+  }
+
+  geom::Region half_space(const json& value) const {
+    const geom::Vec3 normal = point(member(value, "normal", 2), "normal");
+    const double length = normal.norm();
+    if (!(length > 1e-100 && length < 1e100)) fail("normal must have a direction");
+    geom::Region out;
+    out.sides = {{normal / length, number(member(value, "offset", 2), "offset") / length}};
+    return out;
+  }
+
+  geom::Region ball(const json& value) const {
+    geom::Region out;
+    out.center = point(member(value, "center", 2), "center");
+    out.radius = number(member(value, "radius", 2), "radius");
+    if (!(out.radius > 0)) fail("radius must be above 0");
+    return out;
+  }
+
+  const json& entry_;
+  std::string what_;
+};
+
+}  // namespace
+
+void add_epsilon_map(CLI::App& app, std::string& file, const std::string& text) {
+  app.add_option("--epsilon-map", file, text)->type_name("FILE");
+}
+
+std::vector<geom::RequestedRegion> read_epsilon_map(const std::string& file) {
+  if (file.empty()) return {};
+  json all;
+  try {
+    all = json::parse(io::read_file(file));
+  } catch (const json::parse_error& error) {
+    throw Error(ErrorCode::InvalidInput, file + ": " + error.what());
+  }
+  if (!all.is_object() || all.size() != 1 || !all.contains("regions") ||
+      !all["regions"].is_array() || all["regions"].empty())
+    throw Error(ErrorCode::InvalidInput, file + ": " + kMapForm);
+  std::vector<geom::RequestedRegion> out;
+  for (const json& entry : all["regions"]) {
+    const std::string name = "region " + std::to_string(out.size() + 1);
+    out.push_back(naming(file, [&] { return RegionReader(entry, name).read(); }));
+  }
+  return out;
+}
+
+}  // namespace kaboum::tools
