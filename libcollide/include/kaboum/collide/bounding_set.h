@@ -131,7 +131,7 @@ struct BodyPair {
 
 /// Definition 1 of [gaschler2016], cases 1 to 3: whether two solids collide, by their outer sets:
 /// of objects, robots' links, or swept volumes. The first pair of bodies whose exact images,
-/// enlarged by errors and `slack`, meet; nullopt when there is none.
+/// enlarged by errors and `slack`, meet, among 64 bodies of b after the other; nullopt for none.
 ///
 /// Never nullopt when the solids meet, or come within `slack` of each other. Always nullopt when
 /// they are farther apart than both epsilons, errors and the slack. The same for any memory.
