@@ -19,8 +19,15 @@
     for (const [i, cells] of [data.table.head, ...data.table.rows].entries()) {
       const row = document.createElement('tr');
       row.append(...cells.map((cell) => element(i === 0 ? 'th' : 'td', cell)));
+      row.className = i > 0 && data.table.bad.includes(i - 1) ? 'bad' : '';
       $('table').append(row);
     }
+  $('steps').hidden = !data.steps;
+  for (const {name, words, command} of data.steps || []) {
+    const line = element('p', name);
+    if (words) line.append(': ' + words);
+    $('steps').append(line, element('pre', command));
+  }
   if (data.largest !== null) {
     $('meaning').textContent = data.meaning + (data.unit ? ` [${data.unit}]` : ", in the file's unit");
     $('scale').style.background = `linear-gradient(to right, ${V.heat.map((c) => `rgb(${c.map((x) => Math.round(255 * x))})`)})`;
@@ -57,8 +64,26 @@
   $('moving').hidden = !data.path || data.path.length < 2;
   if (!view) $('message').textContent = 'This browser has no WebGL: nothing can be drawn.';
 
+  // Joints -------------------------------------------------------------------------------------
+
+  const sliders = (data.variables || []).map((variable, index) => {
+    const label = document.createElement('label'), input = document.createElement('input'), value = document.createElement('output');
+    Object.assign(input, {type: 'range', id: 'joint' + index, min: variable.low, max: variable.high, step: 'any', value: variable.value});
+    input.disabled = variable.low === variable.high;
+    label.title = `${variable.name}: ` + (variable.limited ? `${S.valueText(variable, variable.low)} to ${S.valueText(variable, variable.high)}` : 'no limits');
+    label.append(element('span', variable.name), input, value);
+    $('joints').append(label);
+    input.oninput = () => draw();
+    return {input, value, variable};
+  });
+  $('joints').hidden = sliders.length === 0;
+  $('rest').onclick = () => { for (const {input, variable} of sliders) input.value = variable.value; draw(); };
+
   function linkPoses() {
-    return data.robot ? S.forward(data.robot, S.pathAt(data.path, Number($('time').value))) : [];
+    if (!data.robot) return [];
+    if (sliders.length === 0) return S.forward(data.robot, S.pathAt(data.path, Number($('time').value)));
+    for (const {input, value, variable} of sliders) value.textContent = S.valueText(variable, Number(input.value));
+    return S.forward(data.robot, sliders.map(({input}) => Number(input.value)));
   }
 
   function draw() {

@@ -46,6 +46,11 @@ const KaboumScene = (() => {
     return poses;
   }
 
+  /// A value of a joint in words: degrees, or mm.
+  function valueText({slides}, value) {
+    return slides ? `${Number((1000 * value).toPrecision(4))} mm` : `${Number((value * 180 / Math.PI).toPrecision(4))}°`;
+  }
+
   /// The pose of an object, null when it has left.
   function objectPose(data, state, object) {
     const place = state.places[object];
@@ -189,7 +194,7 @@ const KaboumScene = (() => {
   const mesh = ({points, triangles, values}) => ({points: decode(points, Float32Array), triangles: decode(triangles, Uint32Array),
                                                   values: values ? decode(values, Float32Array) : null});
 
-  return {identity, multiply, inverse, forward, objectPose, branch, at, gap, shapePose, choicesTo, decode, mesh, pathAt};
+  return {identity, multiply, inverse, forward, valueText, objectPose, branch, at, gap, shapePose, choicesTo, decode, mesh, pathAt};
 })();
 
 if (typeof module !== 'undefined') module.exports = KaboumScene;

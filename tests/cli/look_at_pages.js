@@ -63,7 +63,8 @@ function trianglesOf({data, controls}) {
     }
     return {list: out, opaque: true};
   }
-  const links = data.robot ? S.forward(data.robot, controls.get('time') === '1' ? data.path[data.path.length - 1] : data.path[0]) : [];
+  const place = (data.variables || []).map((variable, i) => controls.has('joint' + i) ? Number(controls.get('joint' + i)) : variable.value);
+  const links = !data.robot ? [] : S.forward(data.robot, data.variables ? place : controls.get('time') === '1' ? data.path[data.path.length - 1] : data.path[0]);
   const colours = controls.get('colours') || 'distance';
   let opaque = true, number = 0;
   data.layers.forEach((layer, index) => {

@@ -76,6 +76,108 @@ tetrahedron >t.off
 printf 'turn,slide\n0,0\n1.2,0\n1.2,0.2\n' >path.csv
 expect 0 '' "$D" arm.urdf -o links --epsilon 3% --effort fast --preview links.html --report links.json
 preview links.html "$(figure links.json 'max(l["reach_upper"] for l in r["links"])')"
+# Its joints are moved by sliders: poses are those of inverse kinematics' program and, with a joint that follows another
+# one, those that Python computes here. Ranges keep the limits of both.
+sed 's,</robot>,<link name="tip"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link><joint name="follow" type="revolute"><parent link="fore"/><child link="tip"/><origin xyz="0.1 0 0.2" rpy="0.3 0 1"/><axis xyz="1 2 3"/><mimic joint="turn" multiplier="-0.5" offset="0.1"/><limit lower="-1" upper="1.2" effort="1" velocity="1"/></joint><link name="wheel"><collision><geometry><sphere radius="0.1"/></geometry></collision></link><joint name="spin" type="continuous"><parent link="base"/><child link="wheel"/><axis xyz="0 1 0"/></joint></robot>,' arm.urdf >hand.urdf
+expect 0 '' "$D" hand.urdf -o hand --epsilon 3% --effort fast --preview hand.html --html-report rows.html
+preview hand.html -
+cat >judge.py <<'END_OF_JUDGE'
+import json, math, random, subprocess, sys
+import xml.etree.ElementTree as tree
+
+ik, script = sys.argv[1:]
+
+def product(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+def turn(axis, angle):
+    x, y, z = (v / math.sqrt(sum(w * w for w in axis)) for v in axis)
+    c, s = math.cos(angle), math.sin(angle)
+    k = 1 - c
+    return [[c + k * x * x, k * x * y - s * z, k * x * z + s * y, 0], [k * x * y + s * z, c + k * y * y, k * y * z - s * x, 0],
+            [k * x * z - s * y, k * y * z + s * x, c + k * z * z, 0], [0, 0, 0, 1]]
+
+def shift(x, y, z):
+    return [[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]]
+
+def numbers(element, name, otherwise):
+    words = element.get(name) if element is not None else None
+    return [float(word) for word in words.split()] if words else otherwise
+
+robot = tree.parse("hand.urdf").getroot()
+links = [link.get("name") for link in robot.iter("link")]
+
+def poses(values):
+    out = {"base": shift(0, 0, 0)}
+    for joint in list(robot.iter("joint")) * 3:  # parents may come later
+        parent, child = joint.find("parent").get("link"), joint.find("child").get("link")
+        if parent not in out:
+            continue
+        origin, axis = joint.find("origin"), numbers(joint.find("axis"), "xyz", [1, 0, 0])
+        r, p, y = numbers(origin, "rpy", [0, 0, 0])
+        local = product(shift(*numbers(origin, "xyz", [0, 0, 0])), product(turn([0, 0, 1], y), product(turn([0, 1, 0], p), turn([1, 0, 0], r))))
+        mimic = joint.find("mimic")
+        value = values[joint.get("name")] if mimic is None else float(mimic.get("multiplier")) * values[mimic.get("joint")] + float(mimic.get("offset"))
+        motion = shift(*(value * a for a in axis)) if joint.get("type") == "prismatic" else turn(axis, value)
+        out[child] = product(product(out[parent], local), motion)
+    return out
+
+def flat(pose):
+    return [pose[i][j] for i in range(3) for j in range(3)] + [pose[i][3] for i in range(3)]
+
+def page(values):
+    return json.loads(subprocess.run(["node", script, "hand.html", values], capture_output=True, text=True, check=True).stdout)
+
+def rotation(x, y, z, w):
+    return [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+            2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]
+
+start = page("")
+ranges = {s["name"]: (s["low"], s["high"]) for s in start["sliders"]}
+near = lambda a, b: abs(a - b) < 1e-12
+assert near(ranges["turn"][0], -2.2) and near(ranges["turn"][1], 2.2), ranges  # -0.5 turn + 0.1 is from -1 to 1.2
+assert ranges["slide"] == (0, 0.3) and near(ranges["spin"][1], math.pi) and near(ranges["spin"][0], -math.pi), ranges
+assert all(s["value"] == 0 for s in start["sliders"])
+names = [s["name"] for s in start["sliders"]]
+random.seed(1)
+largest = 0
+for trial in range(12):
+    values = {name: random.uniform(*ranges[name]) for name in names}
+    seen = page(",".join(repr(values[name]) for name in names))
+    expected = poses(values)
+    assert len(seen["poses"]) == len(links)
+    found = {}
+    for link, pose in seen["poses"].items():
+        gap, name = min((max(abs(pose[k] - flat(other)[k]) for k in range(12)), name) for name, other in expected.items())
+        found[name] = gap
+        largest = max(largest, gap)
+    assert len(found) == len(links), found  # each link is somewhere else
+    subprocess.run([ik, "arm.urdf", "--tip", "fore", "--pose-of", f"{values['turn']!r},{values['slide']!r}", "--report", "ik.json"], capture_output=True)
+    pose = json.load(open("ik.json"))["pose"]
+    wanted = rotation(*pose[3:]) + pose[:3]
+    largest = max(largest, min(max(abs(a - b) for a, b in zip(wanted, p)) for p in seen["poses"].values()))
+assert largest < 1e-12, largest
+chosen = {"turn": "0.5", "slide": "0.1", "spin": "1"}
+words = {s["name"]: s["words"] for s in page(",".join(chosen[name] for name in names))["sliders"]}
+assert words == {"turn": "28.65°", "slide": "100 mm", "spin": "57.3°"}, words
+print("largest difference", largest)
+END_OF_JUDGE
+python3 judge.py "$BIN/kaboum-ik" "$HERE/move_joints.js" >said.txt 2>&1 || fail "sliders: $(tail -3 said.txt)"
+sed 's/joint.multiplier \* q/q/' hand.html >kept.html && cp hand.html good.html && cp kept.html hand.html
+! python3 judge.py "$BIN/kaboum-ik" "$HERE/move_joints.js" >said.txt 2>&1 || fail "joints that follow none are taken for good"
+cp good.html hand.html
+# A verdict for each link, and what to do next.
+python3 - <<'END_OF_CHECK' || fail "words of the robot's page"
+import json
+data = json.loads(open("hand.html").read().split('type="application/json">')[1].split("</script>")[0])
+assert data["table"]["head"] == ["link", "bodies", "vertices", "within", "verdict"] and data["table"]["bad"] == []
+assert sorted(row[0] for row in data["table"]["rows"]) == ["base", "fore", "tip", "upper", "wheel"] and all("inside" in row[4] for row in data["table"]["rows"])
+steps = {step["name"]: step["command"] for step in data["steps"]}
+assert steps["check it"].startswith("bound-verify robot hand.urdf hand/hand.urdf") and steps["MuJoCo"] == "python3 -m mujoco.viewer --mjcf=hand/hand.xml"
+assert {"MoveIt", "MuJoCo", "Drake", "Isaac Lab", "Gazebo"} < set(steps), steps
+rows = open("rows.html").read()
+assert "bound-verify robot hand.urdf" in rows and "pydrake.visualization.model_visualizer hand/hand.urdf" in rows
+END_OF_CHECK
 expect 0 '' "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.02 --preview swept.html --report swept.json
 preview swept.html "$(figure swept.json 'r["reach"] + r["bodies_epsilon"]')"
 expect 0 '' "$BIN/sweep-approx" arm.urdf --path path.csv -o placed.glb --epsilon 0.02 --base-pose 1,2,0,0,0,1 --preview placed.html --report placed.json
@@ -109,6 +211,6 @@ grep -q ' 2 left out' said.txt || fail "assumed.html: $(cat said.txt)"
 
 if [ -n "$PAGES" ]; then
   mkdir -p "$PAGES"
-  cp bodies.html outer.html swept.html plan.html assumed.html "$PAGES/" || fail "pages for pages-seen.sh"
+  cp bodies.html outer.html hand.html swept.html plan.html assumed.html "$PAGES/" || fail "pages for pages-seen.sh"
 fi
 finish

@@ -55,7 +55,7 @@ for entry in "$KABOUM_CACHE"/*.set; do
 done
 expect 0 '' "$S" robot/r.urdf -o round4 --visual --epsilon 2% --effort fast
 # On one core the second of the two meshes finds what the first one has made again.
-[ "$(grep -c 'from the cache' err.txt)" -lt 2 ] || fail "a damaged entry is used"
+grep -q '(2 from the cache)' err.txt && fail "a damaged entry is used"
 diff -r round round4 >diff.txt || fail "another result after damage: $(cat diff.txt)"
 shows 0 'are whole' "$BIN/kaboum-cache" verify
 # Where float32 is too coarse, that mesh alone is written with more digits, unless one format is asked for.
@@ -77,7 +77,7 @@ expect 1 'choose a format that holds doubles' "$S" far/r.urdf -o stl --visual --
 
 expect 0 '' "$S" robot/r.urdf -o objs --visual --epsilon 2% --effort fast --output-format obj --verify
 shows 0 '^verified' "$V" robot robot/r.urdf objs/r.urdf --visual --prepare
-expect 0 '' "$S" robot/r.urdf -o few --visual --vertices 100 --effort fast --links base
+expect 0 '' "$S" robot/r.urdf -o few --visual --vertices 100 --effort fast --links base --verbose
 grep -q '→ 100 vertices' err.txt || fail "a number of vertices: $(cat err.txt)"
 expect 2 'direction' "$S" robot/r.urdf -o x --epsilon 2% --direction inner
 expect 2 'progressive' "$S" robot/r.urdf -o x --epsilon 2% --progressive x.pm

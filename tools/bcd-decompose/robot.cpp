@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/robot_budget.h>
 #include <kaboum/certify/sphere_repair.h>
@@ -22,10 +23,14 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "robots/bodies.h"
 #include "robots/check.h"
+#include "robots/next_steps.h"
 #include "robots/output.h"
+#include "robots/progress.h"
+#include "robots/summary.h"
 #include "words.h"
 
 namespace kaboum::tools {
@@ -65,8 +70,11 @@ struct Run {
   certify::CertifiedRobot made = {};
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
   std::vector<certify::LinkVerdict> verdicts = {};
-  Notes notes = {};
-  std::optional<scene::RobotPairs> pairs = {};  ///< with --srdf
+  Notes notes = {};                                                ///< on meshes
+  Notes written = {};                                              ///< on what was written
+  std::vector<std::pair<std::string, std::string>> warnings = {};  ///< on meshes
+  std::size_t cached = 0;                                          ///< meshes
+  std::optional<scene::RobotPairs> pairs = {};                     ///< with --srdf
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
     return made.bodies.certificate();
@@ -79,6 +87,25 @@ struct Run {
     return nullptr;
   }
 };
+
+/// What is said of a mesh that is done: with --verbose a line, else what helps where it is not as
+/// asked for, and warnings.
+void take_note(Run& run, const certify::CertifiedLinkMesh& mesh, Notes& shortfalls) {
+  const std::string file = mesh.mesh.file.string(), name = mesh.mesh.file.filename().string();
+  const bool quiet = run.o.common.quiet, verbose = run.o.robot.verbose;
+  if (!mesh.flaw.empty() && verbose) log(quiet, mesh.flaw);
+  if (!mesh.held) return;
+  const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
+  if (mesh.made.found.cached) ++run.cached;
+  if (verbose)
+    log(quiet, file + ": " + page::summary_of(certificate) +
+                   (mesh.made.found.cached ? " (from the cache)" : ""));
+  const std::string why = page::shortfall_of(certificate);
+  if (!why.empty() && certificate.undecided.empty()) shortfalls.add(name, why);
+  const double diagonal = certificate.wrap ? certificate.wrap->diagonal : certificate.diagonal;
+  if (std::string text = certify::warning_of(mesh.epsilon, diagonal); !text.empty())
+    run.warnings.emplace_back(name, std::move(text));
+}
 
 /// What a budget for the whole robot allows: one epsilon, or of spheres one for each link.
 void share_out(Run& run, const certify::SetCache* cache) {
@@ -95,35 +122,96 @@ void share_out(Run& run, const certify::SetCache* cache) {
                        {given(run.o.robot_bodies), given(run.o.robot_vertices)}, cache, hooks);
 }
 
-void certify_links(Run& run) {
+/// Lines of the links that have shapes.
+std::vector<LinkLine> lines_of(const Run& run, const certify::CertifiedBodies& bodies) {
+  const certify::BodiesCertificate& certificate = bodies.certificate();
+  std::vector<LinkLine> out;
+  for (const certify::LinkVerdict& link : run.verdicts) {
+    LinkLine& line = out.emplace_back();
+    line.name = run.robot.robot.links[link.link].name;
+    line.outcome = link.outcome;
+    line.epsilon =
+        page::epsilon_of(line.name, run.request.epsilons, run.request.set.wanted_epsilon());
+    if (const certify::CertifiedLink* set = run.set_of(link.link)) {
+      line.within = set->certificate().distance;
+      line.bodies = set->artefact().bodies.size();
+      line.vertices = 0;
+      for (const geom::ConvexBody& body : set->artefact().bodies)
+        *line.vertices += body.core.vertices.size();
+    }
+    if (!run.made.links.empty()) continue;  // a link without a set has no bodies that are written
+    for (std::size_t i = 0; i < certificate.shapes.size(); ++i)
+      if (certificate.shapes[i].link == link.link)
+        line.within = std::max(line.within, certificate.distances[i]);
+    line.bodies = static_cast<std::size_t>(std::ranges::count(
+        bodies.artefact(), link.link, [](const robot::LinkBody& body) { return body.link; }));
+  }
+  return out;
+}
+
+void say_table(const Run& run, const std::vector<LinkLine>& links, const Notes& shortfalls) {
+  const std::string made =
+      run.request.set.body_kind == certify::SetRequest::BodyKind::Spheres ? "spheres" : "bodies";
+  for (const std::string& line : table_of(links, made, run.request.set.unit))
+    log(run.o.common.quiet, line);
+  for (const std::string& line : shortfalls.lines()) log(run.o.common.quiet, line);
+}
+
+std::vector<std::string> all_notes(const Run& run) {
+  std::vector<std::string> out = run.notes.lines();
+  for (std::string& text : run.written.lines()) out.push_back(std::move(text));
+  return out;
+}
+
+/// Hooks that show the progress and collect what is to be said.
+certify::RobotHooks hooks_of(Run& run, MeshProgress& progress, Notes& shortfalls) {
   using Clock = std::chrono::steady_clock;
-  const certify::SetCache kept(certify::SetCache::default_folder());
-  const certify::SetCache* cache = run.o.no_cache ? nullptr : &kept;
-  if (run.o.robot_bodies + run.o.robot_vertices > 0) share_out(run, cache);
-  Progress progress(run.o.common.quiet);
   certify::RobotHooks hooks =
       certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
   hooks.made = [&, last = Clock::now()](const certify::CertifiedLinkMesh& mesh) mutable {
     run.seconds.push_back(std::chrono::duration<double>(Clock::now() - last).count());
     last = Clock::now();
-    progress.show("");
-    const std::string file = mesh.mesh.file.string();
-    if (!mesh.flaw.empty()) log(run.o.common.quiet, mesh.flaw);
-    if (!mesh.held) return;
-    const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
-    log(run.o.common.quiet, file + ": " + page::summary_of(certificate) +
-                                (mesh.made.found.cached ? " (from the cache)" : ""));
-    const std::string why = page::shortfall_of(certificate);
-    if (!why.empty()) log(run.o.common.quiet, file + ": " + why);
+    progress.made(mesh.held && mesh.made.found.cached);
+    take_note(run, mesh, shortfalls);
   };
-  run.made = certify::certify_robot(run.robot, run.request, cache, hooks);
-  run.verdicts = verdicts(run.made);
+  return hooks;
 }
 
+void certify_links(Run& run, const robot::LinkMeshes& meshes) {
+  const certify::SetCache kept(certify::SetCache::default_folder());
+  const certify::SetCache* cache = run.o.no_cache ? nullptr : &kept;
+  if (run.o.robot_bodies + run.o.robot_vertices > 0) share_out(run, cache);
+  Notes shortfalls;
+  {
+    MeshProgress progress("bcd-decompose", run.o.common.quiet, meshes, cache != nullptr);
+    run.made =
+        certify::certify_robot(run.robot, run.request, cache, hooks_of(run, progress, shortfalls));
+    run.verdicts = verdicts(run.made);
+    if (!run.o.srdf) return say_table(run, lines_of(run, run.made.bodies), shortfalls);
+    progress.other("looking for pairs of links that never touch",
+                   cache != nullptr ? "nothing is written, but the cache keeps all bodies: the "
+                                      "same command goes on there"
+                                    : "nothing is written");
+    run.pairs = scene::pairs_of(run.robot.robot, run.made);
+  }
+  say_table(run, lines_of(run, run.made.bodies), shortfalls);
+}
+
+/// Until it is written whole, the folder has no robot.
 void write(Run& run, RobotWriter& writer) {
   std::optional<certify::CacheFolder> cache;
   if (!run.o.no_cache) cache.emplace(certify::CacheFolder::default_folder());
-  write_certified(writer, run.made, cache ? &*cache : nullptr, note_in(run.notes));
+  LastWords words(run.o.common.quiet);
+  words.set("bcd-decompose: ended by a signal while " + run.o.output +
+            " was written, which has no robot until the same command is called again");
+  write_certified(writer, run.made, cache ? &*cache : nullptr, note_in(run.written));
+}
+
+std::string counts_in_words(const Run& run, const page::RobotCounts& counts) {
+  std::string out = counted(counts.bodies, "body", "bodies") + " of " +
+                    counted(counts.links, "link", "links") + ", from " + counts.of_meshes();
+  if (run.cached > 0) out += " (" + std::to_string(run.cached) + " from the cache)";
+  return out;
 }
 
 /// @param files  of the links that have a set
@@ -175,6 +263,7 @@ Json robot_report(const Run& run, const RobotWriter& output) {
                  {"sentence", in_words(run.verdicts)},
                  {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
+                 {"notes", all_notes(run)},
                  {"parameters", run.request.parameters()}});
   if (run.pairs) report["pairs_of_links"] = pairs_report(*run.pairs);
   return report;
@@ -192,7 +281,8 @@ void write_page(const Run& run, const RobotWriter& output) {
           .passes = check.passes,
           .unit = run.request.set.unit,
           .files = output.documents(),
-          .notes = run.notes.lines(),
+          .notes = all_notes(run),
+          .steps = next_steps(output, run.o.robot, check, run.o.srdf),
           .links = page::page_links(run.robot, run.made, run.request, run.seconds),
           .counts = page::counts_of(run.made)}));
 }
@@ -232,25 +322,30 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     run.request.set.nearest = true;
     share_out(run, cache);
   }
-  Progress progress(o.common.quiet);
-  certify::RobotHooks hooks =
-      certify::hooks_of(run.notes, [&](const std::string& stage) { progress.show(stage); });
   bool reached = true;
   Json meshes = Json::array();
-  hooks.made = [&](const certify::CertifiedLinkMesh& mesh) {
-    progress.show("");
-    // A link without spheres is no obstacle for whoever reads them.
-    if (!mesh.held) throw Error(ErrorCode::LimitReached, mesh.flaw);
-    if (!mesh.flaw.empty()) run.notes.add(mesh.mesh.file.string(), mesh.flaw);
-    const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
-    reached =
-        reached && mesh.flaw.empty() && certificate.reached() && certificate.undecided.empty();
-    log(o.common.quiet, mesh.mesh.file.string() + ": " + page::summary_of(certificate) +
-                            (mesh.made.found.cached ? " (from the cache)" : ""));
-    meshes.push_back({{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
-  };
-  const certify::CertifiedBodies bodies =
-      certify::certify_bodies(run.robot, run.request, cache, hooks);
+  Notes shortfalls;
+  const certify::CertifiedBodies bodies = [&] {
+    MeshProgress progress(
+        "bcd-decompose", o.common.quiet,
+        certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons),
+        cache != nullptr);
+    certify::RobotHooks hooks = hooks_of(run, progress, shortfalls);
+    hooks.made = [&, say = hooks.made](const certify::CertifiedLinkMesh& mesh) {
+      // A link without spheres is no obstacle for whoever reads them.
+      if (!mesh.held) throw Error(ErrorCode::LimitReached, mesh.flaw);
+      say(mesh);
+      if (!mesh.flaw.empty()) run.notes.add(mesh.mesh.file.string(), mesh.flaw);
+      const certify::SetCertificate& certificate = mesh.made.found.set.certificate();
+      reached =
+          reached && mesh.flaw.empty() && certificate.reached() && certificate.undecided.empty();
+      meshes.push_back({{"file", mesh.mesh.file.string()}, {"result", report_of(mesh.made)}});
+    };
+    return certify::certify_bodies(run.robot, run.request, cache, hooks);
+  }();
+  run.verdicts = verdicts(bodies);
+  say_table(run, lines_of(run, bodies), shortfalls);
+  say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   double distance = bodies.certificate().distance;
   if (spheres) {
     io::write_file(o.output, robot_folder::sphere_text(format, run.robot, bodies,
@@ -271,7 +366,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                           ", on the mean of links " + number_up(mean_distance(bodies)) +
                           "; bound-verify robot " + o.input +
                           (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
-  for (const std::string& note : run.notes.lines()) log(o.common.quiet, "note: " + note);
+  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
                  {{spheres ? "spheres" : "bodies", bodies.artefact().size()},
@@ -385,23 +480,22 @@ int decompose_robot(const DecomposeOptions& o) {
   output.plan(meshes);
   if (o.srdf) output.folder().require_own_document(".srdf");
   require_formats(meshes, o.input_format);
-  certify_links(run);
-  if (o.srdf) {
-    run.pairs = scene::pairs_of(run.robot.robot, run.made);
-    output.add_document(".srdf", run.pairs->srdf);
-  }
+  certify_links(run, meshes);
+  if (run.pairs) output.add_document(".srdf", run.pairs->srdf);
   write(run, output);
-  const page::RobotCounts counts = page::counts_of(run.made);
-  log(o.common.quiet, output.folder().urdf().string() + ": " +
-                          counted(counts.bodies, "body", "bodies") + " of " +
-                          counted(counts.links, "link", "links") + ", from " + counts.of_meshes());
+  log(o.common.quiet,
+      output.folder().urdf().string() + ": " + counts_in_words(run, page::counts_of(run.made)));
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
-  say(output, o.common.quiet, run.notes);
+  log(o.common.quiet, "from the files alone: " + check_of(run, output).command);
+  say(output, o.robot, o.common.quiet);
+  for (const std::string& text : run.written.lines()) log(o.common.quiet, text);
+  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
   if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
   if (is_page(o.preview))
     io::write_file(o.preview,
                    page::page_of_robot({o.input, o.set.request.unit,
-                                        certify::request_of(o.set).parameters(), remedy_of_program},
+                                        certify::request_of(o.set).parameters(), remedy_of_program,
+                                        next_steps(output, o.robot, check_of(run, output), o.srdf)},
                                        run.robot, run.made, run.verdicts));
   else if (!o.preview.empty())
     io::write_file(o.preview, picture::encode_png(picture::draw_bodies(

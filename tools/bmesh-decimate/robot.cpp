@@ -11,11 +11,14 @@
 
 #include <algorithm>
 
+#include "common/last_words.h"
 #include "common/result_files.h"
 #include "results.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
+#include "robots/next_steps.h"
 #include "robots/output.h"
+#include "robots/summary.h"
 
 namespace kaboum::tools {
 namespace {
@@ -49,7 +52,9 @@ struct Run {
   certify::LinkEnclosuresRequest request = {};
   certify::LinkEnclosures made = {};
   std::vector<certify::LinkVerdict> verdicts = {};
-  Notes notes = {};
+  Notes notes = {};                                                ///< on meshes
+  Notes written = {};                                              ///< on what was written
+  std::vector<std::pair<std::string, std::string>> warnings = {};  ///< on meshes
 
   [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
 };
@@ -72,21 +77,70 @@ std::string summary(const certify::EnclosureCertificate& c) {
          formatted(c.diagonal > 0 ? 100 * c.distance_upper / c.diagonal : 0) + "%)";
 }
 
+/// Lines of the links that have shapes.
+std::vector<LinkLine> lines_of(const Run& run) {
+  std::vector<LinkLine> out;
+  std::size_t at = 0;
+  for (const std::vector<robot::LinkShape>& shapes : run.made.shapes_by_link()) {
+    const robot::Link& link = run.robot.robot.links[shapes.front().link];
+    LinkLine& line = out.emplace_back();
+    line.name = link.name;
+    line.outcome = run.verdicts[at++].outcome;
+    line.epsilon = page::epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
+    line.vertices = 0;
+    for (const robot::LinkShape& shape : shapes) {
+      if (!shape.mesh || !run.made.meshes[*shape.mesh].flaw.empty()) continue;
+      const certify::EnclosureCertificate& c =
+          run.made.meshes[*shape.mesh].made.enclosure.certificate();
+      const robot::Geometry& place = run.request.shapes.shapes_of(link)[shape.index];
+      ++line.bodies;
+      *line.vertices += c.vertices;
+      line.within = std::max(line.within, c.distance_upper * place.size.cwiseAbs().maxCoeff());
+    }
+  }
+  return out;
+}
+
 void say_meshes(Run& run) {
+  const bool quiet = run.o.common.quiet;
+  Notes shortfalls;
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes) {
     const std::string file = mesh.mesh.file.string();
     if (!mesh.flaw.empty()) {
-      log(run.o.common.quiet, mesh.flaw);
+      if (run.o.robot.verbose) log(quiet, mesh.flaw);
       continue;
     }
     const certify::EnclosureCertificate& c = mesh.made.enclosure.certificate();
-    log(run.o.common.quiet,
-        file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
+    if (run.o.robot.verbose)
+      log(quiet, file + ": " + summary(c) + (mesh.made.cached ? " (from the cache)" : ""));
     if (const std::string why = shortfall(c); !why.empty())
-      log(run.o.common.quiet, std::string(file).append(": ").append(why));
+      shortfalls.add(mesh.mesh.file.filename().string(), why);
     for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
-    for (const std::string& text : c.notes) run.notes.add(file, text);
+    for (const std::string& text : c.notes) {
+      run.notes.add(file, text);
+      if (text.starts_with("WARNING") || text.starts_with("float32 is too coarse"))
+        run.warnings.emplace_back(mesh.mesh.file.filename().string(), text);
+    }
   }
+  for (const std::string& line : table_of(lines_of(run), "meshes", "m")) log(quiet, line);
+  for (const std::string& line : shortfalls.lines()) log(quiet, line);
+}
+
+std::vector<std::string> all_notes(const Run& run) {
+  std::vector<std::string> out = run.notes.lines();
+  for (std::string& text : run.written.lines()) out.push_back(std::move(text));
+  return out;
+}
+
+std::string counts_in_words(const Run& run) {
+  const page::RobotCounts counts = page::counts_of(run.made);
+  const auto cached = std::ranges::count_if(
+      run.made.meshes, [](const auto& mesh) { return mesh.flaw.empty() && mesh.made.cached; });
+  std::string out =
+      counted(counts.bodies, "mesh", "meshes") + " of " + counted(counts.links, "link", "links");
+  if (counts.kept > 0) out += ", from " + counts.of_meshes();
+  if (cached > 0) out += " (" + std::to_string(cached) + " from the cache)";
+  return out;
 }
 
 /// The command that decides it from the files alone; epsilon as well, where it is one for all links
@@ -139,6 +193,7 @@ Json decimated_report(const Run& run, const RobotWriter& output) {
                  {"sentence", in_words(run.verdicts)},
                  {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
+                 {"notes", all_notes(run)},
                  {"parameters", run.request.mesh.parameters()}});
   return report;
 }
@@ -152,7 +207,8 @@ void write_page(const Run& run, const RobotWriter& output) {
                              .passes = check.passes,
                              .unit = "the robot's unit",
                              .files = output.documents(),
-                             .notes = run.notes.lines(),
+                             .notes = all_notes(run),
+                             .steps = next_steps(output, run.o.robot, check, {}),
                              .links = page::page_links(run.robot, run.made, run.request),
                              .counts = page::counts_of(run.made),
                              .made = "meshes"};
@@ -203,6 +259,11 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   require_formats(meshes, o.input_format);
   {
     Progress progress(o.common.quiet);
+    LastWords words(o.common.quiet);
+    words.set(std::string("bmesh-decimate: ended by a signal, and nothing is written. ") +
+              (o.no_cache ? "Nothing is kept (--no-cache)"
+                          : "The cache keeps the meshes that are done: the same command goes on "
+                            "there"));
     const certify::CacheFolder cache(certify::CacheFolder::default_folder());
     run.made = certify::enclose_links(run.robot, run.request, o.no_cache ? nullptr : &cache,
                                       [&](const std::string& stage) { progress.show(stage); });
@@ -211,14 +272,14 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   say_meshes(run);
   std::optional<certify::CacheFolder> written;
   if (!o.no_cache) written.emplace(certify::CacheFolder::default_folder());
-  robot_folder::write_enclosed(output, run.made, written ? &*written : nullptr, note_in(run.notes));
-  const page::RobotCounts counts = page::counts_of(run.made);
-  log(o.common.quiet, output.folder().urdf().string() + ": " +
-                          counted(counts.bodies, "mesh", "meshes") + " of " +
-                          counted(counts.links, "link", "links") +
-                          (counts.kept > 0 ? ", from " + counts.of_meshes() : std::string()));
+  robot_folder::write_enclosed(output, run.made, written ? &*written : nullptr,
+                               note_in(run.written));
+  log(o.common.quiet, output.folder().urdf().string() + ": " + counts_in_words(run));
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
-  say(output, o.common.quiet, run.notes);
+  log(o.common.quiet, "from the files alone: " + check_of(run, output).command);
+  say(output, o.robot, o.common.quiet);
+  for (const std::string& text : run.written.lines()) log(o.common.quiet, text);
+  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty())
     write_report(o.common, "bmesh-decimate", decimated_report(run, output));

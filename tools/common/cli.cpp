@@ -3,6 +3,7 @@
 #include "cli.h"
 
 #include <kaboum/base/option.h>
+#include <sys/ioctl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -44,6 +45,20 @@ const CLI::Option* without_value(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
     if (const CLI::Option* option = without_value(*command)) return option;
   return nullptr;
+}
+
+/// Of the terminal that stderr is.
+std::size_t columns() {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : kUsual;
+}
+
+/// Bytes of the first characters of a UTF-8 text.
+std::size_t size_within(const std::string& text, std::size_t characters) {
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U && characters-- == 0) return i;
+  return text.size();
 }
 
 /// "kaboum-scene make", where a command was given.
@@ -142,7 +157,7 @@ Progress::~Progress() {
 void Progress::show(const std::string& text) {
   if (!active_) return;
   shown_ = true;
-  std::cerr << '\r' << text << "\033[K" << std::flush;
+  std::cerr << '\r' << text.substr(0, size_within(text, columns() - 1)) << "\033[K" << std::flush;
 }
 
 void log(bool quiet, const std::string& text) {

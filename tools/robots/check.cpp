@@ -2,8 +2,11 @@
 
 #include "check.h"
 
+#include <kaboum/robot/robot_file.h>
+
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace kaboum::tools {
 
@@ -30,9 +33,24 @@ Json report_of(const certify::LinkVerdict& link) {
 
 void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerdict>& verdicts,
                   bool quiet) {
-  for (const certify::LinkVerdict& link : verdicts)
-    if (link.outcome != Outcome::Held)
-      log(quiet, "link '" + robot.links[link.link].name + "': " + link.sentence);
+  std::vector<std::pair<std::string, std::vector<std::string>>> said;  // sentence, links
+  for (const certify::LinkVerdict& link : verdicts) {
+    if (link.outcome == Outcome::Held) continue;
+    auto at = std::ranges::find(said, link.sentence, [](const auto& one) { return one.first; });
+    if (at == said.end()) at = said.insert(at, {link.sentence, {}});
+    at->second.push_back(robot.links[link.link].name);
+  }
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    const auto& [sentence, links] = said[i];
+    if (i < kLinesOfVerdicts)
+      log(quiet,
+          (links.size() == 1 ? "link " : "links ") + robot::names_of(links) + ": " + sentence);
+    else
+      others.insert(others.end(), links.begin(), links.end());
+  }
+  if (!others.empty())
+    log(quiet, "links " + robot::names_of(others) + ": not held as asked for either");
   log(quiet, in_words(verdicts));
 }
 

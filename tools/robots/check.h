@@ -3,6 +3,7 @@
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/preparation_options.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,11 @@ int exit_code(certify::Outcome outcome);
 /// Of a link, in reports.
 Json report_of(const certify::LinkVerdict& link);
 
-/// One line for each link that is not held, and one for all.
+/// So many sentences about links are printed.
+inline constexpr std::size_t kLinesOfVerdicts = 12;
+
+/// One line for all links of which the same is to be said because they are not held as asked for,
+/// some names of those for which there are too many lines, and one line for all.
 void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerdict>& verdicts,
                   bool quiet);
 

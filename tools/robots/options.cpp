@@ -80,6 +80,9 @@ void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
                  "patterns with * and ?, each with a length or a percentage, as in wrist_*: 0.5% "
                  "[--epsilon for all]")
       ->type_name("FILE");
+  app.add_flag("--verbose", o.verbose,
+               "Of a robot, also print a line for each mesh and all notes, which otherwise only "
+               "--report and --html-report have");
   add_formats(app, o);
 }
 
@@ -92,7 +95,7 @@ void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
 
 void require_options_of_meshes(const CLI::App& app, const std::string& input) {
   for (const char* option : {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix",
-                             "--epsilons", "--robot-format", "--for", "--html-report"})
+                             "--epsilons", "--robot-format", "--for", "--html-report", "--verbose"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) +
                                                   " is for robots (.urdf, .xacro, .xml, .sdf); " +

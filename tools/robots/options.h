@@ -25,6 +25,7 @@ struct RobotOptions {
   std::vector<std::string> formats;  ///< that are written besides URDF
   std::string bodies = "stl";        ///< format of convex bodies' files
   bool declare_convex = false;       ///< in the URDF, as Drake asks for
+  bool verbose = false;              ///< a line for each mesh, and all notes
 
   [[nodiscard]] bool writes(const std::string& format) const;
 };

@@ -43,21 +43,54 @@ robot_folder::FileNote note_in(Notes& notes) {
   return [&notes](const std::string& file, const std::string& text) { notes.add(file, text); };
 }
 
-void say(const robot_folder::RobotWriter& writer, bool quiet, const Notes& notes) {
+void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
+               const std::vector<std::pair<std::string, std::string>>& warnings) {
+  const std::vector<std::string> lines = notes.lines();
+  if (options.verbose) {
+    for (const std::string& text : lines) log(quiet, text);
+    return;
+  }
+  if (!warnings.empty()) {
+    const auto& [file, text] = warnings.front();
+    const std::size_t more = warnings.size() - 1;
+    log(quiet, file + ": " + text +
+                   (more == 0 ? std::string()
+                              : "; so it is for " + counted(more, "more mesh", "more meshes")));
+  }
+  if (lines.size() > warnings.size())
+    log(quiet,
+        counted(lines.size() - warnings.size(), "note", "notes") +
+            " on how meshes are read and prepared: --verbose prints them, reports have them");
+}
+
+namespace {
+
+/// The first lines and, of too many, how many there are.
+void log_some(const std::vector<std::string>& lines, bool all, bool quiet) {
+  constexpr std::size_t kMost = 4;
+  const std::size_t shown = all || lines.size() <= kMost ? lines.size() : kMost - 1;
+  for (std::size_t i = 0; i < shown; ++i) log(quiet, lines[i]);
+  if (shown < lines.size())
+    log(quiet,
+        "and " + std::to_string(lines.size() - shown) + " more such notes: --verbose prints them");
+}
+
+}  // namespace
+
+void say(const robot_folder::RobotWriter& writer, const RobotOptions& options, bool quiet) {
   const robot_folder::FolderOptions& o = writer.options();
   const bool visual = o.shapes.visual;
   const robot_folder::RobotFolder& folder = writer.folder();
   if (writer.robot().format == robot::RobotFile::Format::Urdf)
     log(quiet, how_meshes_are_found(folder.urdf(), folder.part(),
                                     robot_folder::with_slash(o.mesh_prefix)));
-  for (const std::string& text : notes.lines()) log(quiet, text);
   const robot::Robot& robot = writer.robot().robot;
-  for (const std::string& text : robot.notes) log(quiet, text);
-  for (const std::string& text : robot.unmodelled)
-    log(quiet, text + "; the shapes of links do not depend on it");
-  for (const std::string& text :
-       robot::notes_on_flat_shapes(writer.robot(), visual, o.shapes.links))
-    log(quiet, text);
+  log_some(robot.notes, options.verbose, quiet);
+  std::vector<std::string> unmodelled = robot.unmodelled;
+  for (std::string& text : unmodelled) text += "; the shapes of links do not depend on it";
+  log_some(unmodelled, options.verbose, quiet);
+  log_some(robot::notes_on_flat_shapes(writer.robot(), visual, o.shapes.links), options.verbose,
+           quiet);
   const std::vector<std::string> old = writer.stale();
   if (!old.empty())
     log(quiet, folder.path().string() + ": " + robot::names_of(old) +
@@ -67,7 +100,7 @@ void say(const robot_folder::RobotWriter& writer, bool quiet, const Notes& notes
        robot::notes_on({{}, writer.bare_links().other}, visual,
                        visual ? ", which stay as they are"
                               : ": nothing of this is covered (--visual covers those)"))
-    log(quiet, writer.robot().path.string() + ": " + text);
+    log(quiet, writer.robot().path.filename().string() + ": " + text);
 }
 
 Json report_of(const robot_folder::RobotWriter& writer) {

@@ -4,6 +4,8 @@
 #include <kaboum/robot_folder/robot_writer.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/report.h"
 #include "options.h"
@@ -21,8 +23,13 @@ robot_folder::FolderOptions folder_options(const RobotOptions& options);
 /// Notes on files, for later.
 robot_folder::FileNote note_in(Notes& notes);
 
+/// Notes on meshes, for the terminal: warnings, and how many others there are; with --verbose all.
+/// @param warnings  of meshes, by their files
+void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
+               const std::vector<std::pair<std::string, std::string>>& warnings);
+
 /// Says what a user should know of the folder.
-void say(const robot_folder::RobotWriter& writer, bool quiet, const Notes& notes);
+void say(const robot_folder::RobotWriter& writer, const RobotOptions& options, bool quiet);
 /// What reports say of it: urdf, documents, stale, links_without_shapes.
 Json report_of(const robot_folder::RobotWriter& writer);
 

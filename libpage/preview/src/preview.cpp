@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace kaboum::page {
 namespace {
@@ -84,12 +85,52 @@ Json layer_json(const Layer& layer, const Placing& placing, double largest) {
   return out;
 }
 
+Json variables_json(const robot::Robot& robot, const std::vector<double>& start) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < robot.variables.size(); ++i) {
+    const bool slides = std::ranges::any_of(robot.joints, [&](const robot::Joint& joint) {
+      return joint.type == robot::JointType::Prismatic && joint.variable == i;
+    });
+    const Range range = range_of(robot, i);
+    const robot::Variable& variable = robot.variables[i];
+    out.push_back({{"name", variable.name},
+                   {"slides", slides},
+                   {"low", range.low},
+                   {"high", range.high},
+                   {"limited", variable.lower.has_value() && variable.upper.has_value()},
+                   {"value", std::clamp(start[i], range.low, range.high)}});
+  }
+  return out;
+}
+
 constexpr const char* kNote =
     "Colours are for looking, not certified: distances at the corners of the triangles drawn, and "
     "between "
     "them in proportion. What is certified is said above.";
 
 }  // namespace
+
+Range range_of(const robot::Robot& robot, std::size_t variable) {
+  const robot::Variable& v = robot.variables[variable];
+  double widest = 1;
+  for (const robot::Joint& joint : robot.joints)
+    if (joint.type == robot::JointType::Revolute && joint.variable == variable)
+      widest = std::numbers::pi;
+  Range out{v.lower.value_or(v.upper ? *v.upper - 2 * widest : -widest),
+            v.upper.value_or(v.lower ? *v.lower + 2 * widest : widest)};
+  for (const robot::Joint& joint : robot.joints) {
+    if (joint.type == robot::JointType::Fixed || joint.variable != variable ||
+        joint.multiplier == 0)
+      continue;
+    const auto driving = [&](double own) { return (own - joint.offset) / joint.multiplier; };
+    const std::optional<double>& low = joint.multiplier > 0 ? joint.lower : joint.upper;
+    const std::optional<double>& high = joint.multiplier > 0 ? joint.upper : joint.lower;
+    if (low) out.low = std::max(out.low, driving(*low));
+    if (high) out.high = std::min(out.high, driving(*high));
+  }
+  out.high = std::max(out.low, out.high);
+  return out;
+}
 
 std::string preview_page(const Preview& preview) {
   const Placing placing = placing_of(preview);
@@ -105,11 +146,17 @@ std::string preview_page(const Preview& preview) {
   for (const Layer& layer : preview.layers) layers.push_back(layer_json(layer, placing, largest));
   data["layers"] = std::move(layers);
   if (!preview.table.rows.empty())
-    data["table"] = {{"head", preview.table.head}, {"rows", preview.table.rows}};
+    data["table"] = {
+        {"head", preview.table.head}, {"rows", preview.table.rows}, {"bad", preview.table.bad}};
+  for (const Step& step : preview.steps)
+    data["steps"].push_back(
+        {{"name", step.name}, {"words", step.words}, {"command", step.command}});
   if (preview.motion) {
     data["robot"] = {{"base", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}},
                      {"joints", Json::parse(robot::joints_json(preview.motion->robot))}};
     data["path"] = preview.motion->path;
+    if (preview.motion->by_hand)
+      data["variables"] = variables_json(preview.motion->robot, preview.motion->path.front());
   }
   // Names of files need not be UTF-8, pages have to be.
   const auto text_of = [](const Json& json) {

@@ -155,6 +155,10 @@ std::string to_html(const RobotPage& p) {
   cell(page, escape_xml(in_words(verdicts)),
        outcome_of(verdicts) == certify::Outcome::Held ? "yes" : "no");
   page += "</tr></tfoot></table>\n";
+  for (const Step& step : p.steps)
+    page += "<p>" + escape_xml(step.name) +
+            (step.words.empty() ? "" : ": " + escape_xml(step.words)) + "<br><code>" +
+            escape_xml(step.command) + "</code></p>\n";
   if (!p.files.empty()) page += "<p>Files:" + lines_of(p.files) + "</p>\n";
   if (!p.notes.empty()) page += "<p>Notes:" + lines_of(p.notes) + "</p>\n";
   return page + "</body></html>\n";

@@ -2,6 +2,8 @@
 
 #include <kaboum/page/set_page.h>
 
+#include <kaboum/base/notes.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/page/gaps.h>
 #include <kaboum/robot/exact_shapes.h>
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -144,11 +147,12 @@ std::string page_of_robot(const RobotWords& words, const robot::RobotFile& robot
   Layer input{"shapes", Layer::View::Shown, false};
   Layer result{"bodies", Layer::View::Transparent};
   result.bodies = result.all_edges = true;
-  std::size_t count = 0;
   std::vector<std::string> points;  // links that have nothing else
+  std::map<std::uint32_t, const certify::CertifiedLink*> sets;
   double reach = 0;
   for (const certify::CertifiedLink& made_link : made.links) {
     const std::uint32_t index = made_link.certificate().link;
+    sets[index] = &made_link;
     const geom::Mesh exact = robot::exact_shapes(bodies.choice.shapes_of(robot.robot.links[index]),
                                                  robot, bodies.choice.packages);
     if (exact.triangles.empty()) {
@@ -163,31 +167,46 @@ std::string page_of_robot(const RobotWords& words, const robot::RobotFile& robot
       result.shapes.push_back(std::move(shape));
     }
     input.shapes.push_back({exact, {}, index});
-    count += hulls.size();
     reach = std::max(reach, made_link.certificate().distance);
   }
-  preview.facts = {{"robot", file_name(words.file) + ", at zero joint values"},
+  preview.table.head = {"link", "bodies", "vertices", "within", "verdict"};
+  std::size_t count = 0;
+  for (const certify::LinkVerdict& link : verdicts) {
+    if (link.outcome != certify::Outcome::Held)
+      preview.table.bad.push_back(preview.table.rows.size());
+    std::vector<std::string>& row = preview.table.rows.emplace_back();
+    row = {robot.robot.links[link.link].name, "-", "-", "-", link.sentence};
+    const auto set = sets.find(link.link);
+    if (set == sets.end()) continue;
+    std::size_t vertices = 0;
+    for (const geom::ConvexBody& body : set->second->artefact().bodies)
+      vertices += body.core.vertices.size();
+    count += set->second->artefact().bodies.size();
+    row[1] = std::to_string(set->second->artefact().bodies.size());
+    row[2] = std::to_string(vertices);
+    row[3] = number_up(set->second->certificate().distance);
+  }
+  preview.facts = {{"robot", file_name(words.file)},
                    {"options", words.parameters},
                    {"result", counted(count, "body", "bodies") + " of " +
                                   counted(made.links.size(), "link", "links")},
                    {"verdict", in_words(verdicts) + ": decided exactly"}};
-  for (const certify::LinkVerdict& link : verdicts)
-    if (link.outcome != certify::Outcome::Held)
-      preview.facts.emplace_back("link " + robot.robot.links[link.link].name, link.sentence);
+  Notes shortfalls;
   for (const certify::CertifiedLinkMesh& mesh : bodies.meshes) {
     if (!mesh.held) continue;
-    const certify::SetCertificate& c = mesh.made.found.set.certificate();
-    const std::string why = words.spelled(shortfall_of(c));
-    preview.facts.emplace_back(mesh.mesh.file.filename().string(),
-                               summary_of(c) + (why.empty() ? "" : ". " + why));
+    const std::string why = words.spelled(shortfall_of(mesh.made.found.set.certificate()));
+    if (!why.empty()) shortfalls.add(mesh.mesh.file.filename().string(), why);
   }
+  for (const std::string& text : shortfalls.lines())
+    preview.facts.emplace_back("not reached", text);
+  preview.steps = words.steps;
   preview.facts.emplace_back("reach", "no point of a body is farther from its link's shapes than " +
                                           three_digits(reach) + ", certified");
   for (const std::string& link : points)
     preview.facts.emplace_back(link, "its shapes are points, which no body covers");
   preview.layers = {std::move(input), std::move(result)};
   preview.motion.emplace(
-      Motion{robot.robot, {std::vector<double>(robot.robot.variables.size(), 0.0)}});
+      Motion{robot.robot, {std::vector<double>(robot.robot.variables.size(), 0.0)}, true});
   return preview_page(preview);
 }
 

@@ -43,14 +43,30 @@ struct Layer {
 /// A robot that carries shapes along a path.
 struct Motion {
   const robot::Robot& robot;
-  robot::Path path;  ///< of one waypoint at least
+  robot::Path path;      ///< of one waypoint at least
+  bool by_hand = false;  ///< joints are moved by sliders, from the first waypoint on
 };
 
 /// A table that stands below the facts.
 struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;  ///< each as long as the head
+  std::vector<std::size_t> bad = {};           ///< rows that are to be seen first
 };
+
+/// What a reader may do next with what is shown.
+struct Step {
+  std::string name;     ///< what for: "MuJoCo"
+  std::string words;    ///< what comes before, and what it is; may be empty
+  std::string command;  ///< of a shell
+};
+
+/// Values that a slider gives a variable of a robot: its limits, within those that joints which
+/// mimic it have of their own; without limits a turn, or a metre to both sides. [rad or length]
+struct Range {
+  double low = 0, high = 0;
+};
+Range range_of(const robot::Robot& robot, std::size_t variable);
 
 struct Preview {
   std::string title;
@@ -58,6 +74,7 @@ struct Preview {
   /// What stands beside: names and words.
   std::vector<std::pair<std::string, std::string>> facts = {};
   Table table = {};
+  std::vector<Step> steps = {};
   std::string meaning = {};  ///< of the distances, in a few words
   std::vector<Layer> layers = {};
   std::optional<Motion> motion = std::nullopt;  ///< where shapes are fixed to links

@@ -6,6 +6,7 @@
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/wanted_meshes.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/page/preview.h>
 #include <kaboum/robot/link_meshes.h>
 
 #include <optional>
@@ -46,6 +47,7 @@ struct RobotPage {
   bool passes = true;               ///< the command's exit code is 0
   std::string unit = "m";
   std::vector<std::string> files = {}, notes = {};
+  std::vector<Step> steps = {};  ///< what to do next
   std::vector<PageLink> links = {};
   RobotCounts counts = {};
   std::string made = "bodies";  ///< of what a link consists
