@@ -103,7 +103,7 @@ CoverCandidate find_cover_by(ComparedMethod method, const geom::SolidMesh& input
                              const CoverOptions& options) {
   require_sound(options);
   if (!options.max_bodies || options.epsilon || options.max_total_vertices ||
-      options.min_thickness > 0)
+      options.min_thickness > 0 || options.max_aspect)
     throw Error(ErrorCode::InvalidArgument,
                 "methods are compared by a number of bodies, with no other limits");
   CoverCandidate result;

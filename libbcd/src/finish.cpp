@@ -151,7 +151,8 @@ Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
     } else {
       round.hulls[i] = rounded(body, {shape.needed, 0, {}}, options.max_vertices);
     }
-    if (options.min_thickness > 0) round.thickened[i] = thicken(round.hulls[i]) ? 1 : 0;
+    if (options.min_thickness > 0 || options.max_aspect)
+      round.thickened[i] = thicken(round.hulls[i]) ? 1 : 0;
   });
   return round;
 }
@@ -229,12 +230,29 @@ void Finisher::find_required(const std::vector<Finished>& bodies,
   });
 }
 
-/// Makes a body as thick as asked for. @return whether it was not.
+/// Makes a body as thick as asked for, which its length may ask for, too. @return whether it was
+/// not.
 bool Finisher::thicken(Mesh& hull) const {
+  // Each round adds to the length at most a few times what it adds to the width.
+  constexpr int kRounds = 40;
+  constexpr double kBeyond = 1.05;
   const CoverOptions& options = state_.options();
-  if (geom::least_width(hull, options.min_thickness).lower >= options.min_thickness) return false;
-  hull = bcd::thicken(std::move(hull), options.min_thickness, options.max_vertices, state_.solid());
-  return true;
+  const auto wanted = [&] {
+    const double of_length =
+        options.max_aspect ? geom::longest_upper(hull.vertices) / *options.max_aspect : 0;
+    return std::max(options.min_thickness, of_length);
+  };
+  bool thin = false;
+  for (int round = 0; round < kRounds; ++round) {
+    const double least = wanted();
+    if (geom::least_width(hull, least).lower >= least) return thin;
+    thin = true;
+    const double thickness = options.max_aspect ? std::max(options.min_thickness, kBeyond * least)
+                                                : options.min_thickness;
+    hull = bcd::thicken(std::move(hull), thickness, options.max_vertices, state_.solid());
+  }
+  ensure(geom::least_width(hull, wanted()).lower >= wanted(), "a body stayed too thin");
+  return thin;
 }
 
 /// A body's simplified hull rounded outwards.

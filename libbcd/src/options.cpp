@@ -16,6 +16,8 @@ namespace {
 /// Largest spacing of float32 numbers that bodies are made with, as shares: rounding outwards takes
 /// some spacings of each body, which epsilon has to leave room for.
 constexpr double kSpacingOfEpsilon = 0.01, kSpacingWithEpsilon = 1e-4, kSpacingOfDiagonal = 1e-6;
+/// Least max_aspect: what is thickened in all directions has less, whatever rounding does.
+constexpr double kLeastAspect = 4;
 /// Default of max_work, and what each triangle adds beyond so many. [s]
 constexpr double kBaseWork = 20, kWorkPerTriangle = 1e-3, kManyTriangles = 1e4;
 
@@ -58,12 +60,15 @@ void require_sound(const CoverOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices must be at least 8");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
+  if (options.max_aspect && !(*options.max_aspect >= kLeastAspect))
+    throw Error(ErrorCode::InvalidArgument,
+                "max_aspect must be at least 4, in proportions that scales leave as well");
   if (!(options.simplify_share() >= 0 && options.simplify_share() <= 1))
     throw Error(ErrorCode::InvalidArgument, "the share for simplification must be from 0 to 1");
-  if (options.max_total_vertices && options.min_thickness > 0)
+  if (options.max_total_vertices && (options.min_thickness > 0 || options.max_aspect))
     throw Error(ErrorCode::InvalidArgument,
-                "a limit on all vertices together does not go with a least thickness: bodies are "
-                "simplified after they are thickened");
+                "a limit on all vertices together does not go with a least thickness, or a largest "
+                "aspect: bodies are simplified after they are thickened");
 }
 
 bool too_coarse(const geom::Mesh& mesh, const std::optional<double>& epsilon) {

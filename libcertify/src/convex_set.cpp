@@ -40,7 +40,7 @@ constexpr double kSumUp = 1 + 0x1p-50;
 /// its name; null: they can.
 const char* flaw_of_kind(const SetRequest& r) {
   if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
-  if (r.min_thickness > 0) return "cannot be thickened";
+  if (r.min_thickness > 0 || r.max_aspect) return "cannot be thickened";
   if (r.max_total_vertices) return "have no vertices to be counted";
   if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
   if (r.simplify) return "are not simplified";
@@ -64,7 +64,7 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
     if (condition)
       throw Error(ErrorCode::InvalidArgument, std::string("bodies inside the solid ") + what);
   };
-  refuse(r.min_thickness > 0, "cannot be thickened");
+  refuse(r.min_thickness > 0 || r.max_aspect, "cannot be thickened");
   refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
   refuse(r.simplify.has_value(), "are not simplified");
@@ -121,15 +121,21 @@ void require_possible_regions(const SetRequest& r) {
   refuse(r.direction != SetRequest::Direction::Outer, "bodies inside the solid");
   refuse(r.max_bodies.has_value() || r.max_total_vertices.has_value(),
          "a limit on the number of bodies or vertices");
-  refuse(r.min_thickness > 0, "a least thickness");
+  refuse(r.min_thickness > 0 || r.thickness, "a least thickness");
+  refuse(r.max_aspect.has_value(), "a limit on how long bodies are");
 }
 
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double diagonal,
                          const geom::ConvexSet& set) {
-  for (const geom::ConvexBody& body : set.bodies)
+  for (const geom::ConvexBody& body : set.bodies) {
     if (r.min_thickness > 0 &&
         geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
       return {"a body is thinner than «min-thickness»", {}, {}};
+    if (!r.max_aspect) continue;
+    const double least = geom::longest_upper(body.core.vertices) / *r.max_aspect;
+    if (geom::least_width(body.core, least).lower < least)
+      return {"a body is thinner for its length than «max-aspect» allows", {}, {}};
+  }
   const auto first_of = [](std::initializer_list<const verify::Claim*> claims) -> std::string {
     for (const verify::Claim* claim : claims)
       if (claim->answer != verify::Answer::Verified) return claim->reason;
@@ -332,6 +338,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.pre_step_triangles = s.pre_step_triangles;
   c.thickened = s.thickened;
   c.min_thickness = r.min_thickness;
+  c.max_aspect = r.max_aspect.value_or(0);
   c.safety = safety;
   c.out_of_work = s.out_of_work;
   c.notes = prepared.report.notes;
@@ -369,6 +376,9 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   if (outer) require_area(solid);
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
+  if (asked.thickness) asked.min_thickness = asked.thickness->of(diagonal);
+  SetRequest limits = request;
+  limits.min_thickness = asked.min_thickness;
   Search search(prepared.solid, asked, diagonal, hooks);
   geom::ConvexSet made;
   made.provenance = origin_of(request, sha256);
@@ -380,14 +390,14 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     const Candidate candidate = search.run();
     if (candidate.stop == bcd::Stop::TooCoarse) return std::nullopt;
     made.bodies = candidate.bodies;
-    SetCertificate certificate = certificate_of(request, prepared, candidate, diagonal, safety);
+    SetCertificate certificate = certificate_of(limits, prepared, candidate, diagonal, safety);
     if (wrap) count_wrap(wrap->certificate(), given.why, certificate);
     made.provenance.epsilon = certificate.distance_upper;
     std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    Refutation found = refutation_of(request, solid, diagonal, set);
+    Refutation found = refutation_of(limits, solid, diagonal, set);
     if (found.reason.empty() && wrap && !given.wrapped.empty())
       found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;

@@ -31,8 +31,15 @@ SetRequest request_for(const RobotRequest& request, const std::optional<Length>&
   if (out.wrap)
     for (std::optional<Length>* length : {&out.wrap->offset, &out.wrap->seal})
       if (*length) *length = in_unit_of_mesh(**length, scale);
-  // A little more than rounding takes away.
-  if (out.min_thickness > 0) out.min_thickness = out.min_thickness / scale.minCoeff() * (1 + 1e-12);
+  // A little more than rounding takes away. A scale that differs by axis takes of the width what it
+  // takes least, and leaves of the length what it leaves most.
+  constexpr double kMore = 1 + 1e-12;
+  const double stretch = scale.maxCoeff() / scale.minCoeff();
+  if (out.thickness) {
+    *out.thickness = in_unit_of_mesh(*out.thickness, scale);
+    out.thickness->value *= stretch * kMore;
+  }
+  if (out.max_aspect) *out.max_aspect /= stretch * kMore;
   return out;
 }
 

@@ -30,10 +30,11 @@ SetRequest with_unit(SetRequest request, const std::string& unit, const Hooks& h
       hooks.note("Its vertices are in " + unit + " as read, and so is its set, not in " +
                  request.unit + ".");
     request.unit = unit;
-  } else if (unit.empty() && hooks.note && request.epsilon &&
-             request.epsilon->unit != Length::Unit::Own) {
-    hooks.note("The file does not state the unit of its vertices: " + request.epsilon->text() +
-               " is brought into " + request.unit + "; another one is stated by «unit=mm».");
+  } else if (unit.empty() && hooks.note) {
+    for (const std::optional<Length>& length : {request.epsilon, request.thickness})
+      if (length && length->unit != Length::Unit::Own)
+        hooks.note("The file does not state the unit of its vertices: " + length->text() +
+                   " is brought into " + request.unit + "; another one is stated by «unit=mm».");
   }
   return in_own_unit(std::move(request));
 }

@@ -53,6 +53,7 @@ Json record_of(const SetCertificate& c) {
   j["notes"] = c.notes;
   if (c.min_thickness > 0)
     j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
+  if (c.max_aspect > 0) j["max_aspect"] = {{"wished", c.max_aspect}, {"thickened", c.thickened}};
   if (!c.undecided.empty()) j["undecided"] = c.undecided;
   if (c.wrap) j["wrap"] = record_of(*c.wrap);
   return j;
@@ -119,6 +120,10 @@ SetCertificate read_record(std::string_view text) {
     if (j.contains("min_thickness")) {
       j.at("min_thickness").at("wished").get_to(c.min_thickness);
       c.thickened = count_at(j.at("min_thickness"), "thickened");
+    }
+    if (j.contains("max_aspect")) {
+      j.at("max_aspect").at("wished").get_to(c.max_aspect);
+      c.thickened = count_at(j.at("max_aspect"), "thickened");
     }
     if (j.contains("undecided")) j.at("undecided").get_to(c.undecided);
     if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));

@@ -72,11 +72,19 @@ void add_limits(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
       {.name = "min-thickness",
        .text = "Thicken bodies that are less wide than this in some direction, for engines that "
-               "shrink hulls; counts towards epsilon",
-       .values = "LENGTH",
-       .low = 0,
-       .high = 1e30},
-      [](auto& r) -> auto& { return r.request.min_thickness; }));
+               "shrink hulls; counts towards epsilon (a length or a percentage, as epsilon; of a "
+               "robot, for its meshes)",
+       .otherwise = "none"},
+      [](auto& r) -> auto& { return r.request.thickness; }));
+  out.push_back(option<R>(
+      {.name = "max-aspect",
+       .text =
+           "Thicken bodies that are longer than so many times their least width; counts towards "
+           "epsilon (of a robot, for its meshes)",
+       .low = 4,
+       .high = 1e6,
+       .otherwise = "none"},
+      [](auto& r) -> auto& { return r.request.max_aspect; }));
   out.push_back(option<R>(
       {.name = "max-vertices-per-body",
        .text = "Most vertices of a body; physics engines take 64 or 255",
@@ -231,6 +239,7 @@ SetRequest in_own_unit(SetRequest request) {
   };
   bring(request.epsilon);
   for (geom::RequestedRegion& one : request.regions) one.epsilon = one.epsilon.in(request.unit);
+  bring(request.thickness);
   if (request.wrap) bring(request.wrap->offset);
   if (request.wrap) bring(request.wrap->seal);
   return request;
@@ -301,7 +310,7 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
     if (options.request.direction != SetRequest::Direction::Outer)
       return "{bodies} " + kind + " needs {direction} outer";
     for (const char* name : {"max-total-vertices", "max-vertices-per-body", "min-thickness",
-                             "simplify", "improve-work", "max-work", "pre-step"})
+                             "max-aspect", "simplify", "improve-work", "max-work", "pre-step"})
       if (stated.contains(name))
         return "{" + std::string(name) + "} means nothing with {bodies} " + kind;
   }

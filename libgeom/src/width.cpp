@@ -142,4 +142,19 @@ Width least_width(const Mesh& hull, double enough) {
   return out;
 }
 
+double longest_upper(const std::vector<Vec3>& points) {
+  constexpr std::size_t kMost = 4096;
+  constexpr double kUp = 1 + 8 * kUnit;
+  if (points.size() > kMost) {
+    Box3 box;
+    for (const Vec3& p : points) box.extend(p);
+    return box.diagonal() * kUp;
+  }
+  double squared = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      squared = std::max(squared, (points[i] - points[j]).squaredNorm());
+  return std::sqrt(squared) * kUp;
+}
+
 }  // namespace kaboum::geom

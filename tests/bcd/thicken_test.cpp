@@ -100,5 +100,39 @@ TEST(Thicken, SheetsAndOptions) {
   EXPECT_THROW(find_cover(input.solid, options), Error);
 }
 
+TEST(Thicken, NoBodyIsLongerThanItsWidthAllows) {
+  // A sheet, a rod and an angle: some are long enough to be thickened, and epsilon is reached or is
+  // said not to be. The length is that of the result, not of the input.
+  const std::vector<Mesh> shapes{
+      kaboum::test::box(Vec3(1, 1, 1e-3), 1), kaboum::test::box(Vec3(3, 0.01, 0.02), 1),
+      test::prism({{0, 0}, {3, 0}, {3, 0.1}, {0.1, 0.1}, {0.1, 3}, {0, 3}}, 2)};
+  for (const Mesh& shape : shapes)
+    for (const double aspect : {4.0, 10.0, 100.0, 1e4}) {
+      const geom::Prepared input = geom::prepare(shape);
+      CoverOptions options = test::quick(input.solid.mesh(), 10);
+      options.max_aspect = aspect;
+      const CoverCandidate result = find_cover(input.solid, options);
+      test::expect_cover(input.solid.mesh(), result, 64);
+      bool thin = false;
+      for (const geom::ConvexBody& body : result.bodies) {
+        double longest = 0;
+        for (const Vec3& p : body.core.vertices)
+          for (const Vec3& q : body.core.vertices) longest = std::max(longest, (p - q).norm());
+        expect_thick(body.core, longest / aspect);
+        // Not much thicker than that.
+        thin = thin || geom::least_width(body.core).lower < 2.5 * longest / aspect;
+      }
+      EXPECT_TRUE(thin || result.statistics.thickened == 0) << aspect;
+      EXPECT_EQ(result.stop == Stop::Done, result.excess_upper <= *options.epsilon);
+    }
+  const geom::Prepared input = geom::prepare(shapes[0]);
+  CoverOptions options = test::quick(input.solid.mesh(), 10);
+  options.max_aspect = 3;
+  EXPECT_THROW(find_cover(input.solid, options), Error);
+  options.max_aspect = 10;
+  options.max_total_vertices = 100;
+  EXPECT_THROW(find_cover(input.solid, options), Error);
+}
+
 }  // namespace
 }  // namespace kaboum::bcd

@@ -182,6 +182,7 @@ TEST(SetCertificate, SurvivesItsRecord) {
   EXPECT_GT(c.subject.holes, 0U);
   EXPECT_FALSE(c.notes.empty());
   c.min_thickness = 0.25;
+  c.max_aspect = 20;
   c.thickened = 3;
   c.stop = bcd::Stop::Stuck;
   c.subject.reversed_triangles = 4;

@@ -27,16 +27,18 @@ TEST(SetOptions, RecordsKeepTheirWords) {
   r.pre_step = bcd::PreStep::Off;
   r.simplify = 0.25;
   r.improve_work = 30;
-  r.min_thickness = 0.0001;
+  r.thickness = Length{0.0001};
+  r.max_aspect = 50;
   r.scale = 0.001;
   r.preparation.drop_sheets = true;
   r.preparation.holes = geom::Holes::Refuse;
   r.preparation.keep_orientation = true;
-  EXPECT_EQ(r.parameters(),
-            "--epsilon 0.01 --max-bodies 3 --max-total-vertices 100 --min-thickness 1e-04 "
-            "--max-vertices-per-body 255 --effort best --simplify 0.25 --max-work 2.5 "
-            "--improve-work 30 --pre-step off --scale 0.001 --drop-sheets "
-            "--holes refuse --keep-orientation");
+  EXPECT_EQ(
+      r.parameters(),
+      "--epsilon 0.01 --max-bodies 3 --max-total-vertices 100 --min-thickness 1e-04 --max-aspect "
+      "50 --max-vertices-per-body 255 --effort best --simplify 0.25 --max-work 2.5 "
+      "--improve-work 30 --pre-step off --scale 0.001 --drop-sheets "
+      "--holes refuse --keep-orientation");
   r = {};
   r.direction = SetRequest::Direction::Inner;
   EXPECT_EQ(r.parameters(),

@@ -84,7 +84,28 @@ expect 1 'min-thickness' "$D" "$BRACKET" -o thick.glb --epsilon 3% --effort fast
 expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --min-thickness 0.1
 expect 2 'pre-step' "$D" "$BRACKET" -o x.glb --direction inner --pre-step on
 expect 2 'min-thickness' "$D" "$BRACKET" -o x.glb --min-thickness nan
-expect 2 'must be a number from 0 to 1e+30' "$D" "$BRACKET" -o x.glb --min-thickness 1%
+expect 2 'must be a positive number, perhaps with a unit' "$D" "$BRACKET" -o x.glb --min-thickness 1%%
+# A length with its unit and a share of the diagonal are the same as the number; the record keeps what was stated.
+expect 0 '' "$D" "$BRACKET" -o unit.glb --epsilon 5% --effort fast --min-thickness 5mm
+expect 0 '' "$D" "$BRACKET" -o share.glb --epsilon 5% --effort fast --min-thickness 2% --report share.json
+python3 - <<'END' || fail "thickness in other words"
+import json
+number, share = (json.load(open(name)) for name in ("thick.json", "share.json"))
+assert number["min_thickness"]["wished"] == 0.005, number["min_thickness"]
+assert abs(share["min_thickness"]["wished"] - 0.02 * share["diagonal"]) < 1e-12, share["min_thickness"]
+assert "--min-thickness 2%" in share["parameters"]
+END
+expect 0 'verified exactly' "$D" "$BRACKET" -o aspect.glb --epsilon 5% --effort fast --max-aspect 10 --report aspect.json
+grep -q '"max_aspect"' aspect.json || fail "no aspect in the report"
+shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" aspect.glb --epsilon 5%
+# What cannot be kept with both is said, and is no success.
+printf 'OFF\n8 12 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.001\n1 0 0.001\n1 1 0.001\n0 1 0.001\n3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n' >sheet.off
+expect 1 'epsilon could not be reached with --max-aspect' "$D" sheet.off -o sheet.glb --epsilon 1% --effort fast --max-aspect 5
+expect 0 '' "$D" sheet.off -o sheet.glb --epsilon 20% --effort fast --max-aspect 5
+expect 2 'max-aspect' "$D" "$BRACKET" -o x.glb --max-aspect 3
+expect 2 'aspect' "$D" "$BRACKET" -o x.glb --max-aspect 10 --max-total-vertices 100
+expect 2 'thicken' "$D" "$BRACKET" -o x.glb --direction inner --max-aspect 10
+expect 2 'max-aspect' "$D" "$BRACKET" -o x.glb --bodies spheres --max-aspect 10
 expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify nan
 expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify 0.5 --direction inner
 expect 2 'simplify' "$D" "$BRACKET" -o x.glb --simplify 0.2 --max-total-vertices 100

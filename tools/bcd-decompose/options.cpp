@@ -120,7 +120,8 @@ void describe(CLI::App& app, DecomposeOptions& o) {
       "is decided exactly on the bytes that are written. An open INPUT is closed by filling its "
       "holes first. With --direction inner, every body lies inside the solid instead.\n"
       "Exit codes: 0 done; 1 epsilon is not reached, or not within the limits or with "
-      "--min-thickness (the best result is written); 2 usage; 3 bad input; 4 output failed; 5 "
+      "--min-thickness or --max-aspect (the best result is written); 2 usage; 3 bad input; 4 "
+      "output failed; 5 "
       "not built; 6 internal error; 7 limit (epsilon is not reached with --max-work: the best "
       "result is written).");
 }
@@ -179,7 +180,7 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
 }
 
 void apply_preset(const CLI::App& app, DecomposeOptions& o) {
-  if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.set.request.min_thickness);
+  if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.set.request.thickness);
 }
 
 }  // namespace kaboum::tools

@@ -34,8 +34,7 @@ std::vector<page::Step> next_steps(const robot_folder::RobotWriter& writer,
   // Isaac takes the hull of each mesh, with so many vertices.
   const auto isaac = [&](const char* script) {
     if (!srdf) return;
-    out.push_back({"Isaac Lab",
-                   first(true, "--max-vertices-per-body 64", "in its folder, with whole paths"),
+    out.push_back({"Isaac Lab", "in its folder, with whole paths",
                    "./isaaclab.sh -p scripts/tools/" + std::string(script) + " " + itself + " " +
                        named(".usd")});
   };

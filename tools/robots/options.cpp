@@ -103,7 +103,7 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input) {
 }
 
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& o,
-                  double* thickness) {
+                  std::optional<Length>* thickness) {
   if (o.preset.empty()) return;
   const robot_folder::Loader& loader = robot_folder::loader_of(o.preset);
   if (app.count("--robot-format") == 0) {
@@ -115,7 +115,8 @@ void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& 
     o.prefix = robot_folder::package_prefix(folder);
   o.bodies = loader.bodies;
   o.declare_convex = loader.declare_convex;
-  if (thickness != nullptr && app.count("--min-thickness") == 0) *thickness = loader.thickness;
+  if (thickness != nullptr && app.count("--min-thickness") == 0 && loader.thickness > 0)
+    *thickness = Length{loader.thickness};
 }
 
 certify::LinkEpsilons read_epsilons(const std::string& file, const robot::Robot& robot) {

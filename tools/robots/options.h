@@ -47,7 +47,7 @@ void require_options_of_meshes(const CLI::App& app, const std::string& input);
 /// @param folder  the output
 /// @param thickness  --min-thickness, where the tool has it
 void apply_preset(const CLI::App& app, const std::string& folder, RobotOptions& options,
-                  double* thickness);
+                  std::optional<Length>* thickness);
 
 /// What the file of --epsilons says; nothing where the option is not given.
 /// @throws Error as parse_epsilons (link_epsilons.h); Error{InvalidInput} when it cannot be read.

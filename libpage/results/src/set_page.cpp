@@ -71,8 +71,9 @@ std::string shortfall_of(const certify::SetCertificate& c) {
              "larger epsilon";
     case bcd::Stop::Stuck:
       if (c.thickened > 0)
-        return "epsilon could not be reached with «min-thickness»; allow thinner bodies or a "
-               "larger epsilon";
+        return std::string("epsilon could not be reached with ") +
+               (c.max_aspect > 0 ? "«max-aspect»" : "«min-thickness»") +
+               "; allow thinner bodies or a larger epsilon";
       if (c.direction == certify::SetRequest::Direction::Inner)
         return "epsilon could not be reached: the search for deep points gave up; allow a larger "
                "epsilon, or «effort=best»";

@@ -53,6 +53,9 @@ struct CoverSettings : SearchSettings {
   /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
   /// are thickened, which counts towards epsilon. [length]
   double min_thickness = 0;
+  /// No two points of a body are farther apart than so many times its least width, ≥ 4: what is
+  /// too thin for its length is thickened in the same way. Not with max_total_vertices.
+  std::optional<double> max_aspect;
   /// Share of a body's distance, 0 to 1, that leaving out vertices may take; with less, bodies have
   /// more vertices and are nearer to the solid on the whole, not at most. By default 0.5.
   std::optional<double> simplify;
@@ -98,7 +101,7 @@ struct CoverStatistics {
   std::size_t pre_step_triangles = 0;  ///< of the bounding mesh that was decomposed; 0: none
   std::size_t vertices = 0;            ///< of all bodies
   std::size_t largest = 0;             ///< vertices of the largest body
-  std::size_t thickened = 0;           ///< bodies that min_thickness changed
+  std::size_t thickened = 0;           ///< bodies that min_thickness or max_aspect changed
   bool out_of_work = false;            ///< max_work ended the search: with more, it might do better
 };
 

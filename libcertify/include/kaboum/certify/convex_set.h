@@ -43,6 +43,9 @@ struct SetRequest : bcd::CoverSettings {
   /// Of outer sets with an epsilon: points of the bodies that lie in a region are within the
   /// region's own one, which counts where it is less. In the coordinates of what is decomposed.
   std::vector<geom::RequestedRegion> regions;
+  /// Least width of the bodies: `min_thickness`, which it takes the place of, with its unit or as a
+  /// percentage of the diagonal.
+  std::optional<Length> thickness;
 
   /// certify_file multiplies the file's coordinates by it first (io::scale).
   double scale = 1;
@@ -84,6 +87,7 @@ struct SetCertificate {
   double largest_hole = 0;  ///< longest diagonal of a hole's box [length]
   std::size_t filled_triangles = 0, pieces = 0, pre_step_triangles = 0, thickened = 0;
   double min_thickness = 0;        ///< asked for [length]
+  double max_aspect = 0;           ///< asked for; 0: none
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input

@@ -3,6 +3,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <limits>
+#include <vector>
 
 namespace kaboum::geom {
 
@@ -25,5 +26,9 @@ struct Width {
 /// @pre exactly convex (is_convex); coordinates of magnitude below 1e60. Cost up to
 /// O(#T² · #V); for most bodies O(#T²).
 Width least_width(const Mesh& hull, double enough = std::numeric_limits<double>::infinity());
+
+/// Upper bound of the largest distance of two of the points, within rounding of it for up to a few
+/// thousand points; of more the diagonal of their box.
+double longest_upper(const std::vector<Vec3>& points);
 
 }  // namespace kaboum::geom
