@@ -86,7 +86,7 @@ for kind in folder spheres; do
 import os, pathlib, signal, subprocess, sys, time
 program, kind = sys.argv[1:]
 out = "stopped" if kind == "folder" else "stopped.yaml"
-command = [program, "arm.urdf", "-o", out, "--effort", "fast"] + (["--epsilon", "1%"] if kind == "folder" else ["--epsilon", "3%", "--bodies", "spheres"])
+command = [program, "arm.urdf", "-o", out, "--effort", "fast"] + (["--epsilon", "1%"] if kind == "folder" else ["--epsilon", "10%", "--bodies", "spheres"])
 for what in (signal.SIGINT, signal.SIGTERM):
     before = len(list(pathlib.Path("cache").glob("*.set")))
     run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
