@@ -19,10 +19,13 @@ function(kaboum_add_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE;HEADERS_OF;ALONE" ${ARGN})
   add_library(kaboum_${name} ${arg_SOURCES})
   add_library(kaboum::${name} ALIAS kaboum_${name})
-  set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
-                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN"
-                        POSITION_INDEPENDENT_CODE ON
+  set_target_properties(kaboum_${name} PROPERTIES EXPORT_NAME ${name} INSTALL_RPATH "$ORIGIN"
+                        POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
                         UNITY_BUILD ${KABOUM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  if(NOT SKBUILD)  # a wheel has no symbolic links, so each library has one name there
+    set_target_properties(kaboum_${name} PROPERTIES VERSION ${PROJECT_VERSION}
+                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  endif()
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   if(KABOUM_UNITY)
     target_precompile_headers(kaboum_${name} REUSE_FROM kaboum_library_headers)
@@ -36,7 +39,8 @@ function(kaboum_add_library name)
     PUBLIC ${arg_PUBLIC}
     PRIVATE $<BUILD_INTERFACE:kaboum_options> ${arg_HEADERS_OF} ${arg_PRIVATE})
   install(TARGETS kaboum_${name} EXPORT kaboum-${name}
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libraries NAMELINK_COMPONENT dev)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   kaboum_add_component(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()
@@ -70,7 +74,8 @@ function(kaboum_add_tool name)
                         RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_link_libraries(${name} PRIVATE kaboum_options ${arg_LIBRARIES})
   if(BUILD_SHARED_LIBS)
-    set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+    file(RELATIVE_PATH _libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+    set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/${_libraries}")
   endif()
   kaboum_compile_quickly(${name})
   if(KABOUM_UNITY)

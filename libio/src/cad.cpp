@@ -26,15 +26,17 @@ std::vector<std::filesystem::path> places() {
   std::vector<std::filesystem::path> result;
   const std::filesystem::path program = program_file(reinterpret_cast<const void*>(&read_cad));
   if (!program.empty()) {
-    // Beside bin/, or so many folders above that of a Python module.
+    // Beside bin/; of a library in its own folder, or so many above that of a Python module.
     const bool library = program.extension() == ".so";
+    if (library) result.push_back(program.parent_path() / kCadModule);
     for (const int up : {2, 3, 5}) {
       auto folder = program;
       for (int i = 0; i < up; ++i) folder = folder.parent_path();
       if ((up > 2) == library) result.push_back(folder / KABOUM_LIBRARY_FOLDER / kCadModule);
     }
   }
-  result.emplace_back(std::filesystem::path(KABOUM_INSTALLED_LIBRARIES) / kCadModule);
+  const std::filesystem::path installed(KABOUM_INSTALLED_LIBRARIES);
+  if (!installed.empty()) result.push_back(installed / kCadModule);
   return result;
 }
 

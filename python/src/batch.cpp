@@ -1,6 +1,9 @@
 // Batches: kaboum.run_batch, as kaboum-batch.
 
+#include <kaboum/base/program_file.h>
 #include <kaboum/batch/batch.h>
+
+#include <filesystem>
 
 #include "arguments.h"
 #include "bindings.h"
@@ -49,6 +52,14 @@ std::vector<batch::Rule> rules_of(const py::object& commands) {
   return rules;
 }
 
+/// The programs that are installed with the module, as a wheel has them; empty: there are none.
+std::filesystem::path installed_programs() {
+  const auto folder =
+      program_file(reinterpret_cast<const void*>(&installed_programs)).parent_path() / "bin";
+  std::error_code error;
+  return std::filesystem::is_directory(folder, error) ? folder : std::filesystem::path();
+}
+
 batch::BatchResult run_batch(
     const py::object& inputs, const py::object& folder, const py::object& commands,
     const std::optional<std::string>& extension, std::size_t jobs,
@@ -71,7 +82,8 @@ batch::BatchResult run_batch(
   request.only_summary = summary;
   request.retry = retry;
   request.pictures = pictures;
-  if (!programs.is_none()) request.programs = text_path(programs, "programs");
+  request.programs = programs.is_none() ? installed_programs()
+                                        : std::filesystem::path(text_path(programs, "programs"));
   Watch watch(progress);
   request.progress = watch.hook();
   return run(0, [&] { return batch::run_batch(request); });
@@ -113,7 +125,8 @@ retry : bool
 pictures : bool
     Of results, for the summary.
 programs : path, optional
-    Folder that programs are looked for in first; by default they are on PATH.
+    Folder that programs are looked for in first, then on PATH. By default that of the installed
+    package, where it has programs.
 progress
     As for `decimate`.
 

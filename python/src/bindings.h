@@ -30,6 +30,7 @@ void bind_wraps(py::module_& module);
 void bind_replay_and_cache(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_worlds(py::module_& module);
+void bind_trimesh(py::module_& module);
 void bind_option_tables(py::module_& module);
 
 }  // namespace kaboum::python

@@ -29,6 +29,7 @@ PYBIND11_MODULE(_kaboum, module) {
   bind_worlds(module);
   bind_batches(module);
   bind_pictures(module);
+  bind_trimesh(module);
   bind_option_tables(module);
   module.attr("__name__") = name;
 }

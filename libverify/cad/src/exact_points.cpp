@@ -29,15 +29,17 @@ std::vector<fs::path> places() {
   std::vector<fs::path> out;
   const fs::path program = program_file(reinterpret_cast<const void*>(&read_exact_points));
   if (!program.empty()) {
-    // Beside bin/, or so many folders above that of a Python module.
+    // Beside bin/; of a library in its own folder, or so many above that of a Python module.
     const bool library = program.extension() == ".so";
+    if (library) out.push_back(program.parent_path() / kPointsModule);
     for (const int up : {2, 3, 5}) {
       auto folder = program;
       for (int i = 0; i < up; ++i) folder = folder.parent_path();
       if ((up > 2) == library) out.push_back(folder / KABOUM_LIBRARY_FOLDER / kPointsModule);
     }
   }
-  out.emplace_back(fs::path(KABOUM_INSTALLED_LIBRARIES) / kPointsModule);
+  const fs::path installed(KABOUM_INSTALLED_LIBRARIES);
+  if (!installed.empty()) out.push_back(installed / kPointsModule);
   return out;
 }
 
