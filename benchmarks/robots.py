@@ -1,18 +1,30 @@
 #!/usr/bin/env python3
-"""A table of robots: what each becomes, what that takes, what decides and what loads it.
+"""A table of public robots: what each becomes, what that takes, what decides, and what loads it.
 
-    benchmarks/robots.py FOLDER... [--build build/release] [--epsilon 1cm] [--visual] [--read]
-                         [--match PATTERN] [--limit SECONDS] [-o TABLE.md] [--json FILE]
+    build/engines/bin/python benchmarks/robots.py SOURCES --results FOLDER [-o docs/robots-table.md]
+        [--list benchmarks/robots.txt] [--match PATTERN] [--build build/release] [--epsilon 2cm]
+        [--effort fast] [--visual] [--cpu 60] [--again] [--only-table]
+    benchmarks/robots.py FOLDER... --read [--build build/release]
 
-Every URDF, xacro, MJCF and SDF below the folders is a robot, but scenes (scene*.xml). With --read
-they are only read, and the reasons for which some are refused are counted. Else each is decomposed,
-its printed check is run, and the result is loaded by the engines that are installed: MuJoCo (MJCF
-and URDF) and Pinocchio (URDF), from the environment of `scripts/setup --engines`.
+SOURCES has a folder for each public repository that the list names. Each robot of the list is
+decomposed, its printed check is run, and what was written is loaded by MuJoCo, Drake and Pinocchio
+(`scripts/setup --engines`), each in a process of its own, which also compares the poses of all
+links at 100 configurations with ours. Results are kept in FOLDER, a file a robot: those that are
+there are not made again, so that a run can be ended and gone on with. The table is made of all that
+are there. `--cpu` limits each program's CPU seconds.
+
+Snapshots of repositories may lack large files. Of MJCF, what needs a missing file is left out, and
+the row says so.
+
+With --read, all robots below the folders are only read; what is refused is counted by its reason.
 """
 
 import argparse
 import collections
+import datetime
 import fnmatch
+import hashlib
+import importlib.util
 import json
 import os
 import pathlib
@@ -22,14 +34,15 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as ET
 
-LOADERS = {  # by engine: formats, and what loads a file
-    "mujoco": ({".xml", ".urdf"}, "import mujoco, sys; mujoco.MjModel.from_xml_path(sys.argv[1])"),
-    "pinocchio": ({".urdf"}, "import pinocchio, sys, os; pinocchio.buildGeomFromUrdf("
-                             "pinocchio.buildModelFromUrdf(sys.argv[1]), sys.argv[1], "
-                             "pinocchio.GeometryType.COLLISION, [os.path.dirname(sys.argv[1])])"),
-}
+HERE = pathlib.Path(__file__).resolve().parent
+ENGINES = {"mujoco": {".xml", ".urdf"}, "drake": {".xml", ".urdf", ".sdf"},
+           "pinocchio": {".urdf"}}
+TOLERANCE = 1e-9
 
+
+# --- finding robots -------------------------------------------------------------------------------
 
 def robots_below(folder):
     """Files of robots, in order."""
@@ -37,9 +50,7 @@ def robots_below(folder):
         name = path.name.lower()
         if not path.is_file():
             continue
-        if name.endswith((".urdf", ".sdf")):
-            yield path
-        elif name.endswith(".urdf.xacro"):
+        if name.endswith((".urdf", ".sdf", ".urdf.xacro")):
             yield path
         elif name.endswith(".xml") and not name.startswith("scene"):
             text = path.read_text(errors="replace")
@@ -47,28 +58,69 @@ def robots_below(folder):
                 yield path
 
 
+def listed(path):
+    """(file, arguments of xacro) of each line."""
+    for line in pathlib.Path(path).read_text().splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            yield words[0], words[1:]
+
+
+def without_missing_files(path):
+    """An MJCF file without the meshes and textures whose files are missing, beside it.
+    @return its path, and how many shapes it has less"""
+    tree = ET.parse(path)
+    root = tree.getroot()
+    folder = path.parent
+    meshes = textures = ""
+    for compiler in root.iter("compiler"):
+        meshes = textures = compiler.get("assetdir", meshes)
+        meshes = compiler.get("meshdir", meshes)
+        textures = compiler.get("texturedir", textures)
+    lacking, materials = set(), set()
+    for asset in root.iter("asset"):
+        for tag, base, names in (("mesh", meshes, lacking), ("texture", textures, set())):
+            for e in list(asset.findall(tag)):
+                file = e.get("file")
+                if not file or (folder / base / file).exists():
+                    continue
+                if tag == "texture":
+                    materials.add(e.get("name", pathlib.Path(file).stem))
+                names.add(e.get("name", pathlib.Path(file).stem))
+                asset.remove(e)
+    for e in root.iter("material"):
+        if e.get("texture") in materials:
+            del e.attrib["texture"]
+    if not lacking and not materials:
+        return path, 0
+    lost = 0
+    for parent in list(root.iter()):
+        for e in list(parent):
+            if e.get("mesh") in lacking:
+                lost += e.tag == "geom"
+                parent.remove(e)
+    out = path.with_name("without-missing-" + path.name)
+    tree.write(out)
+    return out, lost
+
+
+# --- running --------------------------------------------------------------------------------------
+
 def cpu_of_children():
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def run(command, limit, **more):
-    """Exit code (None: stopped), standard error, CPU seconds."""
+    """Exit code (None: stopped), what it said, CPU seconds."""
+    def limited():
+        resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit) + 5))
+
     before = cpu_of_children()
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=limit,
-                              errors="replace", **more)
-        code, said = done.returncode, done.stderr + done.stdout
-    except subprocess.TimeoutExpired as stopped:
-        code, said = None, (stopped.stderr or b"").decode(errors="replace")
-    return code, said, cpu_of_children() - before
-
-
-def engines():
-    """Those that are installed in the environment that runs this."""
-    return [name for name in LOADERS
-            if subprocess.run([sys.executable, "-c", f"import {name}"], capture_output=True,
-                              check=False).returncode == 0]
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False,
+                          preexec_fn=limited, **more)
+    code = None if done.returncode in (-24, -9) else done.returncode
+    return code, done.stderr + done.stdout, cpu_of_children() - before
 
 
 def reason_of(message, path):
@@ -99,94 +151,216 @@ def read_all(paths, build):
         print(f"{count:5}  {reason}\n         {examples[reason][1][:300]}")
 
 
-def measure(path, args, installed):
+def engine(name, file, poses):
+    """Loads a robot and prints what came of it: one process, which may crash."""
+    spec = importlib.util.spec_from_file_location("readers", HERE.parent / "tests/engines/readers.py")
+    readers = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(readers)
+    read = json.loads(pathlib.Path(poses).read_text())[file]
+    print(json.dumps(readers.load(name, pathlib.Path(file), read)))
+
+
+def ask_engines(file, poses, limit):
+    """By engine: what it says of a robot."""
+    out = {}
+    for name, formats in ENGINES.items():
+        if file.suffix in formats:
+            code, said, _ = run([sys.executable, __file__, "--engine", name, str(file), str(poses)],
+                                limit)
+            lines = said.strip().splitlines() or [""]
+            try:
+                out[name] = json.loads(lines[-1])
+            except json.JSONDecodeError:
+                out[name] = {"loaded": False, "why": f"exit {code}: {lines[-1][:200]}"}
+    return out
+
+
+def measure(path, words, args, sources):
     """The row of one robot."""
-    row = {"robot": f"{path.parent.name}/{path.name}", "format": path.suffix[1:]}
+    row = {"robot": str(path.relative_to(sources)), "format": path.suffix[1:], "epsilon": args.epsilon,
+           "effort": args.effort, "shapes": "visual" if args.visual else "collision",
+           "date": datetime.date.today().isoformat(), "commit": args.commit}
+    if words:
+        row["arguments"] = words
+    if not path.exists():
+        return {**row, "missing": "not in the snapshot"}
+    if path.suffix == ".xml":
+        path, row["without"] = without_missing_files(path)
     place = pathlib.Path(tempfile.mkdtemp(prefix="robots."))
+    tools = args.build / "bin"
+    environment = {**os.environ, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
+    os.environ["ROS_PACKAGE_PATH"] = os.pathsep.join(map(str, (sources, path.parent.parent, path.parent.parent.parent)))
     try:
-        command = [str(args.build / "tools/bcd-decompose/bcd-decompose"), str(path), "-o",
-                   str(place / "out"), "--epsilon", args.epsilon, "--report",
-                   str(place / "report.json")]
-        for folder in args.package_path:
-            command += ["--package-path", folder]
+        command = ["bcd-decompose", str(path), "-o", str(place / "out"), "--epsilon", args.epsilon,
+                   "--effort", args.effort, "--no-cache", "--package-path", str(sources),
+                   "--report", str(place / "report.json")]
+        if path.suffix != ".xml":
+            command += ["--for", "drake"]  # which reads OBJ, as the others do
+        if words:
+            command += ["--xacro-args", *words]
         if args.visual:
             command.append("--visual")
-        row["code"], said, row["cpu"] = run(command, args.limit)
+        row["code"], said, row["cpu"] = run(command, args.cpu, env=environment)
         if not (place / "report.json").exists():
             lines = [x for x in said.strip().splitlines() if x]
-            row["refused"] = "stopped" if row["code"] is None else (lines or ["?"])[-1]
+            row["refused"] = (f"stopped after {args.cpu:g} s of CPU" if row["code"] is None
+                              else (lines or ["no word"])[-1].replace(str(sources) + "/", ""))
             return row
         report = json.loads((place / "report.json").read_text())
-        links = report["links"]
-        row["links"] = len(links)
-        row["bodies"] = sum(link.get("bodies", 0) for link in links)
-        row["verdicts"] = dict(collections.Counter(link["verdict"] for link in links))
-        written = report["urdf"]
-        check = report.get("check")
-        if check:
-            tools = os.pathsep.join(str(x) for x in (args.build / "tools").iterdir() if x.is_dir())
-            environment = {**os.environ, "PATH": tools + os.pathsep + os.environ["PATH"]}
-            row["check"], _, row["check_cpu"] = run(["sh", "-c", check], args.limit,
+        row["links"] = len(report["links"])
+        row["bodies"] = sum(link.get("bodies", 0) for link in report["links"])
+        row["verdicts"] = dict(collections.Counter(link["verdict"] for link in report["links"]))
+        row["not_held"] = {link["link"]: link.get("sentence", "") for link in report["links"]
+                           if link["verdict"] != "held"}
+        if "check" in report:
+            row["check"], _, row["check_cpu"] = run(["sh", "-c", report["check"]], 4 * args.cpu,
                                                     env=environment)
-        row["loaded"] = {}
-        for engine in installed:
-            formats, loader = LOADERS[engine]
-            if pathlib.Path(written).suffix in formats:
-                code, said, _ = run([sys.executable, "-c", loader, written], args.limit)
-                row["loaded"][engine] = code == 0 or said.strip().splitlines()[-1][:200]
+        written = pathlib.Path(report["urdf"])
+        poses = place / "poses.json"
+        for what, file in (("original", path), ("written", written)):
+            _, said, _ = run([str(args.build / "tests/engines/robot-poses"), str(file)], args.cpu)
+            poses.write_text(said)
+            row[what] = ask_engines(file, poses, 4 * args.cpu)
     finally:
         shutil.rmtree(place, ignore_errors=True)
     return row
 
 
-def table_of(rows, epsilon):
+# --- the table ------------------------------------------------------------------------------------
+
+def engines_of(row):
+    """What loaded a written robot."""
+    out = []
+    for name, answer in row.get("written", {}).items():
+        if not answer["loaded"]:
+            out.append(f"not {name} ({answer['why'][:80]})")
+        elif answer.get("worst") is not None and answer["worst"] > TOLERANCE:
+            out.append(f"{name} (poses off by {answer['worst']:.1e})")
+        elif answer.get("faults"):
+            out.append(f"{name} ({answer['faults'][0][:80]})")
+        else:
+            out.append(name)
+    return ", ".join(out)
+
+
+def table_of(rows):
     """Markdown."""
-    out = ["| robot | format | links | ε | bodies | CPU s | verdict of links | its check | loaded by |",
+    out = ["| robot | format | links | ε | bodies | CPU s | links held | its check | loaded by |",
            "|---|---|--:|---|--:|--:|---|---|---|"]
     for row in rows:
-        if "refused" in row:
-            out.append(f"| {row['robot']} | {row['format']} | | | | {row['cpu']:.1f} | "
-                       f"refused: {row['refused'].replace('|', '/')[:200]} | | |")
+        name = row["robot"] + "".join(f" {x}" for x in row.get("arguments", []))
+        if row.get("shapes") == "visual":
+            name += " (visual)"
+        if row.get("without"):
+            name += f" (without {row['without']} shapes whose files are missing)"
+        if "missing" in row or "refused" in row:
+            why = row.get("missing") or "refused: " + row["refused"]
+            why = why.replace("|", "/").replace("<", "&lt;")[:240]
+            cpu = f"{row['cpu']:.1f}" if "cpu" in row else ""
+            out.append(f"| {name} | {row['format']} | | {row['epsilon']} | | {cpu} | {why} | | |")
             continue
-        verdicts = ", ".join(f"{n} {what}" for what, n in sorted(row["verdicts"].items()))
-        loaded = ", ".join(name if ok is True else f"NOT {name}"
-                           for name, ok in row["loaded"].items())
-        check = {0: "passes", None: "stopped"}.get(row.get("check"), f"exit {row.get('check')}")
-        out.append(f"| {row['robot']} | {row['format']} | {row['links']} | {epsilon} | "
-                   f"{row['bodies']} | {row['cpu']:.1f} | {verdicts} | {check} | {loaded} |")
+        held = row["verdicts"].get("held", 0)
+        verdict = f"all {held}" if held == row["links"] else f"{held} of {row['links']}; not " + \
+            ", ".join(list(row["not_held"])[:4]) + (" …" if len(row["not_held"]) > 4 else "")
+        expected = 0 if held == row["links"] else 1
+        check = {expected: "passes" if expected == 0 else "names them", None: "stopped"}.get(
+            row.get("check"), f"exit {row.get('check')}")
+        out.append(f"| {name} | {row['format']} | {row['links']} | {row['epsilon']} | {row['bodies']} "
+                   f"| {row['cpu']:.1f} | {verdict} | {check} | {engines_of(row)} |")
     return "\n".join(out) + "\n"
 
 
+def summary_of(rows):
+    """Sentences before the table."""
+    there = [row for row in rows if "missing" not in row]
+    written = [row for row in there if "refused" not in row]
+    loads = [row for row in written if any(x["loaded"] for x in row["written"].values())]
+    held = [row for row in written if row["verdicts"].get("held", 0) == row["links"]]
+    checked = [row for row in written if row.get("check") in (0, 1)]
+    compared = [(name, answer) for row in written for what in ("original", "written")
+                for name, answer in row[what].items() if answer.get("worst") is not None]
+    near = [1 for _, answer in compared if answer["worst"] <= TOLERANCE]
+    worst = max((answer["worst"] for _, answer in compared if answer["worst"] <= TOLERANCE), default=0)
+    return (f"{len(rows)} robots are listed, {len(rows) - len(there)} of them are not in the snapshots. Of the other "
+            f"{len(there)}:\n\n"
+            f"- {len(written)} are written, {len(there) - len(written)} refused or stopped;\n"
+            f"- {len(loads)} of those written are loaded by an engine;\n"
+            f"- of {len(held)} every link is held; of {len(checked)} the printed check decided;\n"
+            f"- kinematics were compared {len(compared)} times with an engine's, originals and what is "
+            f"written: {len(near)} times all links are where the engine has them, within {worst:.1e}.\n")
+
+
+def page_of(rows):
+    commits = sorted({row["commit"] for row in rows})
+    dates = sorted({row["date"] for row in rows})
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        machine = re.search(r"model name\s*: (.*)", file.read())
+    return ("# A table of robots\n\n"
+            "Public robots, each decomposed for collision checks, its links judged, its printed check run, and what was\n"
+            "written loaded by the engines of [today](engines.md#engines-of-today). CPU seconds are those of\n"
+            "`bcd-decompose` without cache. Made by `benchmarks/robots.py`, which says how; sources are folders of public\n"
+            "repositories, named as in `benchmarks/robots.txt`.\n\n"
+            f"Measured {dates[0]}{'' if len(dates) == 1 else ' to ' + dates[-1]}, commit "
+            f"{', '.join(commits)}, {machine.group(1) if machine else 'unknown processor'}, {os.cpu_count()} cores.\n\n"
+            + summary_of(rows) + "\n" + table_of(rows))
+
+
 def main():
+    if sys.argv[1:2] == ["--engine"]:
+        engine(*sys.argv[2:5])
+        return 0
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folders", nargs="+")
-    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"))
-    parser.add_argument("--epsilon", default="1cm")
-    parser.add_argument("--visual", action="store_true")
-    parser.add_argument("--read", action="store_true")
+    parser.add_argument("sources", nargs="+")
+    parser.add_argument("--list", default=HERE / "robots.txt")
     parser.add_argument("--match", default="*")
-    parser.add_argument("--package-path", action="append", default=[])
-    parser.add_argument("--limit", type=float, default=600)
-    parser.add_argument("-o", "--output", default="-")
-    parser.add_argument("--json")
+    parser.add_argument("--build", type=pathlib.Path, default=HERE.parent / "build/release")
+    parser.add_argument("--epsilon", default="2cm")
+    parser.add_argument("--effort", default="fast")
+    parser.add_argument("--visual", action="store_true")
+    parser.add_argument("--cpu", type=float, default=60)
+    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--again", action="store_true")
+    parser.add_argument("--only-table", action="store_true")
+    parser.add_argument("--read", action="store_true")
+    parser.add_argument("-o", "--output")
     args = parser.parse_args()
-    paths = [path for folder in args.folders for path in robots_below(folder)
-             if fnmatch.fnmatch(str(path), args.match)]
+    args.build = args.build.resolve()
     if args.read:
-        read_all(paths, args.build)
+        read_all([x for folder in args.sources for x in robots_below(folder)
+                  if fnmatch.fnmatch(str(x), args.match)], args.build)
         return 0
-    installed, rows = engines(), []
-    for path in paths:
-        rows.append(measure(path, args, installed))
-        print(f"{len(rows)} of {len(paths)}: {rows[-1]}", file=sys.stderr, flush=True)
-    if args.json:
-        pathlib.Path(args.json).write_text(json.dumps(rows, indent=1))
-    text = table_of(rows, args.epsilon)
-    if args.output == "-":
-        print(text)
-    else:
+    if args.results is None or len(args.sources) != 1:
+        parser.error("one folder of sources, and --results")
+    args.results.mkdir(parents=True, exist_ok=True)
+    sources = pathlib.Path(args.sources[0]).resolve()
+    args.commit = subprocess.run(["git", "-C", str(HERE), "rev-parse", "--short", "HEAD"],
+                                 capture_output=True, text=True, check=False).stdout.strip()
+    rows = []
+    for file, words in listed(args.list):
+        if not fnmatch.fnmatch(file, args.match):
+            continue
+        key = hashlib.sha256(json.dumps([file, words, args.epsilon, args.effort,
+                                         args.visual]).encode()).hexdigest()[:16]
+        kept = args.results / f"{key}.json"
+        if (args.again or not kept.exists()) and not args.only_table:
+            row = measure(sources / file, words, args, sources)
+            partial = kept.with_suffix(".part")
+            partial.write_text(json.dumps(row, indent=1))
+            partial.rename(kept)
+            print(json.dumps({k: v for k, v in row.items() if k not in ("original",)}),
+                  file=sys.stderr, flush=True)
+        if kept.exists():
+            rows.append(json.loads(kept.read_text()))
+        else:
+            rows.append({"robot": file, "format": pathlib.Path(file).suffix[1:],
+                         "epsilon": args.epsilon, "missing": "not measured yet",
+                         "date": datetime.date.today().isoformat(), "commit": args.commit})
+    text = page_of(rows)
+    if args.output:
         pathlib.Path(args.output).write_text(text)
+    else:
+        print(text)
     return 0
 
 

@@ -11,9 +11,11 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as ET
 
 try:
     import mujoco
@@ -91,48 +93,87 @@ def difference(ours, rotation, translation):
     return max(np.abs(np.reshape(ours[:9], (3, 3)) - rotation).max(), np.abs(np.array(ours[9:]) - translation).max())
 
 
-def compare_mujoco(path, read, fail):
-    """@return whether MuJoCo loads it."""
+class NotLoaded(Exception):
+    """An engine does not load a robot, and says why."""
+
+
+class Compared:
+    """What an engine that loads a robot has otherwise."""
+
+    def __init__(self):
+        self.faults = []
+        self.worst = None  # the farthest that a link is from where the engine has it
+        self.shapes = 0  # for collisions that were compared
+
+    def fault(self, what):
+        self.faults.append(what)
+
+    def off(self, distance):
+        self.worst = max(self.worst or 0.0, float(distance))
+
+
+def compare_shape(out, name, ours, kind, size, rotation, translation):
+    """@param size  as JSON of robot-poses has it; None: not known"""
+    out.shapes += 1
+    if ours["kind"].split()[0] != kind:
+        out.fault(f"{name}: a {ours['kind']}, there a {kind}")
+        return
+    off = 0 if size is None else max(abs(a - b) for a, b in zip(ours["size"], size))
+    if rotation is not None:
+        off = max(off, difference(ours["origin"], rotation, translation))
+    if off > TOLERANCE:
+        out.fault(f"{name}: a {kind} is off by {off}")
+
+
+def values_of(read, configuration):
+    """Of every joint that moves, by its name."""
+    return {j["name"]: j["multiplier"] * configuration["q"][j["variable"]] + j["offset"] for j in read["joints"]}
+
+
+def compare_mujoco(path, read):
+    """@throws NotLoaded"""
+    out = Compared()
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
-    except ValueError:
-        return False
+    except ValueError as error:
+        raise NotLoaded(str(error)) from error
     if "error" in read:
-        fail(path, "MuJoCo loads it, and it is refused: " + read["error"])
-        return True
+        out.fault("MuJoCo loads it, and it is refused: " + read["error"])
+        return out
     data = mujoco.MjData(model)
     joints = [j for j in range(model.njnt) if model.jnt_type[j] in (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))]
-    if len(joints) != len(read["variables"]):
-        fail(path, f"{len(read['variables'])} joints, MuJoCo has {len(joints)}")
-        return True
-    for j, ours in zip(joints, read["variables"]):
-        limits = [None, None] if not model.jnt_limited[j] else list(model.jnt_range[j])
-        if any((a is None) != (b is None) or a is not None and abs(a - b) > TOLERANCE
-               for a, b in zip((ours["lower"], ours["upper"]), limits)):
-            fail(path, f"joint {ours['name']}: limits {ours['lower']}, {ours['upper']}, not {limits}")
     links = {link["name"]: i for i, link in enumerate(read["links"])}
-    worst, where = 0, ""
+    urdf = path.suffix == ".urdf"
+    moving = read["joints"] if urdf else read["variables"]
+    if len(joints) != len(moving):
+        out.fault(f"{len(moving)} joints, MuJoCo has {len(joints)}")
+        return out
+    if not urdf:
+        for j, ours in zip(joints, read["variables"]):
+            limits = [None, None] if not model.jnt_limited[j] else list(model.jnt_range[j])
+            if any((a is None) != (b is None) or a is not None and abs(a - b) > TOLERANCE
+                   for a, b in zip((ours["lower"], ours["upper"]), limits)):
+                out.fault(f"joint {ours['name']}: limits {ours['lower']}, {ours['upper']}, not {limits}")
     for configuration in read["configurations"]:
         data.qpos[:] = model.qpos0
-        for j, q in zip(joints, configuration["q"]):
-            data.qpos[model.jnt_qposadr[j]] = q
+        values = values_of(read, configuration)
+        for j, q in zip(joints, configuration["q"] if not urdf else joints):
+            data.qpos[model.jnt_qposadr[j]] = values.get(model.joint(j).name, 0) if urdf else q
         mujoco.mj_kinematics(model, data)
         for b in range(model.nbody):
             name = model.body(b).name
-            if name and name not in links:
-                fail(path, f"there is no link {name}")
-                return True
-            if name:
-                off = difference(configuration["poses"][links[name]], data.xmat[b].reshape(3, 3), data.xpos[b])
-                if off > worst:
-                    worst, where = off, name
-    if worst > TOLERANCE:
-        fail(path, f"{where} is {worst} away from where MuJoCo has it")
-    compare_geoms(path, read, model, links, fail)
-    return True
+            if not name or name == "world":
+                continue
+            if name not in links:
+                out.fault(f"there is no link {name}")
+                return out
+            out.off(difference(configuration["poses"][links[name]], data.xmat[b].reshape(3, 3), data.xpos[b]))
+    if not urdf:  # of URDF MuJoCo puts shapes of several links together
+        compare_geoms(read, model, links, out)
+    return out
 
 
-def compare_geoms(path, read, model, links, fail):
+def compare_geoms(read, model, links, out):
     kinds = {mujoco.mjtGeom.mjGEOM_SPHERE: ("sphere", lambda s: [s[0]]), mujoco.mjtGeom.mjGEOM_CAPSULE: ("capsule", lambda s: [s[0], 2 * s[1]]),
              mujoco.mjtGeom.mjGEOM_ELLIPSOID: ("ellipsoid", list), mujoco.mjtGeom.mjGEOM_CYLINDER: ("cylinder", lambda s: [s[0], 2 * s[1]]),
              mujoco.mjtGeom.mjGEOM_BOX: ("box", lambda s: list(2 * s)), mujoco.mjtGeom.mjGEOM_MESH: ("mesh", None)}
@@ -145,77 +186,113 @@ def compare_geoms(path, read, model, links, fail):
             continue
         ours = read["links"][links[name]]["collision"]
         if len(ours) != len(geoms):
-            fail(path, f"{name}: {len(ours)} shapes, MuJoCo has {len(geoms)}")
+            out.fault(f"{name}: {len(ours)} shapes, MuJoCo has {len(geoms)}")
             continue
         for shape, g in zip(ours, geoms):
             kind, size = kinds[int(model.geom_type[g])]
-            if shape["kind"] != kind:
-                fail(path, f"{name}: a {shape['kind']}, in MuJoCo a {kind}")
+            if size is None:  # MuJoCo moves meshes to their middles: volumes are compared where they are written
+                compare_shape(out, name, shape, kind, None, None, None)
                 continue
-            if size is None:
-                continue  # MuJoCo moves meshes to their middles: volumes are compared where they are written
             matrix = np.zeros(9)
             mujoco.mju_quat2Mat(matrix, model.geom_quat[g])
-            off = difference(shape["origin"], matrix.reshape(3, 3), model.geom_pos[g])
-            off = max(off, max(abs(a - b) for a, b in zip(shape["size"], size(model.geom_size[g]))))
-            if off > TOLERANCE:
-                fail(path, f"{name}: a {kind} is off by {off}")
+            compare_shape(out, name, shape, kind, size(model.geom_size[g]), matrix.reshape(3, 3), model.geom_pos[g])
 
 
-def compare_pinocchio(path, read, fail):
+def compare_pinocchio(path, read):
+    """@throws NotLoaded"""
+    out = Compared()
     try:
         import pinocchio
         model = pinocchio.buildModelFromUrdf(str(path))
-    except (ImportError, ValueError):
-        return False
+    except (ImportError, ValueError, RuntimeError) as error:
+        raise NotLoaded(str(error)) from error
     if "error" in read:
-        return False  # urdfdom is laxer in places (docs/formats.md)
-    if read["unmodelled"]:
-        return False
-    data = model.createData()
-    names = [v["name"] for v in read["variables"]]
+        return out  # urdfdom is laxer in places (docs/formats.md)
     links = {link["name"]: i for i, link in enumerate(read["links"])}
-    if any(not model.existJointName(name) for name in names):
-        fail(path, "Pinocchio has not all joints")
-        return True
-    mimics = model.nq != sum(model.joints[model.getJointId(name)].nq for name in names)
-    if mimics:
-        return False  # it moves joints that mimic others by themselves
-    worst = 0
-    for configuration in read["configurations"]:
-        q = pinocchio.neutral(model)
-        for name, value in zip(names, configuration["q"]):
-            joint = model.joints[model.getJointId(name)]
-            if joint.nq == 2:
-                q[joint.idx_q:joint.idx_q + 2] = math.cos(value), math.sin(value)
-            else:
-                q[joint.idx_q] = value
-        pinocchio.framesForwardKinematics(model, data, q)
-        for frame, pose in zip(model.frames, data.oMf):
-            if frame.type == pinocchio.FrameType.BODY and frame.name in links:
-                worst = max(worst, difference(configuration["poses"][links[frame.name]], pose.rotation, pose.translation))
-    if worst > TOLERANCE:
-        fail(path, f"links are {worst} away from where Pinocchio has them")
-    return True
+    if not read["unmodelled"]:
+        data = model.createData()
+        for configuration in read["configurations"]:
+            q = pinocchio.neutral(model)
+            for name, value in values_of(read, configuration).items():
+                if not model.existJointName(name):
+                    out.fault(f"Pinocchio has no joint {name}")
+                    return out
+                joint = model.joints[model.getJointId(name)]
+                if joint.nq == 2:
+                    q[joint.idx_q:joint.idx_q + 2] = math.cos(value), math.sin(value)
+                elif joint.nq == 1:
+                    q[joint.idx_q] = value
+            pinocchio.framesForwardKinematics(model, data, q)
+            for frame, pose in zip(model.frames, data.oMf):
+                if frame.type == pinocchio.FrameType.BODY and frame.name in links:
+                    out.off(difference(configuration["poses"][links[frame.name]], pose.rotation, pose.translation))
+    compare_pinocchio_shapes(path, read, model, out)
+    return out
 
 
-def compare_drake(path, read, fail):
+def compare_pinocchio_shapes(path, read, model, out):
+    import pinocchio
+    packages = [str(path.parent), *[x for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]]
     try:
-        import logging
-        logging.disable(logging.CRITICAL)
+        geometry = pinocchio.buildGeomFromUrdf(model, str(path), pinocchio.GeometryType.COLLISION, package_dirs=packages)
+    except (ValueError, RuntimeError) as error:
+        raise NotLoaded(str(error)) from error
+    sizes = {"Box": ("box", lambda g: 2 * g.halfSide), "Sphere": ("sphere", lambda g: [g.radius]),
+             "Cylinder": ("cylinder", lambda g: [g.radius, 2 * g.halfLength]), "Capsule": ("capsule", lambda g: [g.radius, 2 * g.halfLength])}
+    found = {}
+    for g in geometry.geometryObjects:
+        found.setdefault(model.frames[g.parentFrame].name, []).append(g)
+    for link in read["links"]:
+        theirs, ours = found.get(link["name"], []), link["collision"]
+        if len(theirs) != len(ours):
+            out.fault(f"{link['name']}: {len(ours)} shapes, Pinocchio has {len(theirs)}")
+            continue
+        for shape, g in zip(ours, theirs):
+            kind, size = sizes.get(type(g.geometry).__name__, ("mesh", lambda _, g=g: g.meshScale))
+            pose = model.frames[g.parentFrame].placement.inverse() * g.placement
+            compare_shape(out, link["name"], shape, kind, size(g.geometry), pose.rotation, pose.translation)
+
+
+def add_packages(packages, path):
+    """The folders of $ROS_PACKAGE_PATH that a file names as packages."""
+    names = set(re.findall(r"(?:package|model)://([^/\"<]+)/", path.read_text(errors="replace")))
+    for folder in [x for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]:
+        for name in sorted(names):
+            if not packages.Contains(name) and (pathlib.Path(folder) / name).is_dir():
+                packages.Add(name, str(pathlib.Path(folder) / name))
+
+
+def compare_drake(path, read):
+    """@throws NotLoaded"""
+    import logging
+    logging.disable(logging.CRITICAL)
+    out = Compared()
+    if path.suffix == ".urdf" and ET.parse(path).getroot().get("version", "1.0") not in ("1", "1.0"):
+        raise NotLoaded("Drake 1.51 reads URDF 1.0 only, and passes over what is new")
+    try:
         from pydrake.multibody.parsing import Parser
-        from pydrake.multibody.plant import MultibodyPlant
-        plant = MultibodyPlant(0.0)
-        Parser(plant).AddModels(str(path))
+        from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+        from pydrake.systems.framework import DiagramBuilder
+        builder = DiagramBuilder()
+        plant, scene = AddMultibodyPlantSceneGraph(builder, 0.0)
+        parser = Parser(plant)
+        add_packages(parser.package_map(), path)
+        parser.AddModels(str(path))
         plant.Finalize()
-    except (ImportError, RuntimeError):
-        return False
+    except (ImportError, RuntimeError) as error:
+        raise NotLoaded(str(error)) from error
     if "error" in read or read["unmodelled"] or plant.num_model_instances() != 3:
-        return False
-    context, worst = plant.CreateDefaultContext(), 0
+        return out
+    context = plant.CreateDefaultContext()
     for configuration in read["configurations"]:
-        for variable, q in zip(read["variables"], configuration["q"]):
-            joint = plant.GetJointByName(variable["name"])
+        for name, q in values_of(read, configuration).items():
+            if not plant.HasJointNamed(name):
+                out.fault(f"Drake has no joint {name}")
+                return out
+            joint = plant.GetJointByName(name)
+            if joint.num_positions() != 1:
+                out.fault(f"Drake's joint {name} has {joint.num_positions()} positions")
+                return out
             (joint.set_angle if hasattr(joint, "set_angle") else joint.set_translation)(context, q)
         first = None
         for link, ours in zip(read["links"], configuration["poses"]):
@@ -226,10 +303,40 @@ def compare_drake(path, read, fail):
             here[:3, :3], here[:3, 3] = np.reshape(ours[:9], (3, 3)), ours[9:]
             if first is None:
                 first = np.linalg.inv(theirs), np.linalg.inv(here)
-            worst = max(worst, np.abs(first[0] @ theirs - first[1] @ here).max())
-    if worst > TOLERANCE:
-        fail(path, f"links are {worst} away from where Drake has them")
-    return True
+            out.off(np.abs(first[0] @ theirs - first[1] @ here).max())
+    compare_drake_shapes(read, plant, scene.model_inspector(), out)
+    return out
+
+
+def compare_drake_shapes(read, plant, inspector, out):
+    sizes = {"Box": ("box", lambda s: s.size()), "Sphere": ("sphere", lambda s: [s.radius()]),
+             "Cylinder": ("cylinder", lambda s: [s.radius(), s.length()]), "Capsule": ("capsule", lambda s: [s.radius(), s.length()]),
+             "Ellipsoid": ("ellipsoid", lambda s: [s.a(), s.b(), s.c()]), "Mesh": ("mesh", lambda s: s.scale3()),
+             "Convex": ("mesh", lambda s: s.scale3())}
+    for link in read["links"]:
+        if link["name"] == "world" or not plant.HasBodyNamed(link["name"]):
+            continue
+        geometries = plant.GetCollisionGeometriesForBody(plant.GetBodyByName(link["name"]))
+        if len(geometries) != len(link["collision"]):
+            out.fault(f"{link['name']}: {len(link['collision'])} shapes, Drake has {len(geometries)}")
+            continue
+        for shape, g in zip(link["collision"], geometries):
+            theirs = inspector.GetShape(g)
+            kind, size = sizes[type(theirs).__name__]
+            pose = inspector.GetPoseInFrame(g)
+            compare_shape(out, link["name"], shape, kind, size(theirs), pose.rotation().matrix(), pose.translation())
+
+
+COMPARE = {"mujoco": compare_mujoco, "pinocchio": compare_pinocchio, "drake": compare_drake}
+
+
+def load(engine, path, read):
+    """What an engine makes of a robot, for tables."""
+    try:
+        out = COMPARE[engine](path, read)
+    except NotLoaded as error:
+        return {"loaded": False, "why": str(error).strip().replace("\n", " ")[:300]}
+    return {"loaded": True, "worst": out.worst, "shapes": out.shapes, "faults": out.faults}
 
 
 def check_written(path, tools, fail):
@@ -277,12 +384,17 @@ def main():
             if path in own and "error" in read:
                 fail(path, read["error"])
                 continue
-            if path.suffix == ".xml":
-                compared["mujoco"] += compare_mujoco(path, read, fail)
-            if path.suffix == ".urdf":
-                compared["pinocchio"] += compare_pinocchio(path, read, fail)
-            if path.suffix == ".sdf":
-                compared["drake"] += compare_drake(path, read, fail)
+            for engine, suffixes in (("mujoco", (".xml",)), ("pinocchio", (".urdf",)), ("drake", (".sdf", ".urdf"))):
+                if path.suffix not in suffixes:
+                    continue
+                answer = load(engine, path, read)
+                compared[engine] += answer["loaded"]
+                if path in own and not answer["loaded"] and "1.0 only" not in answer["why"]:
+                    fail(path, f"{engine} does not load it: {answer['why']}")
+                for fault in answer.get("faults", []):
+                    fail(path, f"{engine}: {fault}")
+                if (answer.get("worst") or 0) > TOLERANCE:
+                    fail(path, f"links are {answer['worst']} away from where {engine} has them")
         check_written(own[0], tools, fail)
     print("compared:", ", ".join(f"{n} with {engine}" for engine, n in compared.items()))
     return 1 if fail.count else 0

@@ -1,5 +1,5 @@
 // robot-poses FILE...: what is read of robots, as JSON, for engines to be compared with: links,
-// shapes, limits, and the poses of all links at some configurations.
+// shapes, limits, joints that move, and the poses of all links at some configurations.
 
 #include <kaboum/base/error.h>
 #include <kaboum/robot/kinematics.h>
@@ -34,7 +34,8 @@ Json to_json(const std::vector<robot::Geometry>& shapes) {
 }
 
 Json to_json(const robot::Robot& robot) {
-  Json links = Json::array(), variables = Json::array(), configurations = Json::array();
+  Json links = Json::array(), variables = Json::array(), joints = Json::array(),
+       configurations = Json::array();
   for (const robot::Link& link : robot.links)
     links.push_back({{"name", link.name},
                      {"collision", to_json(link.collision)},
@@ -43,6 +44,12 @@ Json to_json(const robot::Robot& robot) {
     variables.push_back({{"name", v.name},
                          {"lower", v.lower ? Json(*v.lower) : Json()},
                          {"upper", v.upper ? Json(*v.upper) : Json()}});
+  for (const robot::Joint& joint : robot.joints)
+    if (joint.type != robot::JointType::Fixed)
+      joints.push_back({{"name", joint.name},
+                        {"variable", joint.variable},
+                        {"multiplier", joint.multiplier},
+                        {"offset", joint.offset}});
   std::mt19937 random(1);  // NOLINT(cert-msc51-cpp,cert-msc32-c): the same each time
   for (int k = 0; k < kConfigurations; ++k) {
     std::vector<double> q;
@@ -54,6 +61,7 @@ Json to_json(const robot::Robot& robot) {
   }
   return {{"links", std::move(links)},
           {"variables", std::move(variables)},
+          {"joints", std::move(joints)},
           {"unmodelled", robot.unmodelled},
           {"configurations", std::move(configurations)}};
 }
