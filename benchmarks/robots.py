@@ -151,27 +151,31 @@ def read_all(paths, build):
         print(f"{count:5}  {reason}\n         {examples[reason][1][:300]}")
 
 
-def engine(name, file, poses):
-    """Loads a robot and prints what came of it: one process, which may crash."""
+def engine(name, poses):
+    """Loads robots and prints what came of each: one process, which may crash."""
     spec = importlib.util.spec_from_file_location("readers", HERE.parent / "tests/engines/readers.py")
     readers = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(readers)
-    read = json.loads(pathlib.Path(poses).read_text())[file]
-    print(json.dumps(readers.load(name, pathlib.Path(file), read)))
+    for file, read in json.loads(pathlib.Path(poses).read_text()).items():
+        print("\n" + file + "\n" + json.dumps(readers.load(name, pathlib.Path(file), read)), flush=True)
 
 
-def ask_engines(file, poses, limit):
-    """By engine: what it says of a robot."""
-    out = {}
+def ask_engines(files, poses, limit):
+    """By file and engine: what it says of a robot."""
+    out = {file: {} for file in files}
     for name, formats in ENGINES.items():
-        if file.suffix in formats:
-            code, said, _ = run([sys.executable, __file__, "--engine", name, str(file), str(poses)],
-                                limit)
-            lines = said.strip().splitlines() or [""]
+        if not any(file.suffix in formats for file in files):
+            continue
+        code, said, _ = run([sys.executable, __file__, "--engine", name, str(poses)], limit)
+        lines = said.splitlines()
+        for file in files:
+            if file.suffix not in formats:
+                continue
             try:
-                out[name] = json.loads(lines[-1])
-            except json.JSONDecodeError:
-                out[name] = {"loaded": False, "why": f"exit {code}: {lines[-1][:200]}"}
+                out[file][name] = json.loads(lines[lines.index(str(file)) + 1])
+            except (ValueError, IndexError):
+                said = (said.strip().splitlines() or [""])[-1][:200]
+                out[file][name] = {"loaded": False, "why": f"exit {code}: {said}"}
     return out
 
 
@@ -217,10 +221,11 @@ def measure(path, words, args, sources):
                                                     env=environment)
         written = pathlib.Path(report["urdf"])
         poses = place / "poses.json"
-        for what, file in (("original", path), ("written", written)):
-            _, said, _ = run([str(args.build / "tests/engines/robot-poses"), str(file)], args.cpu)
-            poses.write_text(said)
-            row[what] = ask_engines(file, poses, 4 * args.cpu)
+        done = subprocess.run([str(args.build / "tests/engines/robot-poses"), str(path), str(written)],
+                              capture_output=True, text=True, check=True)
+        poses.write_text(done.stdout)
+        answers = ask_engines([path, written], poses, 4 * args.cpu)
+        row["original"], row["written"] = answers[path], answers[written]
     finally:
         shutil.rmtree(place, ignore_errors=True)
     return row
@@ -307,7 +312,7 @@ def page_of(rows):
 
 def main():
     if sys.argv[1:2] == ["--engine"]:
-        engine(*sys.argv[2:5])
+        engine(*sys.argv[2:4])
         return 0
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
