@@ -151,32 +151,45 @@ def read_all(paths, build):
         print(f"{count:5}  {reason}\n         {examples[reason][1][:300]}")
 
 
-def engine(name, poses):
-    """Loads robots and prints what came of each: one process, which may crash."""
+def load_engines():
+    """The comparing module, with the engines that are there loaded: once, before any fork."""
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     spec = importlib.util.spec_from_file_location("readers", HERE.parent / "tests/engines/readers.py")
     readers = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(readers)
-    for file, read in json.loads(pathlib.Path(poses).read_text()).items():
-        print("\n" + file + "\n" + json.dumps(readers.load(name, pathlib.Path(file), read)), flush=True)
+    for name in ("pinocchio", "pydrake.multibody.parsing", "pydrake.multibody.plant"):
+        importlib.import_module(name)
+    return readers
 
 
-def ask_engines(files, poses, limit):
-    """By file and engine: what it says of a robot."""
-    out = {file: {} for file in files}
-    for name, formats in ENGINES.items():
-        if not any(file.suffix in formats for file in files):
-            continue
-        code, said, _ = run([sys.executable, __file__, "--engine", name, str(poses)], limit)
-        lines = said.splitlines()
-        for file in files:
-            if file.suffix not in formats:
-                continue
-            try:
-                out[file][name] = json.loads(lines[lines.index(str(file)) + 1])
-            except (ValueError, IndexError):
-                said = (said.strip().splitlines() or [""])[-1][:200]
-                out[file][name] = {"loaded": False, "why": f"exit {code}: {said}"}
-    return out
+def ask_engine(readers, name, file, read, limit):
+    """What an engine says of a robot, in a process of its own, which may crash or hang."""
+    place = tempfile.NamedTemporaryFile(mode="w+", suffix=".json")
+    child = os.fork()
+    if child == 0:
+        try:
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit) + 5))
+            null = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null, 1)
+            os.dup2(null, 2)
+            place.write(json.dumps(readers.load(name, file, read)))
+            place.flush()
+        finally:
+            os._exit(0)
+    status = os.waitpid(child, 0)[1]
+    with place:
+        text = pathlib.Path(place.name).read_text()
+    if text:
+        return json.loads(text)
+    signal = os.WTERMSIG(status) if os.WIFSIGNALED(status) else None
+    return {"loaded": False, "why": f"ended by signal {signal}" if signal else "failed in the comparison"}
+
+
+def ask_engines(readers, files, reads, limit):
+    """By file and engine."""
+    return {file: {name: ask_engine(readers, name, file, reads[str(file)], limit)
+                   for name, formats in ENGINES.items() if file.suffix in formats}
+            for file in files}
 
 
 def measure(path, words, args, sources):
@@ -220,11 +233,9 @@ def measure(path, words, args, sources):
             row["check"], _, row["check_cpu"] = run(["sh", "-c", report["check"]], 4 * args.cpu,
                                                     env=environment)
         written = pathlib.Path(report["urdf"])
-        poses = place / "poses.json"
         done = subprocess.run([str(args.build / "tests/engines/robot-poses"), str(path), str(written)],
                               capture_output=True, text=True, check=True)
-        poses.write_text(done.stdout)
-        answers = ask_engines([path, written], poses, 4 * args.cpu)
+        answers = ask_engines(args.readers, [path, written], json.loads(done.stdout), args.cpu)
         row["original"], row["written"] = answers[path], answers[written]
     finally:
         shutil.rmtree(place, ignore_errors=True)
@@ -311,9 +322,6 @@ def page_of(rows):
 
 
 def main():
-    if sys.argv[1:2] == ["--engine"]:
-        engine(*sys.argv[2:4])
-        return 0
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sources", nargs="+")
@@ -341,6 +349,7 @@ def main():
     sources = pathlib.Path(args.sources[0]).resolve()
     args.commit = subprocess.run(["git", "-C", str(HERE), "rev-parse", "--short", "HEAD"],
                                  capture_output=True, text=True, check=False).stdout.strip()
+    args.readers = None if args.only_table else load_engines()
     rows = []
     for file, words in listed(args.list):
         if not fnmatch.fnmatch(file, args.match):

@@ -90,7 +90,7 @@ class DefaultClasses {
 /// Settings of <compiler>.
 struct Compiler {
   bool degrees = true, automatic_limits = true, strips_paths = false;
-  bool inertia_from_geoms = false;
+  bool inertia_from_geoms = false, fits_boxes = false;
   std::string euler = "xyz", meshes, textures;
 };
 
@@ -102,8 +102,8 @@ std::string stem_of(const std::string& file) {
 
 class Reader {
  public:
-  Reader(const XMLElement& root, const std::string& name)
-      : root_(root), name_(name), classes_(name) {}
+  Reader(const XMLElement& root, const std::string& name, const MeshSource& meshes)
+      : root_(root), name_(name), meshes_(meshes), classes_(name) {}
 
   MjcfModel read() {
     if (const char* model = root_.Attribute("model"); model != nullptr) out_.robot.name = model;
@@ -259,6 +259,7 @@ class Reader {
     take("strippath", [&](const std::string& v) { compiler_.strips_paths = v == "true"; });
     take("inertiafromgeom",
          [&](const std::string& v) { compiler_.inertia_from_geoms = v == "true"; });
+    take("fitaabb", [&](const std::string& v) { compiler_.fits_boxes = v == "true"; });
     take("assetdir", [&](const std::string& v) { compiler_.meshes = compiler_.textures = v; });
     take("meshdir", [&](const std::string& v) { compiler_.meshes = v; });
     take("texturedir", [&](const std::string& v) { compiler_.textures = v; });
@@ -276,6 +277,8 @@ class Reader {
       if (const auto x = numbers(*e, a, "refquat", 4, 4); !x.empty())
         mesh.reference.linear =
             Eigen::Quaterniond(x[0], x[1], x[2], x[3]).normalized().toRotationMatrix();
+      if (const std::string* inertia = find(a, "inertia"); inertia != nullptr)
+        mesh.inertia = *inertia;
       const char* named = e->Attribute("name");
       const std::string name = named != nullptr ? named : stem_of(mesh.file);
       if (name.empty()) fail(*e, "a mesh without name and file");
@@ -524,11 +527,10 @@ class Reader {
     g.line = e.GetLineNum();
     const std::string* mesh = find(a, "mesh");
     if (type == "sdf") fail(e, "a signed distance field, of which no triangles are known");
-    if (mesh != nullptr && type != "mesh")
-      fail(e, "a " + type + " that MuJoCo fits to the mesh '" + *mesh +
-                  "'; have MuJoCo save the model (mj_saveLastXML), which states its size");
     if (type == "mesh")
       place_mesh(e, a, g);
+    else if (mesh != nullptr)
+      place_fitted(e, a, type, g);
     else
       place_primitive(e, a, type, g);
     g.origin = frame * g.origin;
@@ -543,7 +545,8 @@ class Reader {
     return name != nullptr && paired_.contains(name);
   }
 
-  void place_mesh(const XMLElement& e, const Attributes& a, Geometry& g) const {
+  /// The asset that a geom names.
+  [[nodiscard]] const MjcfMesh& mesh_of(const XMLElement& e, const Attributes& a) const {
     const std::string* name = find(a, "mesh");
     if (name == nullptr) fail(e, "a geom of type mesh without a mesh");
     const auto found = out_.meshes.find(*name);
@@ -553,6 +556,33 @@ class Reader {
       fail(*mesh.element,
            "a mesh without a file: its vertices are in the document, or made by MuJoCo");
     if ((mesh.scale.array() == 0).any()) fail(*mesh.element, "a mesh scaled by 0");
+    return mesh;
+  }
+
+  void place_fitted(const XMLElement& e, const Attributes& a, const std::string& type,
+                    Geometry& g) {
+    const MjcfMesh& mesh = mesh_of(e, a);
+    if (!meshes_)
+      fail(e, "a " + type + " that MuJoCo fits to the mesh '" + a.at("mesh") +
+                  "': its size is not stated");
+    if (e.Attribute("mesh") == nullptr)
+      fail(e, "a " + type + " that MuJoCo fits to the mesh of its class; name the mesh here");
+    if (mesh.inertia == "convex")
+      fail(e, "a " + type + " that MuJoCo fits to the hull of the mesh '" + a.at("mesh") +
+                  "'; have MuJoCo save the model (mj_saveLastXML), which states its size");
+    if (find(a, "fromto") != nullptr) fail(e, "both fromto and a mesh");
+    g.shape = kind_of(e, type).first;
+    MjcfFit fit = fit_to_mesh(g.shape, mesh, meshes_(file_of(mesh.file)), compiler_.fits_boxes);
+    fit.size *= number(e, a, "fitscale", 1);
+    fit.pose = pose(e, a) * fit.pose;
+    g.origin = fit.pose;
+    require_positive(e, type, {fit.size.x(), fit.size.y(), fit.size.z()});
+    set_size(g, {fit.size.x(), fit.size.y(), fit.size.z()});
+    out_.fitted[&e] = fit;
+  }
+
+  void place_mesh(const XMLElement& e, const Attributes& a, Geometry& g) const {
+    const MjcfMesh& mesh = mesh_of(e, a);
     g.shape = Geometry::Shape::Mesh;
     g.mesh = file_of(mesh.file);
     g.size = mesh.scale;
@@ -574,18 +604,32 @@ class Reader {
     return compiler_.meshes + (compiler_.meshes.ends_with('/') ? "" : "/") + file;
   }
 
+  /// A primitive, and how many numbers its size has.
+  using Kind = std::pair<Geometry::Shape, std::size_t>;
+
+  [[nodiscard]] Kind kind_of(const XMLElement& e, const std::string& type) const {
+    using Shape = Geometry::Shape;
+    static const std::map<std::string, Kind> kinds{{"sphere", {Shape::Sphere, 1}},
+                                                   {"capsule", {Shape::Capsule, 2}},
+                                                   {"ellipsoid", {Shape::Ellipsoid, 3}},
+                                                   {"cylinder", {Shape::Cylinder, 2}},
+                                                   {"box", {Shape::Box, 3}}};
+    const auto found = kinds.find(type);
+    if (found == kinds.end()) fail(e, "a geom of type '" + type + "'");
+    return found->second;
+  }
+
+  void require_positive(const XMLElement& e, const std::string& type,
+                        const std::vector<double>& size) const {
+    for (std::size_t i = 0; i < kind_of(e, type).second; ++i)
+      if (!(size[i] > 0)) fail(e, "a " + type + " whose size is not positive");
+  }
+
   void place_primitive(const XMLElement& e, const Attributes& a, const std::string& type,
                        Geometry& g) const {
     using Shape = Geometry::Shape;
-    static const std::map<std::string, std::pair<Shape, std::size_t>> kinds{
-        {"sphere", {Shape::Sphere, 1}},
-        {"capsule", {Shape::Capsule, 2}},
-        {"ellipsoid", {Shape::Ellipsoid, 3}},
-        {"cylinder", {Shape::Cylinder, 2}},
-        {"box", {Shape::Box, 3}}};
-    const auto found = kinds.find(type);
-    if (found == kinds.end()) fail(e, "a geom of type '" + type + "'");
-    g.shape = found->second.first;
+    const auto [shape, sizes] = kind_of(e, type);
+    g.shape = shape;
     std::vector<double> size = numbers(e, a, "size", 0, 3);
     size.resize(3, 0);
     const std::vector<double> ends = numbers(e, a, "fromto", 6, 6);
@@ -600,13 +644,12 @@ class Reader {
         fail(e, "the points of fromto are too close");
       g.origin = {turned_to((from - to) / length), (from + to) / 2};
       size[1] = length / 2;
-      if (found->second.second == 3) {
+      if (sizes == 3) {
         size[2] = size[1];
         size[1] = size[0];
       }
     }
-    for (std::size_t i = 0; i < found->second.second; ++i)
-      if (!(size[i] > 0)) fail(e, "a " + type + " whose size is not positive");
+    require_positive(e, type, size);
     set_size(g, size);
   }
 
@@ -640,6 +683,7 @@ class Reader {
 
   const XMLElement& root_;
   const std::string& name_;
+  const MeshSource& meshes_;
   DefaultClasses classes_;
   Compiler compiler_;
   MjcfModel out_;
@@ -701,8 +745,33 @@ std::string expand_mjcf(std::string_view text, const std::string& name,
   return printer.CStr();
 }
 
-MjcfModel read_mjcf(const tinyxml2::XMLDocument& document, const std::string& name) {
-  MjcfModel out = Reader(root_of(document, name), name).read();
+std::string state_fitted_sizes(std::string_view text, const std::string& name,
+                               const MeshSource& meshes) {
+  tinyxml2::XMLDocument document;
+  parse_xml(document, text, name);
+  const MjcfModel model = read_mjcf(document, name, meshes);
+  if (model.fitted.empty()) return std::string(text);
+  for (const auto& [element, fit] : model.fitted) {
+    auto& e = *const_cast<XMLElement*>(element);  // of our document
+    for (const char* key : kOtherRotations) e.DeleteAttribute(key);
+    e.DeleteAttribute("mesh");
+    e.DeleteAttribute("fitscale");
+    e.SetAttribute("type", model.geoms.at(element).contains("type")
+                               ? model.geoms.at(element).at("type").c_str()
+                               : "sphere");
+    e.SetAttribute("size", digits(fit.size).c_str());
+    e.SetAttribute("pos", digits(fit.pose.translation).c_str());
+    const std::array<double, 4> q = quaternion(fit.pose.linear);
+    e.SetAttribute("quat", digits({q[0], q[1], q[2], q[3]}).c_str());
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+MjcfModel read_mjcf(const tinyxml2::XMLDocument& document, const std::string& name,
+                    const MeshSource& meshes) {
+  MjcfModel out = Reader(root_of(document, name), name, meshes).read();
   try {
     require_valid(out.robot);
   } catch (const Error& error) {

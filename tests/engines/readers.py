@@ -112,6 +112,18 @@ class Compared:
         self.worst = max(self.worst or 0.0, float(distance))
 
 
+def turn_between(kind, ours, theirs):
+    """How far two rotations of a shape are apart that makes no difference to some of them."""
+    if kind == "sphere":
+        return 0
+    between = ours.T @ theirs
+    if kind in ("box", "ellipsoid"):  # half turns about its axes
+        between = between * np.sign(np.diag(between))
+    if kind in ("cylinder", "capsule"):
+        return np.abs(np.abs(between[:, 2]) - [0, 0, 1]).max()
+    return np.abs(between - np.eye(3)).max()
+
+
 def compare_shape(out, name, ours, kind, size, rotation, translation):
     """@param size  as JSON of robot-poses has it; None: not known"""
     out.shapes += 1
@@ -120,7 +132,8 @@ def compare_shape(out, name, ours, kind, size, rotation, translation):
         return
     off = 0 if size is None else max(abs(a - b) for a, b in zip(ours["size"], size))
     if rotation is not None:
-        off = max(off, difference(ours["origin"], rotation, translation))
+        off = max(off, turn_between(kind, np.reshape(ours["origin"][:9], (3, 3)), rotation),
+                  np.abs(np.array(ours["origin"][9:]) - translation).max())
     if off > TOLERANCE:
         out.fault(f"{name}: a {kind} is off by {off}")
 

@@ -106,12 +106,16 @@ RobotFile read_robot(const std::string& path, Motions motions) {
     find_meshes(out.robot, out.path.parent_path());
   } else if (kind == io::XmlKind::Mjcf) {
     out.format = RobotFile::Format::Mjcf;
-    const std::string expanded = expand_mjcf(out.text, name, [&](const std::string& file) {
+    const std::string whole = expand_mjcf(out.text, name, [&](const std::string& file) {
       const std::vector<char> included = io::read_file(out.path.parent_path() / file);
       return std::string(included.begin(), included.end());
     });
-    if (expanded != out.text) name += " (expanded)";
-    out.text = expanded;
+    std::string stated = state_fitted_sizes(
+        whole, whole == out.text ? name : name + " (expanded)", [&](const std::string& file) {
+          return io::read_mesh(out.path.parent_path() / file).mesh;
+        });
+    if (stated != out.text) name += " (expanded)";
+    out.text = std::move(stated);
     out.sha256 = io::sha256(out.text);
     out.robot = parse_mjcf(out.text, name).robot;
   } else if (kind == io::XmlKind::Sdf) {
@@ -130,12 +134,17 @@ std::vector<std::string> included_files(const RobotFile& robot) {
   if (robot.format == RobotFile::Format::Mjcf) {
     const std::vector<char> bytes = io::read_file(robot.path);
     const fs::path folder = robot.path.parent_path();
-    static_cast<void>(expand_mjcf(std::string(bytes.begin(), bytes.end()), robot.path.string(),
-                                  [&](const std::string& file) {
-                                    files.push_back((folder / file).string());
-                                    const std::vector<char> text = io::read_file(folder / file);
-                                    return std::string(text.begin(), text.end());
-                                  }));
+    const std::string name = robot.path.string();
+    const std::string text = expand_mjcf(
+        std::string(bytes.begin(), bytes.end()), name, [&](const std::string& file) {
+          files.push_back((folder / file).string());
+          const std::vector<char> included = io::read_file(folder / file);
+          return std::string(included.begin(), included.end());
+        });
+    static_cast<void>(state_fitted_sizes(text, name, [&](const std::string& file) {
+      files.push_back((folder / file).string());
+      return io::read_mesh(folder / file).mesh;
+    }));
   }
   return files;
 }

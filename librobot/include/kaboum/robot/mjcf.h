@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/geom/mesh.h>
 #include <kaboum/robot/dynamics.h>
 
 #include <cstdint>
@@ -21,6 +22,17 @@ namespace kaboum::robot {
 std::string expand_mjcf(std::string_view text, const std::string& name,
                         const std::function<std::string(const std::string& file)>& read);
 
+/// Gives the mesh of a file, named relative to the model.
+using MeshSource = std::function<geom::Mesh(const std::string& file)>;
+
+/// The text of a model in which every primitive that MuJoCo fits to a mesh states its size and pose,
+/// as MuJoCo 4.0 computes them; as it is where there is none.
+/// @param text  without includes
+/// @throws as parse_mjcf; Error{InvalidInput} naming the line: a mesh without volume, one whose
+///   moments are those of its hull, or one that a default class names
+std::string state_fitted_sizes(std::string_view text, const std::string& name,
+                               const MeshSource& meshes);
+
 /// A robot and what it weighs.
 struct MjcfRobot {
   Robot robot;
@@ -39,8 +51,8 @@ struct MjcfRobot {
 /// only the part has that stands still, are left out with a note.
 /// @param name  appears in messages.
 /// @throws Error{InvalidInput} naming the line where known: not well-formed; unknown classes and
-///   meshes; geoms fitted to meshes, signed distance fields, meshes without a file, composites,
-///   flexible bodies and attached models.
+///   meshes; geoms fitted to meshes (state_fitted_sizes), signed distance fields, meshes without a
+///   file, composites, flexible bodies and attached models.
 MjcfRobot parse_mjcf(std::string_view text, const std::string& name);
 
 /// Files of meshes that stand for one shape of a link, named as the text is to name them; none: the
