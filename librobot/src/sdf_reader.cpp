@@ -380,11 +380,62 @@ class Reader {
     const XMLElement* element;
   };
 
-  /// Joints that follow move by themselves here where their leader follows as well: with a note.
+  /// Joints that follow have the variable of the joint that moves by itself.
   void follow_mimics() {
-    for (const Mimic& m : mimics_)
-      note(*m.element, "joint '" + out_.robot.joints[m.joint].name + "' follows '" + m.leader +
-                           "', and moves by itself here");
+    std::map<std::size_t, const Mimic*> by_joint;
+    for (const Mimic& m : mimics_) by_joint.emplace(m.joint, &m);
+    std::set<std::string> gone;  // variables
+    for (const Mimic& m : mimics_) {
+      Joint& joint = out_.robot.joints[m.joint];
+      const Variable own = out_.robot.variables[joint.variable];
+      joint.multiplier = 1;
+      joint.offset = 0;
+      std::set<std::size_t> seen{m.joint};
+      std::size_t leader = m.joint;
+      for (auto at = by_joint.find(leader); at != by_joint.end(); at = by_joint.find(leader)) {
+        const Mimic& link = *at->second;
+        leader = joint_called(link);
+        if (!seen.insert(leader).second)
+          file_.fail(*link.element, "joints mimic one another in a circle");
+        joint.offset += joint.multiplier * (link.offset - link.multiplier * link.reference);
+        joint.multiplier *= link.multiplier;
+      }
+      joint.variable = out_.robot.joints[leader].variable;
+      joint.lower = own.lower;
+      joint.upper = own.upper;
+      if (own.velocity && joint.multiplier != 0) {
+        std::optional<double>& most = out_.robot.variables[joint.variable].velocity;
+        const double here = *own.velocity / std::abs(joint.multiplier);
+        most = most ? std::min(*most, here) : here;
+      }
+      gone.insert(own.name);
+    }
+    leave_out(gone);
+  }
+
+  /// The joint that another one follows.
+  [[nodiscard]] std::size_t joint_called(const Mimic& m) const {
+    for (std::size_t j = 0; j < out_.robot.joints.size(); ++j)
+      if (const Joint& joint = out_.robot.joints[j]; joint.name == m.leader) {
+        if (joint.type == JointType::Fixed)
+          file_.fail(*m.element, "it mimics '" + m.leader + "', which does not turn or slide");
+        return j;
+      }
+    file_.fail(*m.element, "it mimics '" + m.leader + "', which does not exist");
+  }
+
+  /// Takes variables out that no joint has any more.
+  void leave_out(const std::set<std::string>& names) {
+    std::vector<Variable>& variables = out_.robot.variables;
+    std::vector<std::uint32_t> place(variables.size(), 0);
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+      place[v] = kept;
+      if (!names.contains(variables[v].name)) ++kept;
+    }
+    std::erase_if(variables, [&](const Variable& v) { return names.contains(v.name); });
+    for (Joint& joint : out_.robot.joints)
+      if (joint.type != JointType::Fixed) joint.variable = place[joint.variable];
   }
 
   void note(const XMLElement& e, const std::string& what) {

@@ -95,6 +95,7 @@ struct JointEntry {
   std::optional<Mimicry> mimicry;
   int line;
   bool unmodelled = false;  ///< planar or floating: fixed here
+  bool unlimited = false;   ///< revolute or prismatic, without <limit>
 };
 
 /// Links and joints of a document, one element at a time.
@@ -264,7 +265,7 @@ class Elements {
       const double velocity = file_.number(*limit, "velocity", 0);
       if (velocity > 0) out.variable.velocity = velocity;
     } else if (type != "continuous") {
-      fail("a " + type + " joint needs <limit lower=... upper=.../>");
+      out.unlimited = true;
     }
     if (const XMLElement* mimic = file_.only_child(e, "mimic"); mimic != nullptr)
       out.mimicry = Mimicry{file_.text(*mimic, "joint"), file_.number(*mimic, "multiplier", 1),
@@ -371,6 +372,9 @@ class Assembly {
     if (entry.unmodelled)
       robot_.unmodelled.push_back(name_ + ":" + std::to_string(entry.line) + ": joint '" +
                                   joint.name + "' is planar or floating");
+    if (entry.unlimited)
+      robot_.notes.push_back(name_ + ":" + std::to_string(entry.line) + ": joint '" + joint.name +
+                             "' has no <limit>, which readers of ROS refuse; here it has none");
     robot_.joints.push_back(std::move(joint));
     order_.push_back(&entry);
   }

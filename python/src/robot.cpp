@@ -81,6 +81,13 @@ void bind_robot(py::module_& module) {
       .def_property_readonly(
           "limits", [](const RobotValue& r) { return limits_of(r.file->robot); },
           "(lower, upper) of each variable; None where there is none. [rad or length]")
+      .def_property_readonly(
+          "unmodelled", [](const RobotValue& r) { return r.file->robot.unmodelled; },
+          "Joints that move in ways that are not modelled, such as ball joints, with their places; "
+          "they stand still here. Shapes do not depend on them; motions of such a robot are refused.")
+      .def_property_readonly(
+          "notes", [](const RobotValue& r) { return r.file->robot.notes; },
+          "Sentences on what was left out, with their places.")
       .def("__repr__", [](const RobotValue& r) {
         return "<kaboum.Robot '" + r.file->robot.name + "' of " +
                std::to_string(r.file->robot.links.size()) + " links>";
@@ -103,7 +110,7 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("certify_robot", keywords, certify_keywords());
   require_none(certify::contradiction(options, stated));
-  const RobotValue value = robot_of(robot, "robot");
+  const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   const bool has_budget = robot_bodies || robot_vertices;
   if (!has_budget) certify::be_of_robot(options);
   r.set = certify::request_of(options);
@@ -153,6 +160,7 @@ py::dict write_robot(const CertifiedValue& robot, const py::object& folder,
   const robot_folder::WrittenRobot written = run(0, [&] {
     std::vector<std::pair<std::string, std::string>> documents;
     if (srdf) {
+      robot::require_modelled(*robot.file);
       const scene::RobotPairs pairs =
           scene::pairs_of(robot.file->robot, robot.made, [&] { watch("pairs of links"); });
       documents.emplace_back(".srdf", pairs.srdf);
@@ -318,6 +326,16 @@ constexpr const char* kRobotParameters =
     "object = None, "
     "partial: bool = False";
 
+RobotValue read_robot_file(const py::object& file, const py::object& xacro_args) {
+  const auto path = path_of(file);
+  if (!path || xacro_args.is_none()) return robot_of(file, "path", robot::Motions::None);
+  const std::vector<std::string> arguments = names_given(xacro_args);
+  return run(0, [&] {
+    return RobotValue{std::make_shared<robot::RobotFile>(
+        robot::read_robot(*path, robot::Motions::None, arguments))};
+  });
+}
+
 }  // namespace
 
 std::vector<Option<certify::SetOptions>> link_options() {
@@ -329,14 +347,19 @@ std::vector<Option<certify::SetOptions>> link_options() {
   return out;
 }
 
-RobotValue robot_of(const py::object& value, const char* argument) {
-  if (py::isinstance<RobotValue>(value)) return value.cast<RobotValue>();
+RobotValue robot_of(const py::object& value, const char* argument, robot::Motions motions) {
+  if (py::isinstance<RobotValue>(value)) {
+    auto out = value.cast<RobotValue>();
+    if (motions == robot::Motions::All) robot::require_modelled(*out.file);
+    return out;
+  }
   const auto path = path_of(value);
   if (!path)
     throw Error(ErrorCode::InvalidArgument,
                 std::string(argument) + " must be a kaboum.Robot, a str or an os.PathLike");
-  return run(
-      0, [&] { return RobotValue{std::make_shared<robot::RobotFile>(robot::read_robot(*path))}; });
+  return run(0, [&] {
+    return RobotValue{std::make_shared<robot::RobotFile>(robot::read_robot(*path, motions))};
+  });
 }
 
 std::vector<std::string> names_given(const py::object& names) {
@@ -407,8 +430,14 @@ void bind_robots(py::module_& module) {
   bind_robot(module);
   bind_certified(module);
   module.def(
-      "read_robot", [](const py::object& path) { return robot_of(path, "path"); }, py::arg("path"),
-      R"(Reads a robot: URDF, or the Robotics Library's rlkin and rlmdl.
+      "read_robot", &read_robot_file, py::arg("path"), py::kw_only(),
+      py::arg("xacro_args") = py::none(),
+      R"(Reads a robot: URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin and rlmdl.
+
+Parameters
+----------
+xacro_args : sequence of str, optional
+    Arguments of a file called NAME.xacro, as in 'name:=left'.
 
 Raises
 ------

@@ -26,8 +26,11 @@ struct CertifiedValue {
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
 };
 
-/// A Robot, or the name of its file. @throws as robot::read_robot
-RobotValue robot_of(const py::object& value, const char* argument);
+/// A Robot, or the name of its file.
+/// @param motions  what is asked of it
+/// @throws as robot::read_robot
+RobotValue robot_of(const py::object& value, const char* argument,
+                    robot::Motions motions = robot::Motions::All);
 
 /// Options of a set that a robot's links can have: its file states their scales and frames.
 std::vector<Option<certify::SetOptions>> link_options();

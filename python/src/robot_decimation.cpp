@@ -46,7 +46,7 @@ EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons
   std::optional<io::Format> format;
   if (output_format) format = format_of(output_format, "output_format");
   options.request.comment = "bmesh-decimate " KABOUM_VERSION;
-  const RobotValue value = robot_of(robot, "robot");
+  const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   certify::LinkEnclosuresRequest request{
       certify::link_request_of(options, format), shapes, {}, epsilons_of(epsilons)};
   request.partial = partial;

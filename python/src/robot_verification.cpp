@@ -82,7 +82,8 @@ Verdict verify_robot(const py::object& original, const py::object& result,
       take_keywords("verify_robot", verify::robot_verdict_options(), given, options, Runs::Threads);
   require_none(contradiction(options));
   bring_lengths_into("m", verify::robot_verdict_options(), options);
-  const RobotValue first = robot_of(original, "original"), second = robot_of(result, "result");
+  const RobotValue first = robot_of(original, "original", robot::Motions::None),
+                   second = robot_of(result, "result", robot::Motions::None);
   robot::require_links(*first.file, options.shapes.links);
   Files files(options.shapes.packages, options.exact_points);
   verify::RobotQuestion question = verify::question_of(

@@ -313,7 +313,7 @@ robot_folder::SphereFormat format_of_shapes(const DecomposeOptions& o) {
 int decompose_into_shapes(const DecomposeOptions& o) {
   const robot_folder::SphereFormat format = format_of_shapes(o);
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
-  Run run{o, robot::read_robot(o.input, robot::Motions::None)};
+  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
   const certify::SetCache kept(certify::SetCache::default_folder());
@@ -401,7 +401,8 @@ int repair(const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--repair: spheres are written in the format that they have: end --output as " +
                     o.repair + " does (.yaml, .yml, .xrdf, .srdf or .urdf)");
-  const robot::RobotFile robot = robot::read_robot(o.input);
+  const robot::RobotFile robot =
+      robot::read_robot(o.input, robot::Motions::All, o.robot.xacro_arguments);
   robot::require_links(robot, o.robot.shapes.links);
   const std::vector<char> text = io::read_file(o.repair);
   Progress progress(o.common.quiet);
@@ -469,7 +470,8 @@ int decompose_robot(const DecomposeOptions& o) {
                     "robot, such as " +
                     fs::path(o.output).replace_extension().string() + ", not " + o.output);
   require_robot_folder(o.output, o.output_format);
-  Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None)};
+  Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None,
+                               o.robot.xacro_arguments)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   RobotWriter output(folder_options(o.robot), o.output, run.robot, "bodies", "");

@@ -240,7 +240,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   apply_preset(app, o.output, o.robot, nullptr);
   bring_lengths_into("m", certify::mesh_options(), o.mesh);
   require_separate(o);
-  Run run{o, robot::read_robot(o.input, robot::Motions::None)};
+  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   const io::Format format = format_of_meshes(o);

@@ -146,7 +146,8 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "One line says of each link whether every triangle of it is inside, or which are not, and by "
       "how much.\n\n"
       "A result of bcd-decompose or bmesh-decimate: bound-verify robot INPUT.urdf DIR/INPUT.urdf "
-      "--prepare, with --visual, --links, --drop-sheets and --package-path where these were given, "
+      "--prepare, with --visual, --links, --drop-sheets, --xacro-args and --package-path where these "
+      "were given, "
       "and --prepare=wrap where that was; their --html-report has the command.",
       [&o, &app] {
         require_none(contradiction(o.robot.how));
@@ -199,6 +200,10 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
                 "robots move alike. Beside it only --geometry, --links and --package-path may be "
                 "stated")
       ->type_name("FILE");
+  c->add_option("--xacro-args", o.robot.xacro_arguments,
+                "Arguments of ORIGINAL, a .xacro file, as bcd-decompose was given them; further "
+                "ones may follow, or the option may be repeated")
+      ->type_name("NAME:=VALUE");
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);
   add_visual(*c, o.robot.how.shapes);

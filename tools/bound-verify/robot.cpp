@@ -111,7 +111,7 @@ class RobotVerifier {
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
-        original_(robot::read_robot(o_.original, robot::Motions::None)),
+        original_(robot::read_robot(o_.original, robot::Motions::None, o_.xacro_arguments)),
         result_(robot::read_robot(o_.result, robot::Motions::None)),
         meshes_(o_.how.shapes.packages, o_.how.exact_points),
         progress_(common.quiet) {}

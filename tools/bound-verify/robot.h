@@ -3,6 +3,7 @@
 #include <kaboum/verify/robot_options.h>
 
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
@@ -15,6 +16,7 @@ struct VerifyRobotOptions {
   std::string bodies;            ///< instead of it: a URDF with capsules, boxes and spheres
   std::string page;              ///< with these: shows them; empty: none
   verify::RobotVerdictOptions how;
+  std::vector<std::string> xacro_arguments;  ///< of the original
 };
 
 /// Decides whether the collision shapes of RESULT hold ORIGINAL's shapes, link by link, and both

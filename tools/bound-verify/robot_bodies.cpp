@@ -289,7 +289,8 @@ void require_known(const robot::RobotFile& bodies, const robot::RobotFile& robot
 int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   require_apart({{"--report", common.report}}, {o.original, o.bodies});
-  const robot::RobotFile robot = robot::read_robot(o.original);
+  const robot::RobotFile robot =
+      robot::read_robot(o.original, robot::Motions::All, o.xacro_arguments);
   robot::require_links(robot, o.how.shapes.links);
   const robot::RobotFile bodies = robot::read_robot(o.bodies);
   require_known(bodies, robot);

@@ -79,6 +79,9 @@ RobotCheck check_of(const std::string& original, const std::string& result,
     for (const std::string& link : options.shapes.links) links += (links.empty() ? "" : ",") + link;
     out.command += " --links " + shell_word(links);
   }
+  if (!options.xacro_arguments.empty()) out.command += " --xacro-args";
+  for (const std::string& argument : options.xacro_arguments)
+    out.command += " " + shell_word(argument);
   for (const std::string& folder : options.shapes.packages)
     out.command += " --package-path " + shell_word(folder);
   if (epsilon) out.command += " --epsilon " + shell_word(epsilon->text());

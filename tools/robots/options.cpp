@@ -83,7 +83,15 @@ void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
   app.add_flag("--verbose", o.verbose,
                "Of a robot, also print a line for each mesh and all notes, which otherwise only "
                "--report and --html-report have");
+  add_xacro_arguments(app, o.xacro_arguments);
   add_formats(app, o);
+}
+
+void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments) {
+  app.add_option("--xacro-args", arguments,
+                 "Arguments of a .xacro file, as the program xacro takes them, as in name:=left "
+                 "prefix:=l_; further ones may follow, or the option may be repeated")
+      ->type_name("NAME:=VALUE");
 }
 
 void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
@@ -95,7 +103,8 @@ void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
 
 void require_options_of_meshes(const CLI::App& app, const std::string& input) {
   for (const char* option : {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix",
-                             "--epsilons", "--robot-format", "--for", "--html-report", "--verbose"})
+                             "--epsilons", "--xacro-args", "--robot-format", "--for",
+                             "--html-report", "--verbose"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) +
                                                   " is for robots (.urdf, .xacro, .xml, .sdf); " +

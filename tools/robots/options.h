@@ -23,6 +23,7 @@ struct RobotOptions {
   std::set<std::string> stated;  ///< names of the options of shapes that were stated
   std::string prefix, epsilons, html, preset;
   std::vector<std::string> formats;  ///< that are written besides URDF
+  std::vector<std::string> xacro_arguments;
   std::string bodies = "stl";        ///< format of convex bodies' files
   bool declare_convex = false;       ///< in the URDF, as Drake asks for
   bool verbose = false;              ///< a line for each mesh, and all notes
@@ -35,6 +36,9 @@ bool is_robot(const std::string& path);
 
 /// @param from  whether --from collision|visual is one of the options here
 void add_robot_options(CLI::App& app, RobotOptions& options, bool from);
+
+/// Adds --xacro-args.
+void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments);
 
 /// Adds --require-closed, the same as --holes refuse under the name that it had.
 void add_require_closed(CLI::App& app, certify::PreparationOptions& options);

@@ -85,13 +85,18 @@ Dynamics dynamics_of(const RobotFile& robot) {
   return parse_dynamics(robot.text, name);
 }
 
-RobotFile read_robot(const std::string& path, Motions motions) {
+RobotFile read_robot(const std::string& path, Motions motions,
+                     const std::vector<std::string>& xacro_arguments) {
   RobotFile out;
   out.path = path;
+  out.xacro_arguments = xacro_arguments;
+  if (!xacro_arguments.empty() && !is_xacro(path))
+    throw Error(ErrorCode::InvalidArgument,
+                path + ": arguments of xacro are for files called NAME.xacro");
   std::string name = path;
   const std::vector<char> bytes = io::read_file(path);
   if (is_xacro(path)) {
-    out.text = expand_xacro(path);
+    out.text = expand_xacro(path, xacro_arguments);
     name += " (expanded)";  // whose lines are others
   } else {
     out.text.assign(bytes.begin(), bytes.end());
@@ -129,7 +134,7 @@ RobotFile read_robot(const std::string& path, Motions motions) {
 }
 
 std::vector<std::string> included_files(const RobotFile& robot) {
-  if (is_xacro(robot.path)) return xacro_includes(robot.path);
+  if (is_xacro(robot.path)) return xacro_includes(robot.path, robot.xacro_arguments);
   std::vector<std::string> files;
   if (robot.format == RobotFile::Format::Mjcf) {
     const std::vector<char> bytes = io::read_file(robot.path);

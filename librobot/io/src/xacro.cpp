@@ -163,16 +163,28 @@ std::string last_words(std::string text) {
   return text.empty() ? "" : ": " + text;
 }
 
-void require_success(const fs::path& file, int status, const std::string& said) {
+void require_success(const fs::path& file, int status, const std::string& said, bool bare) {
   if (WIFSIGNALED(status))
     fail(file, "xacro was ended by a signal, " + std::string(::strsignal(WTERMSIG(status))) +
                    ", or at a limit of time or memory" + last_words(said));
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    fail(file, "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said));
+    fail(file, "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said) +
+                   (bare ? "; arguments that it wants are stated by --xacro-args NAME:=VALUE" : ""));
+}
+
+void require_arguments(const XacroArguments& arguments) {
+  for (const std::string& argument : arguments) {
+    const std::size_t end = argument.find(":=");
+    if (end == 0 || end == std::string::npos || argument.starts_with('-'))
+      throw Error(ErrorCode::InvalidArgument,
+                  "'" + argument + "' is no argument of xacro: NAME:=VALUE is meant");
+  }
 }
 
 /// What the program prints. @param option  before the file's name; empty: none
-std::string run_xacro(const fs::path& file, const std::string& option, const XacroLimits& limits) {
+std::string run_xacro(const fs::path& file, const std::string& option,
+                      const XacroArguments& arguments, const XacroLimits& limits) {
+  require_arguments(arguments);
   const std::string program = find_on_path("xacro");
   if (program.empty())
     fail(file,
@@ -185,6 +197,7 @@ std::string run_xacro(const fs::path& file, const std::string& option, const Xac
     fail(file, "xacro takes a path with ':=' for an argument; rename the file or its folder");
   std::vector<std::string> words{program, name};
   if (!option.empty()) words.insert(words.begin() + 1, option);
+  words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> command;
   command.reserve(words.size() + 1);
   for (std::string& word : words) command.push_back(word.data());
@@ -208,7 +221,7 @@ std::string run_xacro(const fs::path& file, const std::string& option, const Xac
     fail(file, "xacro was ended: it takes more than " + std::to_string(2 * limits.seconds) +
                    " s, or writes more than " + std::to_string(limits.output >> 20U) + " MiB" +
                    last_words(text[1]));
-  require_success(file, status, text[1]);
+  require_success(file, status, text[1], arguments.empty());
   if (text[0].empty() && option.empty())
     fail(file, "xacro makes nothing of it" + last_words(text[1]));
   return std::move(text[0]);
@@ -216,12 +229,14 @@ std::string run_xacro(const fs::path& file, const std::string& option, const Xac
 
 }  // namespace
 
-std::string expand_xacro(const fs::path& file, const XacroLimits& limits) {
-  return run_xacro(file, "", limits);
+std::string expand_xacro(const fs::path& file, const XacroArguments& arguments,
+                         const XacroLimits& limits) {
+  return run_xacro(file, "", arguments, limits);
 }
 
-std::vector<std::string> xacro_includes(const fs::path& file, const XacroLimits& limits) {
-  std::istringstream printed(run_xacro(file, "--deps", limits));
+std::vector<std::string> xacro_includes(const fs::path& file, const XacroArguments& arguments,
+                                        const XacroLimits& limits) {
+  std::istringstream printed(run_xacro(file, "--deps", arguments, limits));
   std::vector<std::string> files;
   std::string name;  // of a file: as many words as it takes
   for (std::string word; printed >> word;) {

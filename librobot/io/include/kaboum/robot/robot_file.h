@@ -19,6 +19,7 @@ struct RobotFile {
   std::string text;  ///< of the file; of xacro, what it stands for; of MJCF, with what it includes
   std::string sha256;  ///< of the text
   Format format = Format::Urdf;
+  std::vector<std::string> xacro_arguments = {};  ///< that it was expanded with
 };
 
 /// What is said of a robot's motions.
@@ -34,10 +35,13 @@ bool is_xacro(const std::filesystem::path& path);
 /// element). Links of the latter get the mesh in the robot's folder that has their name; `bodyN`
 /// also that of `linkN`.
 ///
-/// Of a file called NAME.xacro, what the program `xacro` makes of it without arguments; its names
-/// of files are relative to NAME.xacro. The program is run: such a file is trusted as a script is.
-/// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long.
-RobotFile read_robot(const std::string& path, Motions motions = Motions::All);
+/// Of a file called NAME.xacro, what the program `xacro` makes of it; its names of files are
+/// relative to NAME.xacro. The program is run: such a file is trusted as a script is.
+/// @param xacro_arguments  NAME:=VALUE each
+/// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long;
+///   Error{InvalidArgument} for arguments where there is no xacro, or that are none.
+RobotFile read_robot(const std::string& path, Motions motions = Motions::All,
+                     const std::vector<std::string>& xacro_arguments = {});
 
 /// @throws Error{InvalidInput} naming a joint that Robot does not model.
 void require_modelled(const RobotFile& robot);
