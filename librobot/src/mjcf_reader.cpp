@@ -559,6 +559,14 @@ class Reader {
     return mesh;
   }
 
+  [[nodiscard]] geom::Mesh read_mesh(const XMLElement& e, const std::string& file) const {
+    try {
+      return meshes_(file);
+    } catch (const Error& error) {
+      fail(e, std::string("the mesh that it is fitted to: ") + error.what());
+    }
+  }
+
   void place_fitted(const XMLElement& e, const Attributes& a, const std::string& type,
                     Geometry& g) {
     const MjcfMesh& mesh = mesh_of(e, a);
@@ -572,7 +580,8 @@ class Reader {
                   "'; have MuJoCo save the model (mj_saveLastXML), which states its size");
     if (find(a, "fromto") != nullptr) fail(e, "both fromto and a mesh");
     g.shape = kind_of(e, type).first;
-    MjcfFit fit = fit_to_mesh(g.shape, mesh, meshes_(file_of(mesh.file)), compiler_.fits_boxes);
+    MjcfFit fit =
+        fit_to_mesh(g.shape, mesh, read_mesh(e, file_of(mesh.file)), compiler_.fits_boxes);
     fit.size *= number(e, a, "fitscale", 1);
     fit.pose = pose(e, a) * fit.pose;
     g.origin = fit.pose;

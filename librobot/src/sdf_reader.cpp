@@ -45,17 +45,7 @@ class Reader {
     read_version();
     find_model();
     out_.robot.name = file_.text(*model_, "name");
-    refuse_more_models();
-    std::set<std::string> tags;
-    for (const char* tag : {"link", "joint", "frame"})
-      for (XMLElement* e = model_->FirstChildElement(tag); e != nullptr;
-           e = e->NextSiblingElement(tag)) {
-        const std::string named = file_.text(*e, "name");
-        if (named == kWorld || !tags.insert(std::string(tag) + ' ' + named).second)
-          file_.fail(*e, "the name '" + named + "' is there already");
-        frames_.emplace(named, e);  // before 1.7 a joint may have a link's name
-        order_[tag].push_back(e);
-      }
+    collect(*model_, "");
     build();
     try {
       require_valid(out_.robot);
@@ -89,16 +79,44 @@ class Reader {
     if (model_ == nullptr) file_.fail(root_, "no <model>");
     if (const XMLElement* more = model_->NextSiblingElement("model"); more != nullptr)
       file_.fail(*more, "a second model: give a file of one robot");
-    if (const XMLElement* more = parent->FirstChildElement("include"); more != nullptr)
-      file_.fail(*more, "included models are not read; have `gz sdf -p` expand the file first");
+    refuse_includes(*parent);
   }
 
-  void refuse_more_models() const {
-    for (const char* tag : {"model", "include"})
-      if (const XMLElement* e = model_->FirstChildElement(tag); e != nullptr)
-        file_.fail(*e,
-                   "nested models are not read; have `gz sdf -p` expand the file, or move their "
-                   "links into the model");
+  void refuse_includes(const XMLElement& parent) const {
+    if (const XMLElement* e = parent.FirstChildElement("include"); e != nullptr)
+      file_.fail(*e,
+                 "included models are not read: have `gz sdf -p` write them out as nested models, "
+                 "which are");
+  }
+
+  /// Links, joints, frames and nested models, by their names from outside ("arm::hand::palm").
+  /// @param scope  of the names inside: empty, or "arm::"
+  void collect(XMLElement& model, const std::string& scope) {
+    refuse_includes(model);
+    std::set<std::string> tags;
+    for (const char* tag : {"link", "joint", "frame", "model"})
+      for (XMLElement* e = model.FirstChildElement(tag); e != nullptr;
+           e = e->NextSiblingElement(tag)) {
+        const std::string named = file_.text(*e, "name");
+        if (named == kWorld || !tags.insert(std::string(tag) + ' ' + named).second)
+          file_.fail(*e, "the name '" + named + "' is there already");
+        frames_.emplace(scope + named, e);  // before 1.7 a joint may have a link's name
+        scopes_.emplace(e, scope);
+        order_[tag].push_back(e);
+        if (std::string_view(tag) == "model") collect(*e, scope + named + "::");
+      }
+  }
+
+  /// The name from outside of what an element names, or of an element itself.
+  [[nodiscard]] std::string from_outside(const XMLElement& e, const std::string& name) const {
+    if (name == kWorld) return name;
+    const auto found = scopes_.find(&e);
+    const std::string& scope = found == scopes_.end() ? kNone : found->second;
+    if (name != kModel) return scope + name;
+    return scope.empty() ? kModel : scope.substr(0, scope.size() - 2);  // the model's own frame
+  }
+  [[nodiscard]] std::string name_of(const XMLElement& e) const {
+    return from_outside(e, file_.text(e, "name"));
   }
 
   // --- poses ------------------------------------------------------------------------------------
@@ -144,40 +162,55 @@ class Reader {
   }
 
   /// The pose of a link, a joint or a frame in the model.
-  const Transform& in_model(const std::string& frame, const XMLElement& asked) {
-    static const Transform here;
-    if (frame == kModel) return here;
+  Transform in_model(const std::string& frame, const XMLElement& asked) {
+    if (frame == kModel) return {};
     if (const auto found = known_.find(frame); found != known_.end()) return found->second;
     const auto entry = frames_.find(frame);
     if (entry == frames_.end()) file_.fail(asked, "there is no frame '" + frame + "'");
     if (!being_found_.insert(frame).second)
       file_.fail(*entry->second, "its pose is relative to itself, by way of others");
     const XMLElement& e = *entry->second;
+    const std::string_view tag = e.Name();
     std::string base = relative_to(e);
-    if (base.empty()) {
-      const std::string_view tag = e.Name();
+    if (tag == "joint" && base.empty()) {
+      base = child_of(e);
+    } else {
       const char* attached = e.Attribute("attached_to");
-      base = kModel;
-      if (tag == "joint") base = child_of(e);
-      if (tag == "frame" && attached != nullptr && *attached != '\0') base = attached;
+      if (tag == "frame" && base.empty() && attached != nullptr) base = attached;
+      base = from_outside(e, base.empty() ? kModel : base);
     }
     const Transform before = base == kWorld ? Transform() : in_model(base, e);
+    Transform here = before * pose(e);
+    if (tag == "model") here = here * inverse(placed_by(e, frame));
     being_found_.erase(frame);
-    return known_[frame] = before * pose(e);
+    return known_[frame] = here;
+  }
+
+  /// The pose in a nested model of the frame that its own pose is of.
+  Transform placed_by(const XMLElement& model, const std::string& name) {
+    const char* frame = model.Attribute("placement_frame");
+    if (frame == nullptr || *frame == '\0' || std::string_view(frame) == kModel) return {};
+    // While this model's frame is not known, all in it is as if that were where the robot's is.
+    const std::map<std::string, Transform> outside = known_;
+    known_[name] = Transform();
+    const Transform out = in_model(name + "::" + frame, model);
+    known_ = outside;
+    return out;
   }
 
   /// The frame of a joint, which may have the name of a link.
   Transform frame_of(const XMLElement& joint) {
     std::string base = relative_to(joint);
-    if (base.empty()) base = child_of(joint);
+    base = base.empty() ? child_of(joint) : from_outside(joint, base);
     return (base == kWorld ? Transform() : in_model(base, joint)) * pose(joint);
   }
 
+  /// The frame that a joint connects, by its name from outside.
   [[nodiscard]] std::string end_of(const XMLElement& joint, const char* tag) const {
     const XMLElement* e = file_.only_child(joint, tag);
-    std::string link = e == nullptr ? std::string() : trimmed(e->GetText());
+    const std::string link = e == nullptr ? std::string() : trimmed(e->GetText());
     if (link.empty()) file_.fail(joint, std::string("no <") + tag + ">");
-    return link;
+    return from_outside(joint, link);
   }
   [[nodiscard]] std::string child_of(const XMLElement& joint) const {
     return end_of(joint, "child");
@@ -195,10 +228,25 @@ class Reader {
         frame = child_of(*entry->second);
         continue;
       }
+      if (tag == "model") {
+        frame = canonical_link(*entry->second, frame);
+        continue;
+      }
       const char* attached = entry->second->Attribute("attached_to");
-      frame = attached == nullptr || *attached == '\0' ? kModel : attached;
+      frame = from_outside(*entry->second,
+                           attached == nullptr || *attached == '\0' ? kModel : attached);
     }
     file_.fail(asked, "frame '" + frame + "' is attached to itself, by way of others");
+  }
+
+  /// The link that a nested model's frame is fixed to.
+  [[nodiscard]] std::string canonical_link(const XMLElement& model, const std::string& name) const {
+    if (const char* stated = model.Attribute("canonical_link"); stated != nullptr && *stated != '\0')
+      return name + "::" + stated;
+    for (const char* tag : {"link", "model"})
+      if (const XMLElement* first = model.FirstChildElement(tag); first != nullptr)
+        return name + "::" + file_.text(*first, "name");
+    file_.fail(model, "a model without links");
   }
 
   // --- the tree ---------------------------------------------------------------------------------
@@ -212,7 +260,7 @@ class Reader {
       if (child == kWorld) file_.fail(*e, "its child is the world");
       if (parent == child) file_.fail(*e, "it connects '" + child + "' with itself");
       if (!mover.emplace(child, e).second) {
-        note(*e, "joint '" + file_.text(*e, "name") + "' closes a loop: link '" + child +
+        note(*e, "joint '" + name_of(*e) + "' closes a loop: link '" + child +
                      "' is moved by another one already, which is the one that counts");
         continue;
       }
@@ -225,7 +273,7 @@ class Reader {
     };
     add_joints(0, kWorld);
     for (XMLElement* e : order_["link"]) {
-      const std::string link = file_.text(*e, "name");
+      const std::string link = name_of(*e);
       if (mover.contains(link)) continue;
       Joint fixed;
       fixed.name = names_.give(link + ":fixed");
@@ -262,7 +310,7 @@ class Reader {
 
   void add_moved(std::uint32_t parent, const std::string& parent_name, XMLElement& e) {
     const std::string child = link_of(child_of(e), e);
-    const std::string named = file_.text(e, "name");
+    const std::string named = name_of(e);
     const Transform above = parent_name == kWorld ? Transform() : in_model(parent_name, e);
     const Transform frame = frame_of(e), below = in_model(child, e);
     XMLElement& element = *frames_.at(child);
@@ -289,12 +337,12 @@ class Reader {
   /// Whether a joint's frame is that of its child, as it is by default.
   [[nodiscard]] bool frame_is_child(const XMLElement& joint, const std::string& child) const {
     const std::string base = relative_to(joint);
-    return (base.empty() || base == child) && is_identity(pose(joint)) && child_of(joint) == child;
+    return (base.empty() || from_outside(joint, base) == child) && is_identity(pose(joint)) && child_of(joint) == child;
   }
 
   Joint read_joint(const XMLElement& e, const Transform& frame) {
     Joint out;
-    out.name = names_.give(file_.text(e, "name"));
+    out.name = names_.give(name_of(e));
     const std::string type = file_.text(e, "type");
     if (type == "fixed") return out;
     if (type != "revolute" && type != "continuous" && type != "prismatic") {
@@ -317,7 +365,7 @@ class Reader {
     if (axis != nullptr)
       if (const XMLElement* mimic = axis->FirstChildElement("mimic"); mimic != nullptr) {
         const XMLElement* leader = mimic;
-        mimics_.push_back({out_.robot.joints.size(), file_.text(*leader, "joint"),
+        mimics_.push_back({out_.robot.joints.size(), from_outside(e, file_.text(*leader, "joint")),
                            number(*mimic, "multiplier", 1), number(*mimic, "offset", 0),
                            number(*mimic, "reference", 0), mimic});
       }
@@ -340,8 +388,13 @@ class Reader {
         (old != nullptr && (trimmed(old->GetText()) == "true" || trimmed(old->GetText()) == "1"));
     if (in != nullptr && *in != '\0')
       return frame.linear.transpose() *
-             ((in == std::string_view(kWorld) ? Transform() : in_model(in, joint)).linear * stated);
-    return in_model_frame ? (frame.linear.transpose() * stated).eval() : stated;
+             ((in == std::string_view(kWorld) ? Transform()
+                                              : in_model(from_outside(joint, in), joint))
+                  .linear *
+              stated);
+    if (!in_model_frame) return stated;
+    return frame.linear.transpose() *
+           (in_model(from_outside(joint, kModel), joint).linear * stated);
   }
 
   void read_limits(const XMLElement& axis, bool endless, Variable& variable,
@@ -484,8 +537,11 @@ class Reader {
     if (kind == "drake:capsule" || kind == "drake:ellipsoid") kind.erase(0, 6);
     g.line = e->GetLineNum();
     g.origin = pose(shape);
-    if (const std::string base = relative_to(shape); !base.empty() && base != link.name)
-      g.origin = inverse(in_model(link.name, shape)) * in_model(base, shape) * g.origin;
+    if (std::string base = relative_to(shape); !base.empty()) {
+      base = from_outside(*shape.Parent()->ToElement(), base);
+      if (base != link.name)
+        g.origin = inverse(in_model(link.name, shape)) * in_model(base, shape) * g.origin;
+    }
     const auto child = [&](const char* tag, std::size_t count) {
       const XMLElement* value = file_.only_child(*e, tag);
       if (value == nullptr) value = file_.only_child(*e, (std::string("drake:") + tag).c_str());
@@ -548,7 +604,9 @@ class Reader {
   int minor_ = 0;
   XMLElement* model_ = nullptr;
   SdfRobot out_;
-  std::map<std::string, XMLElement*> frames_;  // links, joints and frames
+  static inline const std::string kNone;
+  std::map<std::string, XMLElement*> frames_;  // links, joints, frames, models, from outside
+  std::map<const XMLElement*, std::string> scopes_;  // of these: of the model that they are in
   std::map<std::string, Elements> order_;      // by tag, as in the file
   std::map<std::string, Transform> known_;
   std::set<std::string> being_found_;
@@ -592,9 +650,9 @@ std::string sdf_with_shapes(std::string_view text, const std::string& name, cons
     std::vector<XMLElement*> fresh;
     const auto add = [&](const XMLElement& original, const std::string* file) {
       XMLElement* e = document.NewElement("collision");
-      e->SetAttribute(
-          "name",
-          (reader.result().robot.links[l].name + "_collision_" + std::to_string(count++)).c_str());
+      e->SetAttribute("name", (std::string(link.Attribute("name")) + "_collision_" +
+                               std::to_string(count++))
+                                  .c_str());
       for (const auto* child = original.FirstChildElement(); child != nullptr;
            child = child->NextSiblingElement())
         if (const std::string_view tag = child->Name();

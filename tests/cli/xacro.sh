@@ -77,5 +77,15 @@ xacro 'cat "$1"'
 refused '(expanded):2: <xacro:property>' with_xacro
 xacro 'echo "<sdf version=\"1.9\"/>"'
 refused '<sdf>: no <model>' with_xacro
+# Arguments: handed on as they are, and part of the printed check; only for xacro.
+xacro '[ "$2" = "of:=a b" ] && [ "$3" = "reach:=0.5" ] && [ $# = 3 ] || { echo "got: $*" >&2; exit 3; }; sed '\''/xacro:property/d; s/ xmlns:xacro="[^"]*"//; s/${reach}/0.5/'\'' "$1"'
+expect 0 '2 links' with_xacro "$D" robot/arm.urdf.xacro -o with --epsilon 2% --xacro-args 'of:=a b' reach:=0.5 --report with.json
+grep -q "xacro-args 'of:=a b' reach:=0.5" with.json || fail "the check has no arguments: $(cat with.json)"
+shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot robot/arm.urdf.xacro with/arm.urdf --epsilon 2% --xacro-args 'of:=a b' --xacro-args reach:=0.5
+expect 3 'xacro fails, exit code 3: got: .*; arguments that it wants are stated by --xacro-args' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2%
+for bad in reach :=1 --deps:=1; do
+  expect 2 'no argument of xacro|requires|not expected' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2% --xacro-args "$bad"
+done
+expect 2 'are for files called NAME.xacro' "$D" of-urdf/arm.urdf -o x --epsilon 2% --xacro-args a:=1
 pgrep -f "$WORK/bin/xacro" >/dev/null && fail "xacro still runs"
 finish

@@ -41,7 +41,7 @@ MJCF = """<mujoco model="m"><compiler angle="degree" eulerseq="ZyX" meshdir="mes
   <frame pos="0.1 0 0" zaxis="0 1 1"><geom class="collision" type="capsule" fromto="0 0 0 0.1 0.2 0.3" size="0.02"/>
    <body name="a" xyaxes="0 1 0 -1 0.3 0"><joint name="j1" pos="0.1 0.2 0.3" axis="0 1 1" ref="15"/><joint name="j2" type="slide" range="-1 1"/>
     <joint name="j3" axis="1 0 0" range="-30 60"/><geom class="visual" type="mesh" mesh="part" pos="0 0 0.1" quat="1 2 3 4"/>
-    <geom class="collision" type="mesh" mesh="part" pos="0 0 0.1" euler="1 2 3"/><geom class="collision" type="mesh" mesh="moved"/>
+    <geom class="collision" type="mesh" mesh="part" pos="0 0 0.1" euler="1 2 3"/><geom class="collision" type="mesh" mesh="moved"/><geom class="collision" type="capsule" mesh="part" pos="0.1 0 0" euler="3 2 1" fitscale="0.8"/><geom class="collision" type="box" mesh="moved"/>
     <body name="b" pos="0 0 0.4"><joint name="j4" class="stiff"/><geom class="collision" type="ellipsoid" size="0.1 0.05 0.02"/>
      <replicate count="3" offset="0.1 0 0" euler="0 0 20" sep="-"><body name="c" pos="0 0.1 0"><joint name="jc" axis="0 1 0"/>
       <geom class="collision" type="cylinder" size="0.02 0.05"/></body></replicate></body></body></frame></body></worldbody></mujoco>"""
@@ -55,6 +55,18 @@ SDF = """<sdf version="1.9"><model name="s"><frame name="f" attached_to="l1"><po
 <joint name="a" type="revolute"><parent>l0</parent><child>l1</child><axis><xyz expressed_in="l0">0 1 1</xyz><limit><lower>-1</lower><upper>2</upper></limit></axis></joint>
 <joint name="b" type="prismatic"><pose>0.1 0 0 0 0 0.5</pose><parent>l1</parent><child>l2</child><axis><xyz>1 0 0</xyz></axis></joint>
 <joint name="c" type="revolute"><pose relative_to="f"/><parent>l2</parent><child>l3</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
+# Models in models, placed by a frame of their own; joints across them, and one that follows another.
+NESTED = """<sdf version="1.11"><model name="n"><link name="base"><pose>0 0 1 0 0.2 0</pose></link>
+<model name="arm" placement_frame="mount"><pose relative_to="base">0.1 0 0.2 0.1 0.2 0.3</pose><frame name="mount" attached_to="lower"><pose>0 0 -0.1 0 0 0.4</pose></frame>
+<link name="lower"><pose>0.2 0 0 0 0.3 0</pose></link><link name="upper"><pose relative_to="lower">0 0 0.5 0 0 0</pose></link>
+<joint name="elbow" type="revolute"><parent>lower</parent><child>upper</child><axis><xyz expressed_in="__model__">0 1 0</xyz></axis></joint>
+<model name="hand"><pose relative_to="upper">0 0 0.3 0 0 0.5</pose><link name="palm"><collision name="c"><pose relative_to="tip">0 0 0.1 0 0 0</pose><geometry><box><size>0.1 0.1 0.2</size></box></geometry></collision></link>
+<link name="finger"><pose>0.05 0 0.1 0 0 0</pose></link><frame name="tip" attached_to="palm"><pose>0 0.1 0 0.3 0 0</pose></frame>
+<joint name="grip" type="prismatic"><parent>palm</parent><child>finger</child><axis><xyz>1 0 0</xyz></axis></joint></model>
+<joint name="wrist" type="revolute"><parent>upper</parent><child>hand::palm</child><axis><xyz>0 0 1</xyz></axis></joint></model>
+<joint name="shoulder" type="revolute"><parent>base</parent><child>arm::lower</child><axis><xyz>0 0 1</xyz></axis></joint>
+<link name="hook"><pose>1 0 0 0 0 0</pose></link><joint name="follows" type="revolute"><parent>base</parent><child>hook</child>
+<axis><xyz>1 0 0</xyz><mimic joint="shoulder"><multiplier>0.5</multiplier><offset>0.2</offset><reference>0.1</reference></mimic></axis></joint></model></sdf>"""
 URDF = """<robot name="u" version="1.2"><link name="l0"/><link name="l1"><collision><origin quat_xyzw="0 0 0.6 0.8" xyz="1 2 3"/>
 <geometry><capsule radius="0.1" length="0.5"/></geometry></collision></link><link name="l2"/><link name="l3"/>
 <joint name="a" type="revolute"><parent link="l0"/><child link="l1"/><origin xyz="0.1 0 0.2" quat_xyzw="0.5 0.5 0.5 0.5"/><axis xyz="0 1 1"/>
@@ -69,9 +81,9 @@ def make_robots(folder):
     faces = [line.split()[1:] for line in BOX.splitlines()[10:]]
     (folder / "meshes/part.obj").write_text("".join(f"v {v}\n" for v in vertices) +
                                             "".join(f"f {' '.join(str(int(i) + 1) for i in f)}\n" for f in faces))
-    for name, text in {"m.xml": MJCF, "defaults.xml": DEFAULTS, "s.sdf": SDF, "u.urdf": URDF}.items():
+    for name, text in {"m.xml": MJCF, "defaults.xml": DEFAULTS, "s.sdf": SDF, "n.sdf": NESTED, "u.urdf": URDF}.items():
         (folder / name).write_text(text)
-    return [folder / name for name in ("m.xml", "s.sdf", "u.urdf")]
+    return [folder / name for name in ("m.xml", "s.sdf", "n.sdf", "u.urdf")]
 
 
 def below(folder):
@@ -271,8 +283,25 @@ def add_packages(packages, path):
     names = set(re.findall(r"(?:package|model)://([^/\"<]+)/", path.read_text(errors="replace")))
     for folder in [x for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]:
         for name in sorted(names):
-            if not packages.Contains(name) and (pathlib.Path(folder) / name).is_dir():
+            if (pathlib.Path(folder) / name).is_dir():
+                if packages.Contains(name):  # drake_models would be fetched
+                    packages.Remove(name)
                 packages.Add(name, str(pathlib.Path(folder) / name))
+
+
+def of_model(plant, name):
+    """The model that is nested as "a::b" says, and the name in it."""
+    from pydrake.multibody.tree import ModelInstanceIndex
+    *models, inside = name.split("::")
+    whole = "::".join([plant.GetModelInstanceName(ModelInstanceIndex(2)), *models])
+    return (plant.GetModelInstanceByName(whole), inside) if plant.HasModelInstanceNamed(whole) else (None, inside)
+
+
+def drake_body(plant, name):
+    model, inside = of_model(plant, name)
+    if name == "world" or model is None or not plant.HasBodyNamed(inside, model):
+        return None
+    return plant.GetBodyByName(inside, model)
 
 
 def compare_drake(path, read):
@@ -294,24 +323,26 @@ def compare_drake(path, read):
         plant.Finalize()
     except (ImportError, RuntimeError) as error:
         raise NotLoaded(str(error)) from error
-    if "error" in read or read["unmodelled"] or plant.num_model_instances() != 3:
+    if "error" in read or read["unmodelled"] or plant.num_model_instances() < 3:
         return out
     context = plant.CreateDefaultContext()
     for configuration in read["configurations"]:
         for name, q in values_of(read, configuration).items():
-            if not plant.HasJointNamed(name):
+            model, inside = of_model(plant, name)
+            if model is None or not plant.HasJointNamed(inside, model):
                 out.fault(f"Drake has no joint {name}")
                 return out
-            joint = plant.GetJointByName(name)
+            joint = plant.GetJointByName(inside, model)
             if joint.num_positions() != 1:
                 out.fault(f"Drake's joint {name} has {joint.num_positions()} positions")
                 return out
             (joint.set_angle if hasattr(joint, "set_angle") else joint.set_translation)(context, q)
         first = None
         for link, ours in zip(read["links"], configuration["poses"]):
-            if link["name"] == "world" or not plant.HasBodyNamed(link["name"]):
+            body = drake_body(plant, link["name"])
+            if body is None:
                 continue
-            theirs = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(link["name"])).GetAsMatrix4()
+            theirs = plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4()
             here = np.eye(4)
             here[:3, :3], here[:3, 3] = np.reshape(ours[:9], (3, 3)), ours[9:]
             if first is None:
@@ -327,9 +358,10 @@ def compare_drake_shapes(read, plant, inspector, out):
              "Ellipsoid": ("ellipsoid", lambda s: [s.a(), s.b(), s.c()]), "Mesh": ("mesh", lambda s: s.scale3()),
              "Convex": ("mesh", lambda s: s.scale3())}
     for link in read["links"]:
-        if link["name"] == "world" or not plant.HasBodyNamed(link["name"]):
+        body = drake_body(plant, link["name"])
+        if body is None:
             continue
-        geometries = plant.GetCollisionGeometriesForBody(plant.GetBodyByName(link["name"]))
+        geometries = plant.GetCollisionGeometriesForBody(body)
         if len(geometries) != len(link["collision"]):
             out.fault(f"{link['name']}: {len(link['collision'])} shapes, Drake has {len(geometries)}")
             continue

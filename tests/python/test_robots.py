@@ -31,6 +31,20 @@ def test_robot(arm):
     assert robot.joints[1] == {"name": "slide", "type": "prismatic", "parent": "upper", "child": "tool"}
 
 
+def test_joints_that_are_not_modelled(arm, tmp_path):
+    """Shapes do not depend on them; motions do."""
+    text = arm.read_text().replace('type="prismatic"', 'type="floating"')
+    other = arm.parent / "floating.urdf"
+    other.write_text(text)
+    robot = kaboum.read_robot(other)
+    assert robot.variables == ["shoulder"] and "'slide' is planar or floating" in robot.unmodelled[0]
+    assert set(kaboum.certify_robot(robot, epsilon="5%").links) == {"base", "upper", "tool"}
+    with pytest.raises(kaboum.Error, match="planar or floating"):
+        kaboum.sweep(robot, [[0], [1]])
+    with pytest.raises(kaboum.Error, match="NAME.xacro"):
+        kaboum.read_robot(arm, xacro_args=["a:=1"])
+
+
 def test_links_are_held(arm):
     made = kaboum.certify_robot(arm, epsilon="5%")
     assert set(made.links) == {"base", "upper", "tool"}

@@ -95,6 +95,18 @@ TEST(Urdf, JointsThatAreNotModelled) {
   }
 }
 
+/// Readers of ROS refuse such joints; others take them.
+TEST(Urdf, JointsWithoutLimits) {
+  for (const char* type : {"revolute", "prismatic"}) {
+    const Robot robot =
+        parse(robot_of("<link name='a'/>\n<link name='b'/>" + joint("j", type, "a", "b")));
+    ASSERT_EQ(robot.variables.size(), 1U);
+    EXPECT_EQ(robot.variables[0].lower, std::nullopt);
+    ASSERT_EQ(robot.notes.size(), 1U);
+    EXPECT_TRUE(robot.notes[0].starts_with("r.urdf:2: joint 'j' has no <limit>"));
+  }
+}
+
 /// The hull of its points holds a capsule or an ellipsoid, and reaches little beyond.
 TEST(Primitives, RoundShapesAreBounded) {
   for (const Geometry::Shape shape : {Geometry::Shape::Capsule, Geometry::Shape::Ellipsoid}) {

@@ -92,7 +92,7 @@ TEST(Mjcf, RefusedByNameAndLine) {
   has("<robot name='r'/>", "expected <mujoco>");
   has(mjcf("<geom type='mesh' mesh='q'/>", mesh), "no mesh 'q'");
   has(mjcf("<geom type='mesh' mesh='v'/>", mesh), "without a file");
-  has(mjcf("<geom type='box' mesh='p'/>", mesh), "fits to the mesh");
+  has(mjcf("<geom type='box' mesh='p'/>", mesh), "fits to the mesh 'p': its size is not stated");
   has(mjcf("<geom type='sdf' mesh='p'/>", mesh), "signed distance field");
   has(mjcf("<geom class='none' size='1'/>"), "no default class 'none'");
   has(mjcf("<geom type='box' size='1 1'/>"), "not positive");
@@ -102,6 +102,42 @@ TEST(Mjcf, RefusedByNameAndLine) {
   has(mjcf("<flexcomp/>"), "flexible");
   has(mjcf("<attach model='x'/>"), "mj_saveLastXML");
   has(mjcf("<body><geometry/></body>"), "no element of a body");
+}
+
+/// A box of 2 × 1 × 0.5 fits itself, longest moments first: the least length is its z.
+TEST(Mjcf, PrimitivesFittedToMeshes) {
+  const geom::Mesh box = [] {
+    geom::Mesh out;
+    for (int i = 0; i < 8; ++i)
+      out.vertices.emplace_back((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 0.5 : -0.5,
+                                (i & 4) != 0 ? 0.25 : -0.25);
+    out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return out;
+  }();
+  const std::string mesh =
+      "<asset><mesh name='p' file='p.stl' refpos='-1 0 0'/><mesh name='h' file='p.stl' "
+      "inertia='convex'/></asset>";
+  const auto stated = [&](const std::string& geom, const std::string& compiler = "") {
+    return state_fitted_sizes(mjcf(geom, mesh + compiler), "m.xml",
+                              [&](const std::string&) { return box; });
+  };
+  const std::string text = stated("<geom type='box' mesh='p' pos='0 0 1' fitscale='2'/>");
+  const Geometry shape = parse(text).robot.links[0].collision.at(0);
+  EXPECT_EQ(shape.shape, Geometry::Shape::Box);
+  EXPECT_LT((shape.origin.translation - Vec3(1, 0, 1)).norm(), 1e-12);
+  // The box's lengths along its axes, in whichever order and direction these are.
+  const Vec3 reach = shape.origin.linear.cwiseAbs() * shape.size / 2;
+  EXPECT_LT((reach - Vec3(2, 1, 0.5)).norm(), 1e-9) << reach.transpose();
+  for (const char* compiler : {"", "<compiler fitaabb='true'/>"}) {
+    const Geometry ball =
+        parse(stated("<geom mesh='p'/>", compiler)).robot.links[0].collision.at(0);
+    EXPECT_EQ(ball.shape, Geometry::Shape::Sphere);
+    EXPECT_NEAR(ball.size.x(), *compiler == '\0' ? 1.75 / 3 : 1, 1e-9);
+  }
+  EXPECT_EQ(stated("<geom size='1'/>"), mjcf("<geom size='1'/>", mesh)) << "as it was";
+  const std::string hull = refusal([&] { stated("<geom type='box' mesh='h'/>"); });
+  EXPECT_NE(hull.find("the hull of the mesh 'h'"), std::string::npos) << hull;
 }
 
 TEST(Mjcf, Includes) {
@@ -190,7 +226,21 @@ TEST(Sdf, RefusedByNameAndLine) {
   has("<sdf version='2.0'><model name='s'/></sdf>", "version 2.0");
   has("<sdf version='1.9'/>", "no <model>");
   has(sdf("<link name='a'/><link name='a'/>"), "there already");
-  has(sdf("<include><uri>model://x</uri></include>"), "nested");
+  has(sdf("<include><uri>model://x</uri></include>"), "gz sdf -p");
+  has(sdf("<link name='a'/><model name='m'><include><uri>model://x</uri></include></model>"),
+      "gz sdf -p");
+  has(sdf("<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent>"
+          "<child>m::b</child></joint>"),
+      "no link 'm::b'");
+  has(sdf("<link name='a'/><model name='m' placement_frame='f'><link name='b'/></model>"),
+      "no frame 'm::f'");
+  const std::string follower =
+      "<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent>"
+      "<child>b</child><axis><xyz>0 0 1</xyz><mimic joint='k'/></axis></joint>";
+  has(sdf(follower), "'k', which does not exist");
+  has(sdf(follower + "<link name='c'/><joint name='k' type='revolute'><parent>a</parent>"
+                     "<child>c</child><axis><xyz>0 0 1</xyz><mimic joint='j'/></axis></joint>"),
+      "in a circle");
   has(sdf("<link name='a'><pose relative_to='a'/></link>"), "relative to itself");
   has(sdf("<link name='a'><collision "
           "name='c'><geometry><heightmap/></geometry></collision></link>"),
@@ -200,6 +250,49 @@ TEST(Sdf, RefusedByNameAndLine) {
                       "s.sdf")
                 .robot.unmodelled.size(),
             1U);
+}
+
+/// Links of nested models are called as from outside; a model is placed by a frame of its own.
+TEST(Sdf, NestedModels) {
+  const Robot robot =
+      parse_sdf(sdf("<link name='a'><pose>0 0 1 0 0 0</pose></link>"
+                    "<model name='m' placement_frame='f'><pose relative_to='a'>1 0 0 0 0 0</pose>"
+                    "<frame name='f'><pose>0 0.5 0 0 0 0</pose></frame>"
+                    "<link name='a'><pose>0 2 0 0 0 0</pose></link></model>"
+                    "<joint name='j' type='revolute'><parent>a</parent><child>m::a</child>"
+                    "<axis><xyz>0 0 1</xyz></axis></joint>"),
+                "s.sdf")
+          .robot;
+  const std::vector<Transform> poses = forward(robot, std::vector<double>{0});
+  const Transform& inner = poses[robot.find_link("m::a").value()];
+  EXPECT_LT((inner.translation - Vec3(1, 1.5, 1)).norm(), 1e-15);
+}
+
+/// multiplier (q − reference) + offset, through another joint that follows as well.
+TEST(Sdf, JointsThatFollow) {
+  const auto joint = [](const std::string& name, const std::string& child,
+                        const std::string& mimic) {
+    return "<link name='" + child + "'/><joint name='" + name +
+           "' type='revolute'><parent>a</parent><child>" + child +
+           "</child><axis><xyz>0 0 1</xyz>" + mimic + "</axis></joint>";
+  };
+  const Robot robot = parse_sdf(sdf("<link name='a'/>" + joint("j", "b", "") +
+                                    joint("k", "c",
+                                          "<mimic joint='j'><multiplier>2</multiplier><offset>3"
+                                          "</offset><reference>0.5</reference></mimic>") +
+                                    joint("l", "d",
+                                          "<mimic joint='k'><multiplier>-1</multiplier></mimic>")),
+                                "s.sdf")
+                          .robot;
+  ASSERT_EQ(robot.variables.size(), 1U);
+  EXPECT_EQ(robot.variables[0].name, "j");
+  for (const Joint& joint_read : robot.joints) {
+    if (joint_read.name != "k" && joint_read.name != "l") continue;
+    const double sign = joint_read.name == "k" ? 1 : -1;
+    EXPECT_EQ(joint_read.variable, 0U);
+    EXPECT_EQ(joint_read.multiplier, sign * 2);
+    EXPECT_EQ(joint_read.offset, sign * 2);
+  }
 }
 
 TEST(Sdf, Edit) {

@@ -14,15 +14,17 @@ struct SdfRobot {
   Dynamics dynamics;
 };
 
-/// Robot of an SDF document with one model, of versions 1.4 to 1.12.
+/// Robot of an SDF document with one model, of versions 1.4 to 1.12, and of what is nested in it:
+/// links and joints of nested models are called as from outside, "arm::hand::palm". Joints that
+/// mimic others follow them.
 ///
 /// Link 0 is the world, below which every link is that no joint moves: where they stand in the
 /// model. A joint whose frame is not that of its child has a link without shapes of its own. Ball,
 /// universal, screw and gearbox joints are fixed where they are in the file, and
 /// Robot::unmodelled says so. Planes are left out with a note.
 /// @param name  appears in messages.
-/// @throws Error{InvalidInput} naming the line where known: not well-formed; several models, nested
-///   and included ones; frames that do not exist or lead in a circle; height maps, polylines,
+/// @throws Error{InvalidInput} naming the line where known: not well-formed; several models,
+///   included ones; frames that do not exist or lead in a circle; height maps, polylines,
 ///   cones, images and parts of meshes.
 SdfRobot parse_sdf(std::string_view text, const std::string& name);
 
