@@ -64,8 +64,8 @@ struct MainAxes {
 struct Moments {
   double amount = 0;  ///< volume, or area of a shell
   Vec3 center = Vec3::Zero();
-  Vec3 main = Vec3::Zero();         ///< falling
-  Mat3 axes = Mat3::Identity();     ///< columns, in the order of `main`
+  Vec3 main = Vec3::Zero();      ///< falling
+  Mat3 axes = Mat3::Identity();  ///< columns, in the order of `main`
 };
 
 /// Sums over the tetrahedra between triangles and a point. @param kind  of MjcfMesh::inertia

@@ -241,7 +241,8 @@ class Reader {
 
   /// The link that a nested model's frame is fixed to.
   [[nodiscard]] std::string canonical_link(const XMLElement& model, const std::string& name) const {
-    if (const char* stated = model.Attribute("canonical_link"); stated != nullptr && *stated != '\0')
+    if (const char* stated = model.Attribute("canonical_link");
+        stated != nullptr && *stated != '\0')
       return name + "::" + stated;
     for (const char* tag : {"link", "model"})
       if (const XMLElement* first = model.FirstChildElement(tag); first != nullptr)
@@ -337,7 +338,8 @@ class Reader {
   /// Whether a joint's frame is that of its child, as it is by default.
   [[nodiscard]] bool frame_is_child(const XMLElement& joint, const std::string& child) const {
     const std::string base = relative_to(joint);
-    return (base.empty() || from_outside(joint, base) == child) && is_identity(pose(joint)) && child_of(joint) == child;
+    return (base.empty() || from_outside(joint, base) == child) && is_identity(pose(joint)) &&
+           child_of(joint) == child;
   }
 
   Joint read_joint(const XMLElement& e, const Transform& frame) {
@@ -605,9 +607,9 @@ class Reader {
   XMLElement* model_ = nullptr;
   SdfRobot out_;
   static inline const std::string kNone;
-  std::map<std::string, XMLElement*> frames_;  // links, joints, frames, models, from outside
+  std::map<std::string, XMLElement*> frames_;        // links, joints, frames, models, from outside
   std::map<const XMLElement*, std::string> scopes_;  // of these: of the model that they are in
-  std::map<std::string, Elements> order_;      // by tag, as in the file
+  std::map<std::string, Elements> order_;            // by tag, as in the file
   std::map<std::string, Transform> known_;
   std::set<std::string> being_found_;
   UniqueNames names_;  // of joints, and links without element
@@ -650,9 +652,9 @@ std::string sdf_with_shapes(std::string_view text, const std::string& name, cons
     std::vector<XMLElement*> fresh;
     const auto add = [&](const XMLElement& original, const std::string* file) {
       XMLElement* e = document.NewElement("collision");
-      e->SetAttribute("name", (std::string(link.Attribute("name")) + "_collision_" +
-                               std::to_string(count++))
-                                  .c_str());
+      e->SetAttribute(
+          "name",
+          (std::string(link.Attribute("name")) + "_collision_" + std::to_string(count++)).c_str());
       for (const auto* child = original.FirstChildElement(); child != nullptr;
            child = child->NextSiblingElement())
         if (const std::string_view tag = child->Name();

@@ -84,7 +84,8 @@ void bind_robot(py::module_& module) {
       .def_property_readonly(
           "unmodelled", [](const RobotValue& r) { return r.file->robot.unmodelled; },
           "Joints that move in ways that are not modelled, such as ball joints, with their places; "
-          "they stand still here. Shapes do not depend on them; motions of such a robot are refused.")
+          "they stand still here. Shapes do not depend on them; motions of such a robot are "
+          "refused.")
       .def_property_readonly(
           "notes", [](const RobotValue& r) { return r.file->robot.notes; },
           "Sentences on what was left out, with their places.")
@@ -429,10 +430,9 @@ py::dict dict_of(const robot_folder::WrittenRobot& written, const std::vector<st
 void bind_robots(py::module_& module) {
   bind_robot(module);
   bind_certified(module);
-  module.def(
-      "read_robot", &read_robot_file, py::arg("path"), py::kw_only(),
-      py::arg("xacro_args") = py::none(),
-      R"(Reads a robot: URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin and rlmdl.
+  module.def("read_robot", &read_robot_file, py::arg("path"), py::kw_only(),
+             py::arg("xacro_args") = py::none(),
+             R"(Reads a robot: URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin and rlmdl.
 
 Parameters
 ----------

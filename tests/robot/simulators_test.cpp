@@ -276,14 +276,14 @@ TEST(Sdf, JointsThatFollow) {
            "' type='revolute'><parent>a</parent><child>" + child +
            "</child><axis><xyz>0 0 1</xyz>" + mimic + "</axis></joint>";
   };
-  const Robot robot = parse_sdf(sdf("<link name='a'/>" + joint("j", "b", "") +
-                                    joint("k", "c",
-                                          "<mimic joint='j'><multiplier>2</multiplier><offset>3"
-                                          "</offset><reference>0.5</reference></mimic>") +
-                                    joint("l", "d",
-                                          "<mimic joint='k'><multiplier>-1</multiplier></mimic>")),
-                                "s.sdf")
-                          .robot;
+  const Robot robot =
+      parse_sdf(sdf("<link name='a'/>" + joint("j", "b", "") +
+                    joint("k", "c",
+                          "<mimic joint='j'><multiplier>2</multiplier><offset>3"
+                          "</offset><reference>0.5</reference></mimic>") +
+                    joint("l", "d", "<mimic joint='k'><multiplier>-1</multiplier></mimic>")),
+                "s.sdf")
+          .robot;
   ASSERT_EQ(robot.variables.size(), 1U);
   EXPECT_EQ(robot.variables[0].name, "j");
   for (const Joint& joint_read : robot.joints) {

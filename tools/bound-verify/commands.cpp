@@ -146,7 +146,8 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "One line says of each link whether every triangle of it is inside, or which are not, and by "
       "how much.\n\n"
       "A result of bcd-decompose or bmesh-decimate: bound-verify robot INPUT.urdf DIR/INPUT.urdf "
-      "--prepare, with --visual, --links, --drop-sheets, --xacro-args and --package-path where these "
+      "--prepare, with --visual, --links, --drop-sheets, --xacro-args and --package-path where "
+      "these "
       "were given, "
       "and --prepare=wrap where that was; their --html-report has the command.",
       [&o, &app] {

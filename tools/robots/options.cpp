@@ -102,9 +102,9 @@ void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
 }
 
 void require_options_of_meshes(const CLI::App& app, const std::string& input) {
-  for (const char* option : {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix",
-                             "--epsilons", "--xacro-args", "--robot-format", "--for",
-                             "--html-report", "--verbose"})
+  for (const char* option :
+       {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix", "--epsilons",
+        "--xacro-args", "--robot-format", "--for", "--html-report", "--verbose"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) +
                                                   " is for robots (.urdf, .xacro, .xml, .sdf); " +

@@ -24,9 +24,9 @@ struct RobotOptions {
   std::string prefix, epsilons, html, preset;
   std::vector<std::string> formats;  ///< that are written besides URDF
   std::vector<std::string> xacro_arguments;
-  std::string bodies = "stl";        ///< format of convex bodies' files
-  bool declare_convex = false;       ///< in the URDF, as Drake asks for
-  bool verbose = false;              ///< a line for each mesh, and all notes
+  std::string bodies = "stl";   ///< format of convex bodies' files
+  bool declare_convex = false;  ///< in the URDF, as Drake asks for
+  bool verbose = false;         ///< a line for each mesh, and all notes
 
   [[nodiscard]] bool writes(const std::string& format) const;
 };

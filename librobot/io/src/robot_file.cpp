@@ -116,9 +116,8 @@ RobotFile read_robot(const std::string& path, Motions motions,
       return std::string(included.begin(), included.end());
     });
     std::string stated = state_fitted_sizes(
-        whole, whole == out.text ? name : name + " (expanded)", [&](const std::string& file) {
-          return io::read_mesh(out.path.parent_path() / file).mesh;
-        });
+        whole, whole == out.text ? name : name + " (expanded)",
+        [&](const std::string& file) { return io::read_mesh(out.path.parent_path() / file).mesh; });
     if (stated != out.text) name += " (expanded)";
     out.text = std::move(stated);
     out.sha256 = io::sha256(out.text);
@@ -140,8 +139,8 @@ std::vector<std::string> included_files(const RobotFile& robot) {
     const std::vector<char> bytes = io::read_file(robot.path);
     const fs::path folder = robot.path.parent_path();
     const std::string name = robot.path.string();
-    const std::string text = expand_mjcf(
-        std::string(bytes.begin(), bytes.end()), name, [&](const std::string& file) {
+    const std::string text =
+        expand_mjcf(std::string(bytes.begin(), bytes.end()), name, [&](const std::string& file) {
           files.push_back((folder / file).string());
           const std::vector<char> included = io::read_file(folder / file);
           return std::string(included.begin(), included.end());

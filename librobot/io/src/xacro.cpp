@@ -168,8 +168,9 @@ void require_success(const fs::path& file, int status, const std::string& said, 
     fail(file, "xacro was ended by a signal, " + std::string(::strsignal(WTERMSIG(status))) +
                    ", or at a limit of time or memory" + last_words(said));
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    fail(file, "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said) +
-                   (bare ? "; arguments that it wants are stated by --xacro-args NAME:=VALUE" : ""));
+    fail(file,
+         "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said) +
+             (bare ? "; arguments that it wants are stated by --xacro-args NAME:=VALUE" : ""));
 }
 
 void require_arguments(const XacroArguments& arguments) {

@@ -17,9 +17,9 @@ struct XacroLimits {
   std::uint64_t output = std::uint64_t{64} << 20U;  ///< [bytes]
 };
 
-/// What `xacro FILE NAME:=VALUE ...` makes of a file: run as a process of its own, found on PATH. Its name as it is
-/// given, which xacro writes into a comment, in the folder of this process, as a shell would call
-/// it; one that begins with "-" as ./NAME.
+/// What `xacro FILE NAME:=VALUE ...` makes of a file: run as a process of its own, found on PATH.
+/// Its name as it is given, which xacro writes into a comment, in the folder of this process, as a
+/// shell would call it; one that begins with "-" as ./NAME.
 ///
 /// @throws Error{InvalidInput} when it is not on PATH, fails, is ended by a signal, or reaches a
 ///   limit; naming the file and what it said last. Also where the path has ":=" in it, which xacro

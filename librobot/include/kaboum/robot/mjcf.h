@@ -25,8 +25,8 @@ std::string expand_mjcf(std::string_view text, const std::string& name,
 /// Gives the mesh of a file, named relative to the model.
 using MeshSource = std::function<geom::Mesh(const std::string& file)>;
 
-/// The text of a model in which every primitive that MuJoCo fits to a mesh states its size and pose,
-/// as MuJoCo 4.0 computes them; as it is where there is none.
+/// The text of a model in which every primitive that MuJoCo fits to a mesh states its size and
+/// pose, as MuJoCo 4.0 computes them; as it is where there is none.
 /// @param text  without includes
 /// @throws as parse_mjcf; Error{InvalidInput} naming the line: a mesh without volume, one whose
 ///   moments are those of its hull, or one that a default class names
