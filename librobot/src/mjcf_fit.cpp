@@ -24,13 +24,14 @@ std::vector<Vec3> placed(const MjcfMesh& asset, const geom::Mesh& mesh) {
 }
 
 /// Main axes and moments of a symmetric matrix, falling, by Jacobi's method.
-/// Source: Golub and Van Loan, Matrix Computations, 8.5. It ends where MuJoCo's does, which takes
-/// off-diagonal elements below 1e-12 [length^5] for 0: the axes of a small mesh are not its exact
-/// ones there, and these are to be the same.
+/// Source: Golub and Van Loan, Matrix Computations, 8.5. It ends where MuJoCo 4.0's does, which
+/// takes off-diagonal elements below 1e-7 of the largest moment for 0 (found by comparing): axes
+/// of meshes are not the exact ones there, and these are to be the same.
 struct MainAxes {
   explicit MainAxes(const Mat3& matrix) {
-    constexpr double kLeast = 1e-12;
+    constexpr double kShare = 1e-7;
     constexpr int kMostTurns = 500;
+    double least = 0;
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();
     for (int turn = 0; turn < kMostTurns; ++turn) {
       axes = turned.toRotationMatrix();
@@ -39,16 +40,20 @@ struct MainAxes {
       const double xy = std::abs(here(0, 1)), xz = std::abs(here(0, 2)), yz = std::abs(here(1, 2));
       const int about = xy > xz && xy > yz ? 2 : xz > yz ? 1 : 0;
       const int row = about == 0 ? 1 : 0, column = about == 2 ? 1 : 2;
-      if (std::abs(here(row, column)) < kLeast) break;
+      least = kShare * moments.cwiseAbs().maxCoeff();
+      if (!(std::abs(here(row, column)) > least)) break;
       const double tau = (moments[column] - moments[row]) / (2 * here(row, column));
       const double tangent = (tau >= 0 ? 1 : -1) / (std::abs(tau) + std::sqrt(1 + tau * tau));
-      if (1 / std::sqrt(1 + tangent * tangent) > 1 - kLeast) break;
-      const double angle = std::atan(tangent);
-      turned = turned * Eigen::AngleAxisd(about == 1 ? angle : -angle, Vec3::Unit(about));
+      const double cosine = 1 / std::sqrt(1 + tangent * tangent);
+      const double sine = std::copysign(std::sqrt(0.5 - 0.5 * cosine), tangent);
+      Eigen::Quaterniond turn_here = Eigen::Quaterniond::Identity();
+      turn_here.vec()[about] = about == 1 ? sine : -sine;
+      turn_here.w() = std::sqrt(1 - sine * sine);
+      turned = turned * turn_here;
       turned.normalize();
     }
     for (const int i : {0, 1, 0}) {
-      if (!(moments[i] + kLeast < moments[i + 1])) continue;
+      if (!(moments[i] + least < moments[i + 1])) continue;
       std::swap(moments[i], moments[i + 1]);
       turned = turned * Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::Unit((i + 2) % 3));
       turned.normalize();

@@ -111,7 +111,7 @@ class Reader {
   [[nodiscard]] std::string from_outside(const XMLElement& e, const std::string& name) const {
     if (name == kWorld) return name;
     const auto found = scopes_.find(&e);
-    const std::string& scope = found == scopes_.end() ? kNone : found->second;
+    const std::string scope = found == scopes_.end() ? std::string() : found->second;
     if (name != kModel) return scope + name;
     return scope.empty() ? kModel : scope.substr(0, scope.size() - 2);  // the model's own frame
   }
@@ -190,11 +190,14 @@ class Reader {
   Transform placed_by(const XMLElement& model, const std::string& name) {
     const char* frame = model.Attribute("placement_frame");
     if (frame == nullptr || *frame == '\0' || std::string_view(frame) == kModel) return {};
-    // While this model's frame is not known, all in it is as if that were where the robot's is.
+    // All in it is found as if this model's frame were the robot's, which is forgotten again.
     const std::map<std::string, Transform> outside = known_;
+    std::set<std::string> asked;
+    asked.swap(being_found_);
     known_[name] = Transform();
     const Transform out = in_model(name + "::" + frame, model);
     known_ = outside;
+    being_found_ = asked;
     return out;
   }
 
@@ -606,7 +609,6 @@ class Reader {
   int minor_ = 0;
   XMLElement* model_ = nullptr;
   SdfRobot out_;
-  static inline const std::string kNone;
   std::map<std::string, XMLElement*> frames_;        // links, joints, frames, models, from outside
   std::map<const XMLElement*, std::string> scopes_;  // of these: of the model that they are in
   std::map<std::string, Elements> order_;            // by tag, as in the file
