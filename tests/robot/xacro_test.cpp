@@ -36,7 +36,7 @@ class Xacro : public ::testing::Test {
   /// What is said where it fails.
   [[nodiscard]] static std::string refusal(const XacroLimits& limits) {
     try {
-      expand_xacro("robot.xacro", limits);
+      expand_xacro("robot.xacro", {}, limits);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
       return e.what();
@@ -56,6 +56,14 @@ double seconds_of(const auto& action) {
 TEST_F(Xacro, GetsTheFileAndGivesItsOutput) {
   program("#!/bin/sh\necho \"<$1/>\"\necho words >&2\n");
   EXPECT_EQ(expand_xacro("a b/robot.xacro"), "<a b/robot.xacro/>\n");
+}
+
+TEST_F(Xacro, GetsArgumentsAfterTheFile) {
+  program("#!/bin/sh\necho \"<$1|$2|$3/>\"\n");
+  EXPECT_EQ(expand_xacro("robot.xacro", {"side:=left arm", "n:=2"}),
+            "<robot.xacro|side:=left arm|n:=2/>\n");
+  for (const char* argument : {"left", ":=left", "--deps", "--side:=left", ""})
+    EXPECT_THROW(expand_xacro("robot.xacro", {argument}), Error) << argument;
 }
 
 TEST_F(Xacro, TakesNoPathForAnOptionOrArgument) {
