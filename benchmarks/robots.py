@@ -40,6 +40,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Drake reads MJCF, too, but no STL there, which MJCF robots draw.
 ENGINES = {"mujoco": {".xml", ".urdf"}, "drake": {".urdf", ".sdf"}, "pinocchio": {".urdf"}}
 TOLERANCE = 1e-9
+LATER = "not measured yet"
 
 
 # --- finding robots -------------------------------------------------------------------------------
@@ -209,7 +210,8 @@ def measure(path, words, args, sources):
     os.environ["ROS_PACKAGE_PATH"] = os.pathsep.join(map(str, (sources, path.parent.parent, path.parent.parent.parent)))
     try:
         command = ["bcd-decompose", str(path), "-o", str(place / "out"), "--epsilon", args.epsilon,
-                   "--effort", args.effort, "--no-cache", "--package-path", str(sources),
+                   "--effort", args.effort, "--no-cache", "--package-path",
+                   str(sources / path.relative_to(sources).parts[0]),
                    "--report", str(place / "report.json")]
         if path.suffix != ".xml":
             command += ["--for", "drake"]  # which reads OBJ, as the others do
@@ -247,16 +249,23 @@ def measure(path, words, args, sources):
 
 # --- the table ------------------------------------------------------------------------------------
 
+def short(text):
+    return (text if len(text) < 100 else text[:100] + "…").replace("|", "/").replace("<", "&lt;")
+
+
 def engines_of(row):
     """What loaded a written robot."""
     out = []
     for name, answer in row.get("written", {}).items():
+        if "." + row["format"] not in ENGINES[name]:
+            continue
         if not answer["loaded"]:
-            out.append(f"not {name} ({answer['why'][:80]})")
+            why = re.sub(r"\S*/(\S*): (?=error)|^Error: ", "", answer["why"])
+            out.append(f"not {name} ({short(why)})")
         elif answer.get("worst") is not None and answer["worst"] > TOLERANCE:
             out.append(f"{name} (poses off by {answer['worst']:.1e})")
         elif answer.get("faults"):
-            out.append(f"{name} ({answer['faults'][0][:80]})")
+            out.append(f"{name} ({short(answer['faults'][0])})")
         else:
             out.append(name)
     return ", ".join(out)
@@ -273,7 +282,7 @@ def table_of(rows):
         if row.get("without"):
             name += f" (without {row['without']} shapes whose files are missing)"
         if "missing" in row or "refused" in row:
-            why = row.get("missing") or "refused: " + row["refused"]
+            why = row.get("missing") or "refused: " + row["refused"].replace("bcd-decompose: ", "")
             why = why.replace("|", "/").replace("<", "&lt;")[:240]
             cpu = f"{row['cpu']:.1f}" if "cpu" in row else ""
             out.append(f"| {name} | {row['format']} | | {row['epsilon']} | | {cpu} | {why} | | |")
@@ -292,6 +301,8 @@ def table_of(rows):
 def summary_of(rows):
     """Sentences before the table."""
     there = [row for row in rows if "missing" not in row]
+    later = [row for row in rows if row.get("missing") == LATER]
+    absent = len(rows) - len(there) - len(later)
     written = [row for row in there if "refused" not in row]
     loads = [row for row in written if any(x["loaded"] for x in row["written"].values())]
     held = [row for row in written if row["verdicts"].get("held", 0) == row["links"]]
@@ -300,8 +311,8 @@ def summary_of(rows):
                 for name, answer in row[what].items() if answer.get("worst") is not None]
     near = [1 for _, answer in compared if answer["worst"] <= TOLERANCE]
     worst = max((answer["worst"] for _, answer in compared if answer["worst"] <= TOLERANCE), default=0)
-    return (f"{len(rows)} robots are listed, {len(rows) - len(there)} of them are not in the snapshots. Of the other "
-            f"{len(there)}:\n\n"
+    return (f"{len(rows)} robots are listed. {absent} of them are not in the snapshots, {len(later)} are not measured yet. "
+            f"Of the other {len(there)}:\n\n"
             f"- {len(written)} are written, {len(there) - len(written)} refused or stopped;\n"
             f"- {len(loads)} of those written are loaded by an engine;\n"
             f"- of {len(held)} every link is held; of {len(checked)} the printed check decided;\n"
@@ -310,7 +321,7 @@ def summary_of(rows):
 
 
 def page_of(rows):
-    commits = sorted({row["commit"] for row in rows})
+    commits = sorted({row["commit"] for row in rows if row.get("missing") != LATER})
     dates = sorted({row["date"] for row in rows})
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         machine = re.search(r"model name\s*: (.*)", file.read())
@@ -371,7 +382,7 @@ def main():
             rows.append(json.loads(kept.read_text()))
         else:
             rows.append({"robot": file, "format": pathlib.Path(file).suffix[1:],
-                         "epsilon": args.epsilon, "missing": "not measured yet",
+                         "epsilon": args.epsilon, "missing": LATER,
                          "date": datetime.date.today().isoformat(), "commit": args.commit})
     text = page_of(rows)
     if args.output:
