@@ -265,6 +265,7 @@ class Elements {
       const double velocity = file_.number(*limit, "velocity", 0);
       if (velocity > 0) out.variable.velocity = velocity;
     } else if (type != "continuous") {
+      if (minor_ >= 2) fail("URDF 1.2 wants <limit lower=... upper=.../>");
       out.unlimited = true;
     }
     if (const XMLElement* mimic = file_.only_child(e, "mimic"); mimic != nullptr)
