@@ -253,6 +253,27 @@ class Report(unittest.TestCase):
             self.assertEqual(sets.read_obj(path), (points, [[0, 1, 2], [2, 1, 3], [4, 5, 6]]))
             self.assertEqual(path.read_text().count("o body-"), 2)
 
+    def test_distances_at_vertices(self):
+        """A point inside of a cube is near the face of a body within, far from the union's boundary."""
+        def cube(half):
+            points = [f"v {x} {y} {z}\n" for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+            quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+            return points, [list(t) for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+        with tempfile.TemporaryDirectory() as name, contextlib.redirect_stderr(io.StringIO()):
+            folder = pathlib.Path(name)
+            runner = Runner(PROGRAMS, folder)
+            original = folder / "original.obj"
+            sets.write_obj(original, [cube(10), cube(3)])
+            make = sets.Sets(sets.Calls(report.Context([], runner, folder, True), "sets"), models.Model("nested", "", original), True)
+            self.assertTrue(make.prepared())
+            sets.write_obj(make.call.folder / "set.obj", [cube(10), cube(4)])
+            row = make.measured("set", 2, 16)
+            self.assertEqual(runner.failures, {})
+        percent = 100 / (20 * 3 ** 0.5)
+        for key, distance in {"o2a_max": 1, "o2a_mean": 0.5, "a2o_max": 3 ** 0.5, "a2o_mean": 3 ** 0.5 / 2,
+                              "union_o2a_max": 7, "union_a2o_max": 0}.items():
+            self.assertAlmostEqual(row[key], percent * distance, delta=0.02, msg=key)
+
     def test_table_4_3(self):
         rows = thesis.table_4_3()
         self.assertEqual([row.bodies for row in rows if row.stage != "bounding"], [7, 30, 64, 105])
