@@ -34,9 +34,7 @@ class Allowance {
   std::uint64_t all_, left_;
 };
 
-CoverCandidate run(const Mesh& closed, const CoverOptions& options, double work,
-                   Allowance& allowance) {
-  Decomposer decomposer(closed, options, work);
+CoverCandidate run(Decomposer& decomposer, Allowance& allowance) {
   CoverCandidate result = decomposer.run();
   allowance.spend(decomposer.work_done());
   return result;
@@ -55,7 +53,8 @@ std::vector<std::size_t> rungs_below(std::size_t most) {
 /// the very same search, for every smaller rung that is not proved to be farther.
 CoverCandidate nearest(const Mesh& closed, const CoverOptions& options, Allowance& allowance) {
   const double work = allowance.left();
-  CoverCandidate best = run(closed, options, work, allowance);
+  Decomposer first(closed, options, work);
+  CoverCandidate best = run(first, allowance);
   if (options.max_total_vertices || best.stop != Stop::Done || best.statistics.out_of_work ||
       *options.max_bodies == 1)
     return best;
@@ -68,7 +67,8 @@ CoverCandidate nearest(const Mesh& closed, const CoverOptions& options, Allowanc
   for (const std::size_t rung : rungs_below(*options.max_bodies)) {
     if (rung <= too_few || allowance.spent()) break;
     fewer.max_bodies = rung;
-    CoverCandidate other = run(closed, fewer, work, allowance);
+    Decomposer smaller(first, fewer, work);
+    CoverCandidate other = run(smaller, allowance);
     if (other.stop == Stop::Done && other.excess_upper < best.excess_upper) best = std::move(other);
   }
   return best;
@@ -78,7 +78,8 @@ CoverCandidate nearest(const Mesh& closed, const CoverOptions& options, Allowanc
 /// epsilon had been given.
 CoverCandidate search(const Mesh& closed, const CoverOptions& options, Allowance& allowance) {
   if (!options.epsilon) return nearest(closed, options, allowance);
-  CoverCandidate result = run(closed, options, allowance.left(), allowance);
+  Decomposer decomposer(closed, options, allowance.left());
+  CoverCandidate result = run(decomposer, allowance);
   if (result.stop != Stop::TooManyBodies) return result;
   CoverOptions limited = options;
   limited.epsilon.reset();
@@ -103,8 +104,7 @@ CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& optio
     Tuning quick = tuning(Effort::Fast);
     quick.search.mirrors = mirrors;
     Decomposer decomposer(closed, silent, allowance.left(), quick);
-    CoverCandidate other = decomposer.run();
-    allowance.spend(decomposer.work_done());
+    CoverCandidate other = run(decomposer, allowance);
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
       best = std::move(other);

@@ -38,6 +38,14 @@ CutTree::CutTree(const SolidField& solid, const SearchOptions& options, double s
   add_leaf(whole(solid), -1);
 }
 
+CutTree::CutTree(const CutTree& same, const SolidField& solid)
+    : solid_(solid),
+      shift_(same.shift_),
+      chooser_(solid, same.chooser_.options(), shift_),
+      choices_(same.choices_) {
+  add_leaf(whole(solid), -1);
+}
+
 void CutTree::add_leaf(Piece&& piece, int parent) {
   Node node = make_node(std::move(piece), solid_);
   node.parent = parent;
@@ -51,6 +59,7 @@ void CutTree::reestimate() {
 }
 
 void CutTree::reestimate(const SolidField::Witness& witness) {
+  only_worst_ = false;
   const Vec3& at = witness.point;
   const double near = witness.near();
   std::vector<Node*> judged;
@@ -121,13 +130,21 @@ double CutTree::worst() const {
   return worst;
 }
 
-bool CutTree::cut(int leaf) {
+std::optional<Plane> CutTree::choose(int leaf) {
   chooser_.prepare();
   const Node& node = nodes_[leaf];
-  const std::optional<Plane> plane =
-      node.piece.polygons() == 0 ? std::nullopt : chooser_.choose(node);
+  return node.piece.polygons() == 0 ? std::nullopt : chooser_.choose(node);
+}
+
+bool CutTree::cut(int leaf) {
+  only_worst_ = false;
+  return cut_chosen(leaf, choose(leaf));
+}
+
+/// @return whether there is a plane.
+bool CutTree::cut_chosen(int leaf, const std::optional<Plane>& plane) {
   if (plane) {
-    cut(leaf, *plane);
+    cut_by(leaf, *plane);
   } else {
     nodes_[leaf].stuck = true;
   }
@@ -149,6 +166,11 @@ bool CutTree::halve(int leaf) {
 }
 
 void CutTree::cut(int leaf, const Plane& plane) {
+  only_worst_ = false;
+  cut_by(leaf, plane);
+}
+
+void CutTree::cut_by(int leaf, const Plane& plane) {
   const Piece piece = std::move(nodes_[leaf].piece);
   CutScratch& s = cut_scratch();
   classify(piece, plane, solid_, shift_, s.height, s.side);
@@ -288,6 +310,19 @@ void CutTree::split(std::vector<int> nodes, const Plane& plane, std::vector<int>
   std::sort(upper.begin(), upper.end());
 }
 
+/// The plane for the worst leaf: the known one where all was done so far as when it was chosen.
+std::optional<Plane> CutTree::choose_for_worst(int leaf) {
+  if (!only_worst_) return choose(leaf);
+  if (chosen_ == choices_.size()) {
+    const std::uint64_t before = solid_.work().done();
+    const std::optional<Plane> plane = choose(leaf);
+    choices_.push_back({plane, solid_.work().done() - before});
+  } else {
+    solid_.work().add(choices_[chosen_].work);
+  }
+  return choices_[chosen_++].plane;
+}
+
 bool CutTree::cut_worst() {
   for (;;) {
     int worst = -1;
@@ -297,7 +332,7 @@ bool CutTree::cut_worst() {
       if (worst < 0 || n.concavity.worst > nodes_[worst].concavity.worst) worst = i;
     }
     if (worst < 0 || nodes_[worst].concavity.worst <= 0) return false;
-    if (cut(worst)) return true;
+    if (cut_chosen(worst, choose_for_worst(worst))) return true;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -17,6 +18,10 @@ class CutTree {
 
   /// @param safety  multiplies the overlap of neighbouring pieces.
   CutTree(const SolidField& solid, const SearchOptions& options, double safety = 1);
+  /// The same tree, not cut yet: as long as nothing else is done than by the other one, it is cut
+  /// by the planes that were chosen there, which is all it saves.
+  /// @param solid  the same one, with as much known of it.
+  CutTree(const CutTree& same, const SolidField& solid);
 
   /// Cuts the leaf with the largest distance. @return false when no leaf can be
   /// cut.
@@ -78,11 +83,26 @@ class CutTree {
   [[nodiscard]] double worst_half(const std::vector<int>& nodes, const Plane& plane,
                                   double limit) const;
 
+  /// The plane that was chosen for the worst leaf, if any helps, and the work of choosing it.
+  struct Choice {
+    std::optional<Plane> plane;
+    std::uint64_t work;
+  };
+  std::optional<Plane> choose(int leaf);
+  std::optional<Plane> choose_for_worst(int leaf);
+  bool cut_chosen(int leaf, const std::optional<Plane>& plane);
+  void cut_by(int leaf, const Plane& plane);
+
   const SolidField& solid_;
   double shift_;  // half the overlap of neighbouring pieces [length]
   CutChooser chooser_;
   std::vector<Node> nodes_;
   std::size_t leaf_count_ = 0;
+  // While nothing is done but that the worst leaves are cut, what is chosen for them follows from
+  // the solid and the options: those known, in turn, and how many of them have been taken.
+  std::vector<Choice> choices_;
+  std::size_t chosen_ = 0;
+  bool only_worst_ = true;
 };
 
 }  // namespace kaboum::bcd

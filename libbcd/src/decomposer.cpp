@@ -36,6 +36,9 @@ Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double w
 Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work)
     : Decomposer(closed, options, work, tuning(options.effort)) {}
 
+Decomposer::Decomposer(const Decomposer& same, const CoverOptions& options, double work)
+    : state_(same.state_, options, work) {}
+
 /// So many bodies that no search brings them down to the limits.
 std::size_t Decomposer::hopeless() const {
   const CoverOptions& options = state_.options();

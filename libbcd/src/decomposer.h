@@ -16,6 +16,9 @@ class Decomposer {
   /// @param work  allowed. [ns]
   Decomposer(const Mesh& closed, const CoverOptions& options, double work, Tuning how);
   Decomposer(const Mesh& closed, const CoverOptions& options, double work);
+  /// The search that the constructors above give for the same but `options`, which ask for another
+  /// number of bodies, and `work`: it gives the same result, sooner.
+  Decomposer(const Decomposer& same, const CoverOptions& options, double work);
   Decomposer(const Decomposer&) = delete;
   Decomposer& operator=(const Decomposer&) = delete;
   ~Decomposer() = default;

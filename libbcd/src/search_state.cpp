@@ -19,6 +19,12 @@ SearchState::SearchState(const Mesh& closed, const CoverOptions& options, double
   }
 }
 
+SearchState::SearchState(const SearchState& same, const CoverOptions& options, double work)
+    : options_(options),
+      tuning_(same.tuning_),
+      solid_(same.solid_, work),
+      tree_(same.tree_, solid_) {}
+
 bool SearchState::spent(double share) {
   const Work& work = solid_.work();
   const bool improved = improving_ && share <= kImproving && options_.improve_work &&

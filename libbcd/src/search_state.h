@@ -16,6 +16,9 @@ class SearchState {
   /// Keeps references to the mesh and the options, which must outlive this object.
   /// @param work  allowed. [ns]
   SearchState(const Mesh& closed, const CoverOptions& options, double work, Tuning how);
+  /// The state that the constructor above gives for the same but `options`, which ask for another
+  /// number of bodies, and `work`: nothing is found again that does not depend on these.
+  SearchState(const SearchState& same, const CoverOptions& options, double work);
 
   [[nodiscard]] const CoverOptions& options() const { return options_; }
   [[nodiscard]] const Tuning& tuning() const { return tuning_; }

@@ -27,21 +27,25 @@ constexpr double kFarthest = 1e100;
 
 }  // namespace
 
+SolidField::Parts::Parts(const Mesh& mesh)
+    : surface(mesh),
+      // No owner: both live as long as this.
+      winding(mesh,
+              std::shared_ptr<const geom::Bvh>(std::shared_ptr<void>(), &surface.hierarchy())) {
+  for (const std::uint32_t t : surface.hierarchy().order()) {
+    const Triangle& v = mesh.triangles[t];
+    const Vec3& a = mesh.vertices[v[0]];
+    corners.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
+  }
+}
+
 SolidField::SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool witnesses,
                        double work)
     : mesh_(mesh),
       box_(geom::bounding_box(mesh)),
       diagonal_(box_.diagonal()),
-      surface_(mesh),
-      // No owner: both live as long as this.
-      winding_(mesh,
-               std::shared_ptr<const geom::Bvh>(std::shared_ptr<void>(), &surface_.hierarchy())),
+      parts_(std::make_shared<Parts>(mesh)),
       work_(work) {
-  for (const std::uint32_t t : surface_.hierarchy().order()) {
-    const Triangle& v = mesh.triangles[t];
-    const Vec3& a = mesh.vertices[v[0]];
-    corners_.push_back({a, mesh.vertices[v[1]] - a, mesh.vertices[v[2]] - a});
-  }
   const Vec3 size = (box_.max - box_.min).cwiseMax(kFlattestGrid * diagonal_);
   const double coarse = std::cbrt(size.prod() / static_cast<double>(nodes));
   spacing_ =
@@ -56,10 +60,24 @@ SolidField::SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool
     size_[k] = static_cast<int>(std::ceil(size[k] / spacing_)) + 4;
     total *= static_cast<std::size_t>(size_[k]);
   }
-  value_ = std::make_unique<std::atomic<float>[]>(total);
-  for (std::size_t i = 0; i < total; ++i) value_[i].store(kUnset, std::memory_order_relaxed);
+  parts_->value = std::make_unique<std::atomic<float>[]>(total);
+  for (std::size_t i = 0; i < total; ++i) parts_->value[i].store(kUnset, std::memory_order_relaxed);
   if (witnesses) find_witnesses();
 }
+
+SolidField::SolidField(const SolidField& same, double work)
+    : mesh_(same.mesh_),
+      box_(same.box_),
+      diagonal_(same.diagonal_),
+      parts_(same.parts_),
+      spacing_(same.spacing_),
+      per_spacing_(same.per_spacing_),
+      witness_area_(same.witness_area_),
+      shallow_(same.shallow_),
+      step_(same.step_),
+      origin_(same.origin_),
+      size_(same.size_),
+      work_(work) {}
 
 void SolidField::find_witnesses() {
   if (std::exchange(witnesses_found_, true)) return;
@@ -114,12 +132,12 @@ bool SolidField::add_witness(const Witness& witness, std::span<const Vec3> hull)
 }
 
 bool SolidField::contains(const Vec3& p) const {
-  const auto w = winding_(p);
+  const auto w = parts_->winding(p);
   return !w || *w >= 1;
 }
 
 bool SolidField::contains_round(const Vec3& p) const {
-  const auto w = winding_(p);
+  const auto w = parts_->winding(p);
   return w && *w >= 1;
 }
 
@@ -129,7 +147,7 @@ bool SolidField::triangles_near(const Box3& box, std::size_t most,
     return out.size() <= most && (other.min.array() <= box.max.array()).all() &&
            (box.min.array() <= other.max.array()).all();
   };
-  surface_.hierarchy().traverse(meets, [&](std::uint32_t t) {
+  parts_->surface.hierarchy().traverse(meets, [&](std::uint32_t t) {
     Box3 own;
     for (const std::uint32_t v : mesh_.triangles[t]) own.extend(mesh_.vertices[v]);
     if (meets(own) && std::find(out.begin(), out.end(), t) == out.end()) out.push_back(t);
@@ -139,7 +157,8 @@ bool SolidField::triangles_near(const Box3& box, std::size_t most,
 
 double SolidField::rough_distance(const Vec3& p, double limit) const {
   double best = limit * limit;
-  const auto nodes = surface_.hierarchy().nodes();
+  const std::vector<Parts::Corner>& corners = parts_->corners;
+  const auto nodes = parts_->surface.hierarchy().nodes();
   const auto to_box = [&](const Box3& box) {
     return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
   };
@@ -152,8 +171,8 @@ double SolidField::rough_distance(const Vec3& p, double limit) const {
     const geom::Bvh::Node& node = nodes[index];
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        best = std::min(best,
-                        geom::squared_distance(p, corners_[i].a, corners_[i].ab, corners_[i].ac));
+        best =
+            std::min(best, geom::squared_distance(p, corners[i].a, corners[i].ab, corners[i].ac));
       continue;
     }
     std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};
@@ -179,7 +198,8 @@ float SolidField::node(int x, int y, int z) const {
       static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1])};
   std::size_t index = 0;
   for (int k = 0; k < 3; ++k) index += static_cast<std::size_t>(at[k]) * step[k];
-  const float known = value_[index].load(std::memory_order_relaxed);
+  std::atomic<float>* const value = parts_->value.get();
+  const float known = value[index].load(std::memory_order_relaxed);
   if (known != kUnset) return known;
   const Vec3 p = origin_ + spacing_ * Vec3(x, y, z);
   // A neighbour whose distance exceeds the way to here is on the same side, and bounds the
@@ -190,7 +210,7 @@ float SolidField::node(int x, int y, int z) const {
     for (const int s : {-1, 1}) {
       if (at[k] + s < 0 || at[k] + s >= size_[k]) continue;
       const float v =
-          value_[s < 0 ? index - step[k] : index + step[k]].load(std::memory_order_relaxed);
+          value[s < 0 ? index - step[k] : index + step[k]].load(std::memory_order_relaxed);
       if (v == kUnset) continue;
       limit = std::min(limit, kNeighbourUp * (std::abs(v) + spacing_));
       if (std::abs(v) > kNeighbourUp * spacing_) side = v < 0 ? -1 : 1;
@@ -199,10 +219,10 @@ float SolidField::node(int x, int y, int z) const {
   // The bound from a neighbour must not show in the value: it is never attained.
   const double distance = rough_distance(p, std::min(limit, kFarthest));
   if (side == 0) side = contains(p) ? -1 : 1;
-  const auto value = static_cast<float>(side * distance);
-  value_[index].store(value, std::memory_order_relaxed);
-  computed_.fetch_add(1, std::memory_order_relaxed);
-  return value;
+  const auto found = static_cast<float>(side * distance);
+  value[index].store(found, std::memory_order_relaxed);
+  parts_->computed.fetch_add(1, std::memory_order_relaxed);
+  return found;
 }
 
 double SolidField::field(const Vec3& p) const {
@@ -217,7 +237,7 @@ double SolidField::field(const Vec3& p) const {
   }
   const std::size_t row = static_cast<std::size_t>(size_[0]);
   const std::size_t layer = row * static_cast<std::size_t>(size_[1]);
-  const std::atomic<float>* first = &value_[cell[0] + row * cell[1] + layer * cell[2]];
+  const std::atomic<float>* first = &parts_->value[cell[0] + row * cell[1] + layer * cell[2]];
   std::array<float, 8> v;
   bool known = true;
   for (unsigned c = 0; c < 8; ++c) {

@@ -34,7 +34,10 @@ class SolidField {
   /// @param work  what is counted there is what the search may do. [ns]
   SolidField(const Mesh& mesh, std::size_t nodes, double epsilon, bool witnesses = true,
              double work = std::numeric_limits<double>::infinity());
-  /// Neither copied nor moved: winding_ refers to the hierarchy of surface_.
+  /// The same solid for another search, with no witnesses yet and its own account of work: what
+  /// either of them computes of the grid, both have.
+  SolidField(const SolidField& same, double work);
+  /// Neither copied nor moved: others refer to its hierarchy.
   SolidField(const SolidField&) = delete;
   SolidField(SolidField&&) = delete;
   SolidField& operator=(const SolidField&) = delete;
@@ -47,7 +50,7 @@ class SolidField {
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] const Box3& box() const { return box_; }
   [[nodiscard]] double diagonal() const { return diagonal_; }
-  [[nodiscard]] const geom::DistanceQuery& surface() const { return surface_; }
+  [[nodiscard]] const geom::DistanceQuery& surface() const { return parts_->surface; }
 
   /// Winding number ≥ 1, or on a triangle; exact.
   [[nodiscard]] bool contains(const Vec3& p) const;
@@ -86,32 +89,38 @@ class SolidField {
   [[nodiscard]] double weight(std::span<const Vec3> hull) const;
   /// Of all that looks at this solid.
   [[nodiscard]] Work& work() const { return work_; }
-  [[nodiscard]] std::size_t nodes_computed() const { return computed_; }
+  [[nodiscard]] std::size_t nodes_computed() const { return parts_->computed; }
 
  private:
   [[nodiscard]] float node(int x, int y, int z) const;
   /// Distance to the surface, rounded, if it is below `limit`.
   [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
 
+  /// What depends on the mesh and the grid alone: the values of the grid, too.
+  struct Parts {
+    explicit Parts(const Mesh& mesh);
+    geom::DistanceQuery surface;
+    geom::WindingNumber winding;  // refers to the hierarchy of `surface`
+    struct Corner {
+      Vec3 a, ab, ac;
+    };
+    std::vector<Corner> corners;  // of the triangles, in the order of the hierarchy
+    std::unique_ptr<std::atomic<float>[]> value;
+    std::atomic<std::size_t> computed{0};
+  };
+
   const Mesh& mesh_;
   Box3 box_;
   double diagonal_;
-  geom::DistanceQuery surface_;
-  geom::WindingNumber winding_;
+  std::shared_ptr<Parts> parts_;
   std::vector<geom::BoundedRegion> regions_;  ///< each with the weight in place of epsilon
-  struct Corner {
-    Vec3 a, ab, ac;
-  };
-  std::vector<Corner> corners_;  // of the triangles, in the order of surface_'s tree
   double spacing_ = 0, per_spacing_ = 0, witness_area_ = 0;
   double shallow_ = 0;  // pits that are no deeper need no witness
   int step_ = 1;        // of the grid, from one place looked at for a witness to the next
   bool witnesses_found_ = false;
   Vec3 origin_;
   std::array<int, 3> size_{};
-  std::unique_ptr<std::atomic<float>[]> value_;
   std::vector<Witness> witnesses_;
-  mutable std::atomic<std::size_t> computed_{0};
   mutable Work work_;
 };
 

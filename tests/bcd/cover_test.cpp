@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "body_bound.h"
+#include "decomposer.h"
 #include "part.h"
 #include "solid_field.h"
 #include "solids.h"
@@ -234,6 +235,38 @@ TEST(Cover, NoNumberOfBodiesIsFartherThanASmallerPowerOfTwo) {
   // Two bodies of a torus are farther than its hull, if they are looked for alone.
   const geom::Prepared torus = geom::prepare(kaboum::test::torus(1, 0.3, 24, 12));
   EXPECT_LE(reach_of(torus, 2, 64), reach_of(torus, 1, 64));
+}
+
+TEST(Cover, ASearchThatTakesOverWhatAnotherFoundGivesWhatItGivesAlone) {
+  for (const auto& [name, mesh] : solids_to_cut()) {
+    const geom::Prepared input = geom::prepare(mesh);
+    const geom::SolidMesh closed = geom::close_holes(input.solid);
+    const std::size_t triangles = closed.mesh().triangles.size();
+    for (const Effort effort : {Effort::Fast, Effort::Normal}) {
+      if (triangles > (effort == Effort::Fast ? 1000 : 200)) continue;
+      CoverOptions options;
+      options.effort = effort;
+      options.max_bodies = 7;
+      constexpr double work = 1e12;
+      Decomposer first(closed.mesh(), options, work);
+      first.run();
+      // Fewer bodies take over all cuts of theirs, more go on after the last one.
+      for (const std::size_t bodies : {2U, 5U, 9U}) {
+        CoverOptions other = options;
+        other.max_bodies = bodies;
+        Decomposer with(first, other, work), alone(closed.mesh(), other, work);
+        const CoverCandidate a = with.run(), b = alone.run();
+        SCOPED_TRACE(name + ' ' + std::to_string(bodies));
+        EXPECT_EQ(with.work_done(), alone.work_done());
+        EXPECT_EQ(a.excess_upper, b.excess_upper);
+        ASSERT_EQ(a.bodies.size(), b.bodies.size());
+        for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+          EXPECT_EQ(a.bodies[i].core.vertices, b.bodies[i].core.vertices);
+          EXPECT_EQ(a.bodies[i].core.triangles, b.bodies[i].core.triangles);
+        }
+      }
+    }
+  }
 }
 
 TEST(Cover, NoSetHasAsFewBodiesAsAreProvedTooFew) {
