@@ -1,0 +1,37 @@
+#pragma once
+
+#include <kaboum/filter/batch_checker.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "model.h"
+
+namespace kaboum::filter::detail {
+
+/// Memory of the vector code: of one thread.
+class LaneMemory {
+ public:
+  explicit LaneMemory(const Model& model);
+
+  float* floats();  ///< aligned for vectors
+  unsigned char* ready() { return ready_.data(); }
+
+ private:
+  std::vector<float> floats_;
+  std::vector<unsigned char> ready_;
+};
+
+/// Decides rows of values, several at a time. @pre the processor has the instructions.
+void filter_rows(const Model& model, Instructions set, const double* rows, std::size_t count,
+                 LaneMemory& memory, BatchChecker::Answer* answers);
+
+/// Centres of the outer balls for each row, x, y, z; for tests.
+void place_outer_balls(const Model& model, Instructions set, const double* rows, std::size_t count,
+                       LaneMemory& memory, float* centers);
+
+/// Sine and cosine as the vector code computes them; for tests.
+void sines_of(Instructions set, const double* angles, std::size_t count, float* sines,
+              float* cosines);
+
+}  // namespace kaboum::filter::detail

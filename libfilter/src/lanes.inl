@@ -1,0 +1,327 @@
+// The vector code, for one instruction set: included by lanes.cpp once for each, within a namespace
+// and with that set's instructions. Nothing here is shared with other sets, and nothing of the
+// standard library is called, so that no function of a header is compiled for a set that the
+// processor may lack. KABOUM_LANES configurations are looked at at once; what is computed of one
+// does not depend on the others, nor on how many there are.
+
+using Floats [[gnu::vector_size(4 * KABOUM_LANES)]] = float;
+using Ints [[gnu::vector_size(4 * KABOUM_LANES)]] = std::int32_t;
+using Doubles [[gnu::vector_size(8 * KABOUM_LANES)]] = double;
+
+struct Point {
+  Floats x, y, z;
+};
+
+struct Frame {
+  Floats r[9];  // row by row
+  Floats t[3];
+};
+
+/// A bit for each lane whose mask is set.
+inline unsigned bits_of(const Ints& mask) {
+#if KABOUM_LANES == 16
+  return _mm512_cmplt_epi32_mask(reinterpret_cast<__m512i>(mask), _mm512_setzero_si512());
+#elif KABOUM_LANES == 8
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#elif defined(KABOUM_AVX2)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  unsigned bits = 0;
+  for (unsigned lane = 0; lane < KABOUM_LANES; ++lane) bits |= (mask[lane] != 0 ? 1U : 0U) << lane;
+  return bits;
+#endif
+}
+
+inline Floats magnitude(const Floats& x) {
+  return reinterpret_cast<Floats>(reinterpret_cast<Ints>(x) & 0x7fffffff);
+}
+
+/// Errs by less than kSineError (model.cpp). @pre angles of at most 1000 in magnitude
+inline void sine_and_cosine(const Doubles& angle, Floats& sine, Floats& cosine) {
+  // The nearest integer: what is added leaves no bits below 1.
+  constexpr double kRound = 0x1.8p52;
+  const Doubles quarters = (angle * 0x1.45f306dc9c883p-1 + kRound) - kRound;
+  // A quarter turn in two parts; the product of the first one is exact.
+  const Doubles rest = (angle - quarters * 0x1.921fb54p+0) - quarters * 0x1.10b4611a62633p-30;
+  const Floats r = __builtin_convertvector(rest, Floats);
+  const Ints quarter = __builtin_convertvector(quarters, Ints);
+  const Floats z = r * r;
+  // Taylor's polynomials: what is left out is below r^11 / 11! and r^12 / 12!.
+  const Floats s =
+      r + r * (z * (-1.0F / 6 + z * (1.0F / 120 + z * (-1.0F / 5040 + z * (1.0F / 362880)))));
+  const Floats c =
+      1.0F + z * (-0.5F +
+                  z * (1.0F / 24 + z * (-1.0F / 720 + z * (1.0F / 40320 + z * (-1.0F / 3628800)))));
+  const Ints odd = (quarter & 1) != 0;
+  const Ints sine_sign = (quarter & 2) << 30, cosine_sign = ((quarter + 1) & 2) << 30;
+  sine = reinterpret_cast<Floats>(reinterpret_cast<Ints>(odd ? c : s) ^ sine_sign);
+  cosine = reinterpret_cast<Floats>(reinterpret_cast<Ints>(odd ? s : c) ^ cosine_sign);
+}
+
+/// Values of a variable, in lanes beyond `count` those of the last row.
+inline void read_values(const View& m, const double* rows, unsigned count, std::size_t variable,
+                        Doubles& out) {
+  for (unsigned lane = 0; lane < KABOUM_LANES; ++lane)
+    out[lane] = rows[(lane < count ? lane : count - 1) * m.variables + variable];
+}
+
+/// Poses of all frames. @return the lanes whose values are beyond what errors are bounded for
+inline unsigned place_frames(const View& m, const double* rows, unsigned count, Frame* frames) {
+  Ints beyond{};
+  for (std::size_t i = 0; i < m.variables; ++i) {
+    Doubles q;
+    read_values(m, rows, count, i, q);
+    const auto within = (q >= m.low[i]) & (q <= m.high[i]);
+    beyond |= __builtin_convertvector(~within, Ints);
+  }
+  for (int k = 0; k < 9; ++k) frames[0].r[k] = Floats{} + m.base[k];
+  for (int k = 0; k < 3; ++k) frames[0].t[k] = Floats{};
+  for (std::size_t j = 0; j < m.steps; ++j) {
+    const Step& step = m.step[j];
+    const Frame& p = frames[step.parent];
+    Frame& out = frames[j + 1];
+    const float* f = step.fixed;
+    for (int row = 0; row < 3; ++row) {
+      const Floats a = p.r[3 * row], b = p.r[3 * row + 1], c = p.r[3 * row + 2];
+      for (int k = 0; k < 3; ++k) out.r[3 * row + k] = a * f[k] + b * f[3 + k] + c * f[6 + k];
+      out.t[row] = a * f[9] + b * f[10] + c * f[11] + p.t[row];
+    }
+    Doubles q;
+    read_values(m, rows, count, step.variable, q);
+    const auto within = (q >= m.low[step.variable]) & (q <= m.high[step.variable]);
+    q = within ? q : Doubles{} + m.low[step.variable];
+    const Doubles x = q * step.multiplier + step.offset;
+    if (step.turns) {
+      Floats s, c;
+      sine_and_cosine(x, s, c);
+      for (int row = 0; row < 3; ++row) {
+        const Floats a = out.r[3 * row], b = out.r[3 * row + 1];
+        out.r[3 * row] = c * a + s * b;
+        out.r[3 * row + 1] = c * b - s * a;
+      }
+    } else {
+      const Floats d = __builtin_convertvector(x, Floats);
+      for (int row = 0; row < 3; ++row) out.t[row] += out.r[3 * row + 2] * d;
+    }
+  }
+  return bits_of(beyond);
+}
+
+inline Point place(const Frame& frame, const float* c) {
+  const Floats* r = frame.r;
+  return {r[0] * c[0] + r[1] * c[1] + r[2] * c[2] + frame.t[0],
+          r[3] * c[0] + r[4] * c[1] + r[5] * c[2] + frame.t[1],
+          r[6] * c[0] + r[7] * c[1] + r[8] * c[2] + frame.t[2]};
+}
+
+/// Factors of squared distances that hold the rounding of these and of their bounds.
+constexpr float kAbove = 1 + 0x1p-18F, kBelow = 1 - 0x1p-18F;
+
+/// Lanes in which two points may be no farther apart than `reach`.
+inline unsigned may_meet(const Point& a, const Point& b, float reach) {
+  const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const Ints apart = x * x + y * y + z * z > reach * reach * kAbove;
+  return bits_of(~apart);
+}
+inline unsigned may_meet(const Point& a, const float* b, float reach) {
+  const Floats x = a.x - b[0], y = a.y - b[1], z = a.z - b[2];
+  const Ints apart = x * x + y * y + z * z > reach * reach * kAbove;
+  return bits_of(~apart);
+}
+
+/// Lanes in which two points are certainly no farther apart than `reach`.
+inline unsigned must_meet(const Point& a, const Point& b, float reach) {
+  if (!(reach > 0)) return 0;
+  const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const Ints near = x * x + y * y + z * z < reach * reach * kBelow;
+  return bits_of(near);
+}
+
+/// Squared distance from a box along its own axes.
+inline Floats distance_of_box(const Point& p, const float* axes, const float* center,
+                              const float* half) {
+  const Floats x = p.x - center[0], y = p.y - center[1], z = p.z - center[2];
+  Floats sum{};
+  for (int k = 0; k < 3; ++k) {
+    const Floats along = axes[3 * k] * x + axes[3 * k + 1] * y + axes[3 * k + 2] * z;
+    const Floats beyond = magnitude(along) - half[k];
+    const Floats positive = beyond > 0 ? beyond : Floats{};
+    sum += positive * positive;
+  }
+  return sum;
+}
+
+/// Lanes in which a ball may meet an obstacle.
+inline unsigned may_meet(const View& m, const Point& p, float radius, const Obstacle& o) {
+  const float reach = radius + o.radius;
+  const Ints apart = distance_of_box(p, o.axes, o.center, o.half) > reach * reach * kAbove;
+  unsigned left = bits_of(~apart);
+  for (std::uint32_t i = o.planes.begin; i < o.planes.end && left != 0; ++i) {
+    const float* n = m.plane[i].normal;
+    const Ints below = p.x * n[0] + p.y * n[1] + p.z * n[2] <= m.plane[i].offset + radius;
+    left &= bits_of(below);
+  }
+  return left;
+}
+
+inline unsigned must_meet(const Point& p, float radius, const Obstacle& o) {
+  const float reach = radius + o.inner_radius;
+  if (!(reach > 0)) return 0;
+  const Ints near =
+      distance_of_box(p, o.axes, o.inner_center, o.inner_half) < reach * reach * kBelow;
+  return bits_of(near);
+}
+
+/// Configurations that are looked at at once, and what is known of them.
+class Pack {
+ public:
+  Pack(const View& m, const double* rows, unsigned count) : m_(m) {
+    frames_ = reinterpret_cast<Frame*>(m.memory);
+    whole_ = reinterpret_cast<Point*>(frames_ + m.steps + 1);
+    outer_ = whole_ + m.shapes;
+    inner_ = outer_ + m.outer_count;
+    all_ = count == 32 ? ~0U : (1U << count) - 1;
+    open_ = place_frames(m, rows, count, frames_) & all_;
+    all_ &= ~open_;
+    for (std::size_t s = 0; s < m.shapes; ++s) {
+      whole_[s] = place(frames_[m.shape[s].frame], m.shape[s].whole.center);
+      m.ready[s] = 0;
+    }
+  }
+
+  void decide() {
+    for (std::size_t i = 0; i < m_.shape_pairs && contact_ != all_; ++i) look_at(m_.shape_pair[i]);
+    for (std::size_t i = 0; i < m_.obstacle_pairs && contact_ != all_; ++i)
+      look_at(m_.obstacle_pair[i]);
+  }
+
+  /// Lanes that are in contact for certain, and others of which nothing is known.
+  [[nodiscard]] unsigned contact() const { return contact_; }
+  [[nodiscard]] unsigned open() const { return open_ & ~contact_; }
+
+ private:
+  void look_at(const ObstaclePair& pair) {
+    const ShapeModel& shape = m_.shape[pair.shape];
+    const Point& whole = whole_[pair.shape];
+    const ObstacleGroup& group = m_.group[pair.group];
+    const float radius = shape.whole.radius + pair.margin;
+    const unsigned near = may_meet(whole, group.center, radius + group.radius);
+    for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
+      const unsigned left = near & all_ & ~contact_;
+      if (left == 0) return;
+      look_at(pair, shape, m_.obstacle[i], left & may_meet(m_, whole, radius, m_.obstacle[i]));
+    }
+  }
+
+  void look_at(const ObstaclePair& pair, const ShapeModel& shape, const Obstacle& o,
+               unsigned near) {
+    if (near == 0) return;
+    place_outer(pair.shape);
+    unsigned doubt = 0;
+    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
+      doubt |= near & may_meet(m_, outer_[k], m_.outer[k].radius + pair.margin, o);
+    if (doubt == 0) return;
+    place_inner(pair.shape);
+    unsigned meet = 0;
+    for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k)
+      meet |= doubt & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
+    note(doubt, meet);
+  }
+
+  void look_at(const ShapePair& pair) {
+    const ShapeModel &a = m_.shape[pair.a], &b = m_.shape[pair.b];
+    const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
+    const unsigned near = all_ & ~contact_ &
+                          may_meet(whole_a, whole_b, a.whole.radius + b.whole.radius + pair.margin);
+    if (near == 0) return;
+    place_outer(pair.a);
+    place_outer(pair.b);
+    unsigned doubt = 0;
+    for (std::uint32_t i = a.outer.begin; i < a.outer.end && doubt != near; ++i) {
+      const float reach = m_.outer[i].radius + pair.margin;
+      const unsigned left = near & ~doubt & may_meet(outer_[i], whole_b, reach + b.whole.radius);
+      if (left == 0) continue;
+      unsigned found = 0;
+      for (std::uint32_t k = b.outer.begin; k < b.outer.end && found != left; ++k)
+        found |= left & may_meet(outer_[i], outer_[k], reach + m_.outer[k].radius);
+      doubt |= found;
+    }
+    if (doubt == 0) return;
+    place_inner(pair.a);
+    place_inner(pair.b);
+    unsigned meet = 0;
+    for (std::uint32_t i = a.inner.begin; i < a.inner.end && meet != doubt; ++i)
+      for (std::uint32_t k = b.inner.begin; k < b.inner.end && meet != doubt; ++k)
+        meet |= doubt & must_meet(inner_[i], inner_[k],
+                                  m_.inner[i].radius + m_.inner[k].radius + pair.least_margin);
+    note(doubt, meet);
+  }
+
+  void note(unsigned doubt, unsigned meet) {
+    contact_ |= meet;
+    open_ |= doubt & ~meet;
+  }
+
+  void place_outer(std::uint32_t s) {
+    if ((m_.ready[s] & 1) != 0) return;
+    m_.ready[s] |= 1;
+    const ShapeModel& shape = m_.shape[s];
+    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end; ++k)
+      outer_[k] = place(frames_[shape.frame], m_.outer[k].center);
+  }
+  void place_inner(std::uint32_t s) {
+    if ((m_.ready[s] & 2) != 0) return;
+    m_.ready[s] |= 2;
+    const ShapeModel& shape = m_.shape[s];
+    for (std::uint32_t k = shape.inner.begin; k < shape.inner.end; ++k)
+      inner_[k] = place(frames_[shape.frame], m_.inner[k].center);
+  }
+
+  const View& m_;
+  Frame* frames_;
+  Point *whole_, *outer_, *inner_;
+  unsigned all_ = 0, contact_ = 0, open_ = 0;
+};
+
+void filter_rows(const View& m, const double* rows, std::size_t count, Answer* answers) {
+  for (std::size_t first = 0; first < count; first += KABOUM_LANES) {
+    const std::size_t left = count - first;
+    const unsigned here = left < KABOUM_LANES ? static_cast<unsigned>(left) : KABOUM_LANES;
+    Pack pack(m, rows + first * m.variables, here);
+    pack.decide();
+    const unsigned contact = pack.contact(), open = pack.open();
+    for (unsigned lane = 0; lane < here; ++lane)
+      answers[first + lane] = ((contact >> lane) & 1) != 0 ? Answer::Contact
+                              : ((open >> lane) & 1) != 0  ? Answer::Open
+                                                           : Answer::Free;
+  }
+}
+
+void place_outer_balls(const View& m, const double* rows, std::size_t count, float* centers) {
+  Frame* frames = reinterpret_cast<Frame*>(m.memory);
+  for (std::size_t row = 0; row < count; ++row) {
+    place_frames(m, rows + row * m.variables, 1, frames);
+    for (std::size_t s = 0; s < m.shapes; ++s)
+      for (std::uint32_t k = m.shape[s].outer.begin; k < m.shape[s].outer.end; ++k) {
+        const Point p = place(frames[m.shape[s].frame], m.outer[k].center);
+        float* out = centers + 3 * (row * m.outer_count + k);
+        out[0] = p.x[0];
+        out[1] = p.y[0];
+        out[2] = p.z[0];
+      }
+  }
+}
+
+void sines_of(const double* angles, std::size_t count, float* sines, float* cosines) {
+  for (std::size_t first = 0; first < count; first += KABOUM_LANES) {
+    Doubles angle{};
+    const std::size_t left = count - first;
+    for (std::size_t k = 0; k < KABOUM_LANES && k < left; ++k) angle[k] = angles[first + k];
+    Floats s, c;
+    sine_and_cosine(angle, s, c);
+    for (std::size_t k = 0; k < KABOUM_LANES && k < left; ++k) {
+      sines[first + k] = s[k];
+      cosines[first + k] = c[k];
+    }
+  }
+}

@@ -1,0 +1,394 @@
+// A robot among obstacles in floats, with bounds of how far they are off: docs/algorithms/
+// batches.md, "Errors", has the proofs of the numbers here.
+
+#include "model.h"
+
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/world/margins.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace kaboum::filter::detail {
+namespace {
+
+using collide::PosedSet;
+using geom::Transform;
+using world::Item;
+using Mat3 = Eigen::Matrix3d;
+
+constexpr double kUnit = 0x1p-24;  ///< of rounding of floats, to nearest
+constexpr double kSineError = 4 * kUnit;
+constexpr double kDoubles = 0x1p-38;     ///< all roundings of doubles, of the lengths involved
+constexpr double kSums = 1 + 8 * kUnit;  ///< sums of three floats that are rounded
+constexpr double kFarthest = 100;        ///< values of variables beyond are left open
+constexpr double kMostAngle = 1000, kLargest = 1e6;
+constexpr std::size_t kMostPlanes = 80;
+
+float rounded_up(double x) {
+  const auto out = static_cast<float>(x);
+  return out < x ? std::nextafter(out, HUGE_VALF) : out;
+}
+float rounded_down(double x) { return -rounded_up(-x); }
+
+void put(const Vec3& p, float* out) {
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(p[k]);
+}
+void put(const Mat3& m, float* out) {
+  for (int k = 0; k < 9; ++k) {
+    const double entry = m(k / 3, k % 3);
+    out[k] = std::abs(entry) < kDoubles ? 0.0F : static_cast<float>(entry);
+  }
+}
+
+/// Bounds of a frame's pose in floats: its rotation's error (spectral), the translation's error,
+/// and the translation's length.
+struct FrameBounds {
+  double rotation = 3 * kUnit, translation = 0, reach = 0;
+};
+
+/// A rotation that takes z to an axis.
+Mat3 rotation_to(const Vec3& axis) {
+  const Vec3 z = axis.normalized();
+  int least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  Mat3 out;
+  out.col(0) = Vec3::Unit(least).cross(z).normalized();
+  out.col(1) = z.cross(out.col(0));
+  out.col(2) = z;
+  return out;
+}
+
+/// What moves a link: a frame, and the link's pose in it.
+struct LinkPlace {
+  std::uint32_t frame = 0;
+  Transform pose;
+};
+
+/// The robot's joints, as far as they move, and where its links are.
+struct Chain {
+  std::vector<FrameBounds> bounds{{}};
+  std::vector<LinkPlace> links{{}};
+};
+
+/// Bounds of the frame that a joint moves.
+FrameBounds bounds_of(const FrameBounds& parent, double length, bool turns, double slide) {
+  FrameBounds out;
+  out.rotation = 1.001 * parent.rotation + 12.5 * kUnit;
+  out.translation =
+      parent.translation + (parent.rotation + 8.1 * kUnit) * length + 4.1 * kUnit * parent.reach;
+  out.reach = parent.reach + 1.001 * length;
+  if (turns) {
+    out.rotation = 1.001 * out.rotation + 1.42 * kSineError + 4.1 * kUnit;
+  } else {
+    out.translation += (out.rotation + 3.1 * kUnit) * slide + 2.1 * kUnit * out.reach;
+    out.reach += 1.001 * slide;
+  }
+  out.translation += kDoubles * out.reach;
+  return out;
+}
+
+Chain add_chain(const world::RobotModel& robot, Model& model) {
+  Chain out;
+  put(robot.base.linear, model.base);
+  const auto& variables = robot.kinematics.variables;
+  model.variables = variables.size();
+  for (const robot::Variable& v : variables) {
+    model.low.push_back(std::max(v.lower.value_or(-kFarthest), -kFarthest));
+    model.high.push_back(std::min(v.upper.value_or(kFarthest), kFarthest));
+    model.unusable = model.unusable || !(model.low.back() <= model.high.back());
+  }
+  for (const robot::Joint& joint : robot.kinematics.joints) {
+    const LinkPlace& parent = out.links[joint.parent];
+    const Transform origin = parent.pose * joint.origin;
+    if (joint.type == robot::JointType::Fixed) {
+      out.links.push_back({parent.frame, origin});
+      continue;
+    }
+    Step step{.multiplier = joint.multiplier, .offset = joint.offset};
+    step.parent = parent.frame;
+    step.variable = joint.variable;
+    step.turns = joint.type == robot::JointType::Revolute;
+    const Mat3 align = rotation_to(joint.axis);
+    put(Mat3(origin.linear * align), step.fixed);
+    put(origin.translation, step.fixed + 9);
+    const double most =
+        std::abs(joint.multiplier) *
+            std::max(std::abs(model.low[joint.variable]), std::abs(model.high[joint.variable])) +
+        std::abs(joint.offset);
+    model.unusable = model.unusable || !(most <= kMostAngle);
+    out.bounds.push_back(
+        bounds_of(out.bounds[parent.frame], origin.translation.norm(), step.turns, most));
+    const auto frame = static_cast<std::uint32_t>(model.steps.size() + 1);
+    model.steps.push_back(step);
+    out.links.push_back({frame, {align.transpose(), Vec3::Zero()}});
+  }
+  return out;
+}
+
+/// A ball of a link in its frame, and how far from there it is computed to be.
+struct PlacedBall {
+  Vec3 center = Vec3::Zero();
+  double error = 0;  ///< of its centre, and of what the vector code computes with it
+  double reach = 0;  ///< from the origin
+};
+PlacedBall placed(const Chain& chain, const LinkPlace& link, const Vec3& center) {
+  const FrameBounds& frame = chain.bounds[link.frame];
+  PlacedBall out{link.pose * center};
+  const double length = out.center.norm() + center.norm() * kDoubles;
+  out.reach = frame.reach + 1.001 * length;
+  out.error = frame.translation + (frame.rotation + 8.1 * kUnit) * length +
+              4.1 * kUnit * frame.reach + (10 * kUnit + kDoubles) * out.reach;
+  return out;
+}
+
+FrameBall outer_ball(const Chain& chain, const LinkPlace& link, const Ball& ball, double error) {
+  const PlacedBall at = placed(chain, link, ball.center);
+  FrameBall out;
+  put(at.center, out.center);
+  out.radius = rounded_up((ball.radius * (1 + 1e-8) + at.error + 2.5 * error) * kSums);
+  return out;
+}
+
+FrameBall inner_ball(const Chain& chain, const LinkPlace& link, const Ball& ball) {
+  const PlacedBall at = placed(chain, link, ball.center);
+  FrameBall out;
+  put(at.center, out.center);
+  out.radius = rounded_down((ball.radius * (1 - 1e-8) - at.error) / kSums);
+  return out;
+}
+
+std::uint32_t size_of(const auto& list) { return static_cast<std::uint32_t>(list.size()); }
+
+/// Normals of a hull's facets, those of the largest areas first; parallel ones once.
+std::vector<Vec3> normals_of(const std::vector<Vec3>& points,
+                             const std::vector<geom::Triangle>& triangles) {
+  struct Facet {
+    Vec3 normal;
+    double area;
+  };
+  std::vector<Facet> facets;
+  for (const geom::Triangle& t : triangles) {
+    const Vec3 n = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
+    const double area = n.norm();
+    if (!(area > 0)) continue;
+    const auto same = std::ranges::find_if(
+        facets, [&](const Facet& f) { return f.normal.dot(n) > (1 - 1e-9) * area; });
+    if (same == facets.end())
+      facets.push_back({n / area, area});
+    else
+      same->area += area;
+  }
+  std::ranges::stable_sort(facets, std::ranges::greater{}, &Facet::area);
+  std::vector<Vec3> out;
+  out.reserve(facets.size());
+  for (const Facet& facet : facets) out.push_back(facet.normal);
+  return out;
+}
+
+/// Axes of a box round points, from normals of facets; rows.
+Mat3 box_axes(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {
+  if (points.size() == 1) return Mat3::Identity();
+  if (normals.empty()) return rotation_to(points.back() - points.front()).transpose();
+  Mat3 best = rotation_to(normals.front()).transpose();
+  double least = HUGE_VAL;
+  const std::size_t few = std::min<std::size_t>(normals.size(), 10);
+  for (std::size_t i = 0; i < few; ++i)
+    for (std::size_t j = 0; j < few; ++j) {
+      const Vec3 second = normals[j] - normals[i].dot(normals[j]) * normals[i];
+      if (second.norm() < 0.3) continue;
+      Mat3 axes;
+      axes.row(0) = normals[i];
+      axes.row(1) = second.normalized();
+      axes.row(2) = axes.row(0).cross(axes.row(1));
+      Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+      for (const Vec3& p : points) {
+        low = low.cwiseMin(axes * p);
+        high = high.cwiseMax(axes * p);
+      }
+      if (const double volume = (high - low).prod(); volume < least) {
+        least = volume;
+        best = axes;
+      }
+    }
+  return best;
+}
+
+/// How far a corner of a box is from the nearest of the points, at most.
+double corners_off(const Mat3& axes, const Vec3& center, const Vec3& half,
+                   const std::vector<Vec3>& points) {
+  double most = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Vec3 local = half;
+    for (int k = 0; k < 3; ++k)
+      if ((corner >> k & 1U) != 0) local[k] = -local[k];
+    const Vec3 at = center + axes.transpose() * local;
+    double least = HUGE_VAL;
+    for (const Vec3& p : points) least = std::min(least, (p - at).norm());
+    most = std::max(most, least);
+  }
+  return most;
+}
+
+/// @param error  of the place, as the checker has it
+void add_obstacle(const PosedSet& at, std::size_t body, const Vec3& origin, Model& model) {
+  const geom::ConvexBody& convex = at.set().body(body);
+  std::vector<Vec3> points;
+  for (const Vec3& p : convex.core.vertices) points.emplace_back(at.pose() * p - origin);
+  double size = 0;
+  for (const Vec3& p : points) size = std::max(size, p.norm());
+  size += at.pose().translation.norm() + origin.norm();
+  const double slack = kDoubles * size;
+  const std::vector<Vec3> normals = normals_of(points, convex.core.triangles);
+  const Mat3 axes = box_axes(points, normals);
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(axes * p);
+    high = high.cwiseMax(axes * p);
+  }
+  const Vec3 center = axes.transpose() * (0.5 * (low + high)), half = 0.5 * (high - low);
+  Obstacle out;
+  put(axes, out.axes);
+  put(center, out.center);
+  const double floats = 10 * kUnit * (center.norm() + half.norm()) + slack;
+  const double radius = at.radius_above(body) + 2.5 * at.error();
+  out.radius = rounded_up((radius + floats) * kSums);
+  for (int k = 0; k < 3; ++k) out.half[k] = rounded_up(half[k] + slack);
+  const double off = convex.core.triangles.empty() ? 0 : corners_off(axes, center, half, points);
+  if (off <= 1e-6 * half.norm()) {
+    put(center, out.inner_center);
+    for (int k = 0; k < 3; ++k) out.inner_half[k] = rounded_down(half[k]);
+    out.inner_radius = rounded_down((at.radius_below(body) - off - floats));
+  } else {
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& p : convex.core.vertices)
+      mean += p / static_cast<double>(convex.core.vertices.size());
+    const Ball inner = detail::inner_ball(convex, mean);
+    const Vec3 place = at.pose() * inner.center - origin;
+    put(place, out.inner_center);
+    out.inner_radius = rounded_down(
+        (inner.radius * (1 - 1e-8) - 10 * kUnit * (place.norm() + center.norm()) - slack) / kSums);
+  }
+  out.planes.begin = size_of(model.planes);
+  if (off > 1e-6 * half.norm())
+    for (std::size_t i = 0; i < std::min(normals.size(), kMostPlanes); ++i) {
+      Plane plane;
+      put(Vec3(normals[i] * (1 - 8 * kUnit)), plane.normal);
+      const Vec3 normal(plane.normal[0], plane.normal[1], plane.normal[2]);
+      double most = -HUGE_VAL;
+      for (const Vec3& p : points) most = std::max(most, normal.dot(p));
+      plane.offset = rounded_up(most + (radius + slack + 4 * kUnit * std::abs(most)) * kSums);
+      model.planes.push_back(plane);
+    }
+  out.planes.end = size_of(model.planes);
+  model.unusable = model.unusable || !(size + radius < kLargest);
+  model.obstacles.push_back(out);
+}
+
+void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
+  ObstacleGroup out;
+  const Vec3 center = at.pose() * at.set().ball().center - origin;
+  put(center, out.center);
+  out.radius = rounded_up(
+      (at.set().ball().radius * (1 + 1e-8) + 2.5 * at.error() + 4 * kUnit * center.norm() +
+       kDoubles * (at.pose().translation.norm() + origin.norm() + at.set().ball().center.norm())) *
+      kSums);
+  out.obstacles.begin = size_of(model.obstacles);
+  for (std::size_t i = 0; i < at.set().size(); ++i) add_obstacle(at, i, origin, model);
+  out.obstacles.end = size_of(model.obstacles);
+  model.groups.push_back(out);
+}
+
+/// The bounding sets of the robot's links.
+/// @param errors  of their places, as the checker has them
+void add_shapes(const world::RobotModel& robot, const Chain& chain,
+                const std::vector<double>& errors, std::size_t most_balls, Model& model) {
+  std::vector<const collide::BoundingSet*> sets;
+  for (const world::LinkShape& shape : robot.shapes) sets.push_back(&shape.outer);
+  const std::vector<BallCover> covers = cover_by_balls(sets, most_balls);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const LinkPlace& link = chain.links[robot.shapes[s].link];
+    ShapeModel out;
+    out.frame = link.frame;
+    const auto& ball = sets[s]->ball();
+    out.whole = outer_ball(chain, link, {ball.center, ball.radius}, errors[s]);
+    out.outer.begin = size_of(model.outer);
+    for (const Ball& b : covers[s].outer)
+      model.outer.push_back(outer_ball(chain, link, b, errors[s]));
+    out.outer.end = size_of(model.outer);
+    out.inner.begin = size_of(model.inner);
+    for (const Ball& b : covers[s].inner)
+      if (const FrameBall inner = inner_ball(chain, link, b); inner.radius > 0)
+        model.inner.push_back(inner);
+    out.inner.end = size_of(model.inner);
+    const PlacedBall whole = placed(chain, link, ball.center);
+    model.unusable = model.unusable || !(whole.reach + ball.radius < kLargest) ||
+                     !(chain.bounds[link.frame].rotation < 1e-3);
+    model.shapes.push_back(out);
+  }
+}
+
+}  // namespace
+
+Model make_model(const world::Checker& checker, const world::WorldState& given, std::size_t robot,
+                 std::size_t most_balls) {
+  Model out;
+  const world::World& world = checker.world();
+  const world::RobotModel& model = world.robots[robot];
+  const Chain chain = add_chain(model, out);
+  out.unusable = out.unusable || checker.substitute() != nullptr ||
+                 (!given.absent_robots.empty() && given.absent_robots[robot]) ||
+                 std::ranges::any_of(given.attachments, [&](const auto& attachment) {
+                   return attachment && attachment->robot == robot;
+                 });
+  if (out.unusable) return out;
+  world::WorldState state = given;
+  for (std::size_t i = 0; i < out.variables; ++i)
+    state.q[robot][i] = 0.5 * (out.low[i] + out.high[i]);
+  world::Scratch scratch;
+  std::vector<Item> links;
+  for (std::size_t s = 0; s < model.shapes.size(); ++s) links.push_back({robot, s});
+  std::vector<double> errors;
+  for (const auto& at : checker.places(state, links, scratch)) errors.push_back(at.place.error());
+  add_shapes(model, chain, errors, most_balls, out);
+
+  const auto moves = [&](const Item& item) {
+    return item.robot == robot && out.shapes[item.index].frame != 0;
+  };
+  std::map<Item, std::uint32_t> groups;
+  const auto group_of = [&](const Item& item) {
+    if (const auto found = groups.find(item); found != groups.end()) return found->second;
+    add_group(checker.places(state, {item}, scratch).front().place, model.base.translation, out);
+    return groups[item] = size_of(out.groups) - 1;
+  };
+  for (const auto& pair : checker.pairs(state, {})) {
+    auto [a, b] = pair;
+    if (!moves(a)) std::swap(a, b);
+    if (!moves(a)) continue;
+    const double margin = margin_between(world, state, a, b);
+    const float above = rounded_up(margin * kSums), below = rounded_down(margin / kSums);
+    const auto shape = static_cast<std::uint32_t>(a.index);
+    if (b.robot == robot)
+      out.shape_pairs.push_back({shape, static_cast<std::uint32_t>(b.index), above, below});
+    else
+      out.obstacle_pairs.push_back({shape, group_of(b), above, below});
+  }
+  out.always_contact = std::ranges::any_of(
+      checker.find_contacts(state, scratch, {}),
+      [&](const auto& contact) { return !moves(contact.items[0]) && !moves(contact.items[1]); });
+  // What a link cannot reach is left out.
+  std::erase_if(out.obstacle_pairs, [&](const ObstaclePair& pair) {
+    const ShapeModel& shape = out.shapes[pair.shape];
+    const ObstacleGroup& group = out.groups[pair.group];
+    const LinkPlace& link = chain.links[model.shapes[pair.shape].link];
+    const double reach = placed(chain, link, model.shapes[pair.shape].outer.ball().center).reach;
+    const Vec3 center(group.center[0], group.center[1], group.center[2]);
+    return center.norm() * (1 - 1e-6) >
+           (reach + shape.whole.radius + group.radius + pair.margin) * (1 + 1e-6);
+  });
+  return out;
+}
+
+}  // namespace kaboum::filter::detail

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <kaboum/world/checker.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "ball_cover.h"
+
+/// A robot among obstacles in floats, and how far these are off. docs/algorithms/batches.md. Plain
+/// arrays: the vector code calls no function of a header.
+namespace kaboum::filter::detail {
+
+/// A joint that moves: pose = pose of the parent · fixed · (turn about z by x, or slide along z by
+/// x), x = multiplier · q[variable] + offset.
+struct Step {
+  double multiplier = 1, offset = 0;
+  std::uint32_t parent = 0;  ///< of the frames, 0 the root's
+  std::uint32_t variable = 0;
+  bool turns = true;
+  float fixed[12] = {};  ///< rotation row by row, then translation
+};
+
+/// A ball fixed to a frame.
+struct FrameBall {
+  float center[3] = {};
+  /// Outer: the radius and all errors, rounded up. Inner: without them, rounded down.
+  float radius = 0;
+};
+
+/// A range of indices.
+struct Range {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// The bounding set of a link.
+struct ShapeModel {
+  std::uint32_t frame = 0;
+  FrameBall whole;  ///< holds all of it
+  Range outer, inner;
+};
+
+/// A box along its own axes, enlarged by a ball: a sphere, capsule or box, or what holds a body.
+struct Obstacle {
+  float axes[9] = {};  ///< row by row, from the world
+  float center[3] = {}, half[3] = {};
+  float radius = 0;  ///< and all errors, rounded up
+  /// What lies in the body likewise: radius without errors, rounded down; below 0: nothing.
+  float inner_center[3] = {}, inner_half[3] = {};
+  float inner_radius = -1;
+  Range planes;  ///< of Model::planes: the body lies below all of them
+};
+
+/// A half-space n·x ≤ offset that holds a body, errors included.
+struct Plane {
+  float normal[3] = {};
+  float offset = 0;
+};
+
+/// The obstacles of one thing, and a ball round them.
+struct ObstacleGroup {
+  float center[3] = {};
+  float radius = 0;
+  Range obstacles;
+};
+
+/// A shape and a thing that are to be apart by more than the margin.
+struct ObstaclePair {
+  std::uint32_t shape = 0, group = 0;
+  float margin = 0, least_margin = 0;  ///< rounded up, and down
+};
+
+struct ShapePair {
+  std::uint32_t a = 0, b = 0;
+  float margin = 0, least_margin = 0;
+};
+
+/// All that the vector code reads. Coordinates are the world's, from the robot's base on.
+struct Model {
+  std::size_t variables = 0;
+  std::vector<double> low, high;  ///< rows with values beyond are left open
+  float base[9] = {};             ///< rotation of the root
+  std::vector<Step> steps;        ///< of frame i + 1
+  std::vector<FrameBall> outer, inner;
+  std::vector<ShapeModel> shapes;
+  std::vector<Obstacle> obstacles;
+  std::vector<Plane> planes;
+  std::vector<ObstacleGroup> groups;
+  std::vector<ObstaclePair> obstacle_pairs;
+  std::vector<ShapePair> shape_pairs;
+  bool always_contact = false;  ///< of things that the variables do not move
+  bool unusable = false;        ///< nothing can be said: every row is open
+};
+
+Model make_model(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
+                 std::size_t most_balls);
+
+}  // namespace kaboum::filter::detail

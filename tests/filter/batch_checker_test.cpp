@@ -1,0 +1,460 @@
+// Batches of configurations against the checker, against kinematics in long double, and mutants of
+// the error bounds, which have to be noticed.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/filter/batch_checker.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/robot/robot.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <random>
+
+#include "lanes.h"
+#include "model.h"
+
+namespace kaboum::filter {
+namespace {
+
+using Answer = BatchChecker::Answer;
+using collide::BoundingSet;
+using geom::ConvexBody;
+using geom::Vec3;
+using world::World;
+
+/// Seven joints, one of them a slide, one that mimics; links that a ball, a capsule and polytopes
+/// hold.
+constexpr const char* kArm = R"(<robot name="arm">
+  <link name="base"/><link name="l1"/><link name="l2"/><link name="l3"/><link name="l4"/>
+  <link name="l5"/><link name="l6"/><link name="tip"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="l1"/>
+    <origin xyz="0 0 0.3" rpy="0 0 0.2"/><axis xyz="0 0 1"/>
+    <limit lower="-2.9" upper="2.9" effort="1" velocity="1"/></joint>
+  <joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/>
+    <origin xyz="0 0.02 0" rpy="-1.5707963267948966 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-1.8" upper="1.8" effort="1" velocity="1"/></joint>
+  <joint name="j3" type="revolute"><parent link="l2"/><child link="l3"/>
+    <origin xyz="0 -0.32 0" rpy="1.5707963267948966 0 0"/><axis xyz="0 0 -1"/>
+    <limit lower="-2.9" upper="2.9" effort="1" velocity="1"/></joint>
+  <joint name="j4" type="revolute"><parent link="l3"/><child link="l4"/>
+    <origin xyz="0.08 0 0.1" rpy="0.3 -0.4 1.1"/><axis xyz="0.6 0 0.8"/>
+    <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+  <joint name="j5" type="prismatic"><parent link="l4"/><child link="l5"/>
+    <origin xyz="0 0.1 0.2" rpy="0 0.5 0"/><axis xyz="1 0 0"/>
+    <limit lower="-0.1" upper="0.3" effort="1" velocity="1"/></joint>
+  <joint name="j6" type="continuous"><parent link="l5"/><child link="l6"/>
+    <origin xyz="0.1 0 0.1"/><axis xyz="0 1 0"/></joint>
+  <joint name="j7" type="revolute"><parent link="l6"/><child link="tip"/>
+    <origin xyz="0.05 0 0.12" rpy="0 0 1"/><axis xyz="1 0 0"/><mimic joint="j2" multiplier="-0.7" offset="0.4"/>
+    <limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+</robot>)";
+
+ConvexBody ball(const Vec3& center, double radius) { return {"", {{center}, {}}, radius}; }
+ConvexBody capsule(const Vec3& a, const Vec3& b, double radius) {
+  return {"", {{a, b}, {}}, radius};
+}
+ConvexBody polytope(std::uint64_t seed, int points, const Vec3& scale, double radius = 0) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> out;
+  for (int i = 0; i < points; ++i)
+    out.emplace_back(
+        Vec3(normal(random), normal(random), normal(random)).normalized().cwiseProduct(scale));
+  return {"", *geom::convex_hull(out), radius};
+}
+ConvexBody box(const Vec3& half) {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back((k & 1) != 0 ? half.x() : -half.x(), (k & 2) != 0 ? half.y() : -half.y(),
+                         (k & 4) != 0 ? half.z() : -half.z());
+  return {"", *geom::convex_hull(corners), 0};
+}
+
+world::LinkShape shape(std::uint32_t link, std::vector<ConvexBody> bodies) {
+  return {link, BoundingSet(std::move(bodies), collide::Direction::Outer, 0), {}};
+}
+
+geom::Transform pose(double yaw, double pitch, const Vec3& at) {
+  return {robot::rotation_from_rpy(0.1, pitch, yaw), at};
+}
+
+void add_object(World& world, const std::string& name, const geom::Transform& at,
+                std::vector<ConvexBody> bodies) {
+  world::Object object{.name = name,
+                       .pose = at,
+                       .outer = BoundingSet(std::move(bodies), collide::Direction::Outer, 0),
+                       .inner = {},
+                       .features = {},
+                       .grasps = {}};
+  world.objects.push_back(std::move(object));
+  world.attachments.emplace_back();
+}
+
+/// @param round  links of balls and capsules only, which the vector code knows exactly
+World cell(bool round) {
+  World out;
+  world::RobotModel arm;
+  arm.name = "arm";
+  arm.kinematics = robot::parse_urdf(kArm, "arm.urdf");
+  arm.base = pose(0.7, 0.2, {3, -2, 1});
+  arm.home.assign(arm.kinematics.variables.size(), 0.0);
+  if (round) {
+    arm.shapes.push_back(shape(3, {ball({0, 0, 0.05}, 0.08)}));
+    arm.shapes.push_back(shape(7, {ball({0.05, 0.02, 0.1}, 0.05)}));
+  } else {
+    arm.shapes.push_back(shape(0, {box({0.1, 0.1, 0.15})}));
+    arm.shapes.push_back(shape(1, {capsule({0, 0, 0}, {0, 0, 0.1}, 0.09)}));
+    arm.shapes.push_back(shape(2, {polytope(1, 40, {0.08, 0.2, 0.08})}));
+    arm.shapes.push_back(
+        shape(4, {polytope(2, 30, {0.06, 0.06, 0.15}, 0.01), box({0.05, 0.1, 0.02})}));
+    arm.shapes.push_back(shape(5, {box({0.2, 0.03, 0.04})}));
+    arm.shapes.push_back(shape(7, {polytope(3, 30, {0.05, 0.05, 0.12}), ball({0, 0, 0.1}, 0.06)}));
+    for (const auto& [a, b] : {std::array<std::uint32_t, 2>{0, 1}, {1, 2}, {4, 5}, {2, 4}})
+      arm.allowed.push_back({a, b, world::AllowedPair::Reason::Stated});
+  }
+  out.robots.push_back(std::move(arm));
+  add_object(out, "table", pose(0.3, 0, {3.8, -2, 0.9}), {box({0.4, 0.6, 0.1})});
+  add_object(out, "post", pose(-0.3, 0.1, {2.8, -1.4, 1.4}),
+             {capsule({0, 0, -0.4}, {0, 0, 0.4}, 0.05)});
+  add_object(out, "stone", pose(1, 0.4, {3.3, -2.5, 1.6}),
+             {polytope(5, 25, {0.2, 0.15, 0.1}, 0.02)});
+  add_object(out, "pile", pose(0, 0, {2.5, -2.2, 1.3}),
+             {ball({0, 0, 0}, 0.15), ball({0, 0.2, 0.1}, 0.1), box({0.05, 0.3, 0.05})});
+  return out;
+}
+
+std::vector<double> random_rows(const World& world, std::size_t count, std::uint64_t seed,
+                                double share = 1) {
+  std::mt19937_64 random(seed);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const robot::Variable& v : world.robots[0].kinematics.variables)
+      out.push_back(share * std::uniform_real_distribution<double>(v.lower.value_or(-9),
+                                                                   v.upper.value_or(9))(random));
+  return out;
+}
+
+std::vector<std::uint8_t> by_checker(const world::Checker& checker,
+                                     const std::vector<double>& rows) {
+  const std::size_t n = checker.world().robots[0].kinematics.variables.size();
+  world::Scratch scratch;
+  world::WorldState state = initial_state(checker.world());
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i < rows.size(); i += n) {
+    state.q[0].assign(rows.begin() + static_cast<std::ptrdiff_t>(i),
+                      rows.begin() + static_cast<std::ptrdiff_t>(i + n));
+    out.push_back(checker.is_free(state, scratch) ? 1 : 0);
+  }
+  return out;
+}
+
+/// Rows next to where a configuration begins or ceases to be free, `offsets` apart from it on the
+/// way between two random ones.
+std::vector<double> rows_at_contact(const world::Checker& checker, std::size_t count,
+                                    std::uint64_t seed, const std::vector<double>& offsets) {
+  const World& world = checker.world();
+  const std::size_t n = world.robots[0].kinematics.variables.size();
+  std::vector<double> out;
+  for (std::size_t round = 0; out.size() < count * n && round < 100 * count; ++round) {
+    const std::vector<double> ends = random_rows(world, 2, seed + round);
+    const auto at = [&](double share) {
+      std::vector<double> q(n);
+      for (std::size_t i = 0; i < n; ++i) q[i] = ends[i] + share * (ends[n + i] - ends[i]);
+      return q;
+    };
+    const auto is_free = [&](double share) { return by_checker(checker, at(share))[0]; };
+    const auto first = is_free(0);
+    if (first == is_free(1)) continue;
+    double low = 0, high = 1;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (low + high);
+      (is_free(middle) == first ? low : high) = middle;
+    }
+    for (const double offset : offsets)
+      for (const double share : {low - offset, low + offset}) {
+        const std::vector<double> q = at(std::clamp(share, 0.0, 1.0));
+        out.insert(out.end(), q.begin(), q.end());
+      }
+  }
+  return out;
+}
+
+std::vector<Answer> answers_of(const detail::Model& model, Instructions set,
+                               const std::vector<double>& rows) {
+  std::vector<Answer> out(rows.size() / model.variables);
+  detail::LaneMemory memory(model);
+  detail::filter_rows(model, set, rows.data(), out.size(), memory, out.data());
+  return out;
+}
+
+/// Answers that are wrong: free and in contact, in contact and free.
+std::array<std::size_t, 2> wrong_answers(const std::vector<Answer>& answers,
+                                         const std::vector<std::uint8_t>& free) {
+  std::array<std::size_t, 2> out{};
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    out[0] += answers[i] == Answer::Free && free[i] == 0 ? 1 : 0;
+    out[1] += answers[i] == Answer::Contact && free[i] == 1 ? 1 : 0;
+  }
+  return out;
+}
+
+TEST(BatchChecker, AnswersAsTheCheckerDoes) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  for (const std::vector<double>& rows :
+       {random_rows(world, 6000, 1),
+        rows_at_contact(checker, 1500, 100, {0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3})}) {
+    std::vector<std::uint8_t> free(rows.size() / batch.variables());
+    const BatchCounts counts = batch.decide(rows, free);
+    EXPECT_EQ(free, by_checker(checker, rows));
+    EXPECT_EQ(counts.free + counts.contact, free.size());
+    EXPECT_GT(counts.free, free.size() / 20);
+    EXPECT_GT(counts.contact, free.size() / 20);
+  }
+}
+
+TEST(BatchChecker, DecidesManyByFloats) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  const std::vector<double> rows = random_rows(world, 4000, 2);
+  std::vector<std::uint8_t> free(rows.size() / batch.variables());
+  EXPECT_LT(batch.decide(rows, free).exactly, free.size() * 2 / 3);
+}
+
+TEST(BatchChecker, KeepsMargins) {
+  World world = cell(false);
+  world.margins.all = 0.03;
+  world.margins.between[{world::Item{0, 3}, world::Item{world::Item::kObject, 0}}] = 0.2;
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  const std::vector<double> rows = rows_at_contact(checker, 1500, 7, {1e-6, 1e-4, 1e-3});
+  std::vector<std::uint8_t> free(rows.size() / batch.variables());
+  batch.decide(rows, free);
+  EXPECT_EQ(free, by_checker(checker, rows));
+}
+
+TEST(BatchChecker, LeavesValuesBeyondLimitsToTheChecker) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  std::vector<double> rows = random_rows(world, 300, 3, 1.5);
+  rows[5] = 1e8;
+  std::vector<std::uint8_t> free(rows.size() / batch.variables());
+  batch.decide(rows, free);
+  EXPECT_EQ(free, by_checker(checker, rows));
+  rows[3] = NAN;
+  EXPECT_THROW(batch.decide(rows, free), Error);
+  EXPECT_THROW(batch.decide({rows.data(), 3}, free), Error);
+}
+
+TEST(BatchChecker, SeesContactsThatItsRobotHasNoPartIn) {
+  World world = cell(true);
+  world.robots.push_back(world.robots[0]);
+  world.robots[1].name = "other";
+  world.robots[1].base.translation = world.objects[3].pose.translation - Vec3(0, 0, 0.3);
+  for (const double up : {0.0, 5.0}) {
+    world.robots[1].base.translation.z() += up;
+    const world::Checker checker(world);
+    const BatchChecker batch(checker, initial_state(world), 0, {});
+    const std::vector<double> rows = random_rows(world, 500, 4);
+    std::vector<std::uint8_t> free(rows.size() / batch.variables());
+    batch.decide(rows, free);
+    EXPECT_EQ(free, by_checker(checker, rows));
+  }
+}
+
+TEST(BatchChecker, LeavesWhatIsCarriedToTheChecker) {
+  World world = cell(false);
+  world.attachments[3] = world::Attachment{0, 7, {}, {}};
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  const std::vector<double> rows = random_rows(world, 300, 5);
+  std::vector<std::uint8_t> free(rows.size() / batch.variables());
+  EXPECT_EQ(batch.decide(rows, free).exactly, free.size());
+  EXPECT_EQ(free, by_checker(checker, rows));
+}
+
+TEST(Lanes, AnswersAreTheSameForAllInstructions) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 150);
+  const std::vector<double> rows = random_rows(world, 5003, 6);
+  const std::vector<Answer> expected = answers_of(model, Instructions::Baseline, rows);
+  detail::LaneMemory memory(model);
+  std::vector<float> centers(3 * model.outer.size() * 50), others(centers.size());
+  detail::place_outer_balls(model, Instructions::Baseline, rows.data(), 50, memory, centers.data());
+  for (const Instructions set : instruction_sets()) {
+    EXPECT_EQ(answers_of(model, set, rows), expected) << name_of(set);
+    detail::place_outer_balls(model, set, rows.data(), 50, memory, others.data());
+    EXPECT_EQ(std::memcmp(centers.data(), others.data(), centers.size() * sizeof(float)), 0);
+  }
+}
+
+TEST(Lanes, SinesErrByLessThanIsClaimed) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> any(-1000, 1000), few(-0.8, 0.8);
+  std::vector<double> angles;
+  for (int i = 0; i < 200'000; ++i) angles.push_back(i % 2 == 0 ? any(random) : few(random));
+  for (int i = -600; i < 600; ++i)
+    for (const double off : {-1e-9, 0.0, 1e-9}) angles.push_back(i * 0.25 * std::numbers::pi + off);
+  for (const Instructions set : instruction_sets()) {
+    std::vector<float> sines(angles.size()), cosines(angles.size());
+    detail::sines_of(set, angles.data(), angles.size(), sines.data(), cosines.data());
+    long double most = 0;
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      most = std::max({most, std::abs(sines[i] - std::sin(static_cast<long double>(angles[i]))),
+                       std::abs(cosines[i] - std::cos(static_cast<long double>(angles[i])))});
+    EXPECT_LT(most, 4 * 0x1p-24L) << name_of(set);
+    EXPECT_GT(most, 0.5 * 0x1p-24L);
+  }
+}
+
+/// Kinematics in long double, by Rodrigues' formula: another way than the vector code's.
+std::array<long double, 3> place_by_long_double(const world::RobotModel& robot,
+                                                const std::vector<double>& q, std::uint32_t link,
+                                                const Vec3& point) {
+  using Vec = Eigen::Matrix<long double, 3, 1>;
+  Vec p = point.cast<long double>();
+  for (std::uint32_t l = link; l > 0; l = robot.kinematics.joints[l - 1].parent) {
+    const robot::Joint& joint = robot.kinematics.joints[l - 1];
+    const Vec axis = joint.axis.cast<long double>().normalized();
+    const long double x =
+        joint.type == robot::JointType::Fixed
+            ? 0
+            : static_cast<long double>(joint.multiplier) * q[joint.variable] + joint.offset;
+    if (joint.type == robot::JointType::Revolute)
+      p = p * std::cos(x) + axis.cross(p) * std::sin(x) + axis * axis.dot(p) * (1 - std::cos(x));
+    if (joint.type == robot::JointType::Prismatic) p += x * axis;
+    p = joint.origin.linear.cast<long double>() * p + joint.origin.translation.cast<long double>();
+  }
+  p = robot.base.linear.cast<long double>() * p;
+  return {p.x(), p.y(), p.z()};
+}
+
+TEST(Lanes, BallsAreWithinTheirErrorOfWhereTheyAre) {
+  const World world = cell(true);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
+  ASSERT_EQ(model.outer.size(), 2);
+  const std::array<std::uint32_t, 2> links{3, 7};
+  const std::array<Vec3, 2> centers{Vec3(0, 0, 0.05), Vec3(0.05, 0.02, 0.1)};
+  const std::array<double, 2> radii{0.08, 0.05};
+  // Random values, then steps towards the worst of them.
+  std::vector<double> rows = random_rows(world, 5000, 8), worst;
+  detail::LaneMemory memory(model);
+  std::mt19937_64 random(2);
+  for (int round = 0; round < 4; ++round) {
+    const std::size_t count = rows.size() / model.variables;
+    std::vector<float> placed(3 * 2 * count);
+    detail::place_outer_balls(model, instruction_sets().back(), rows.data(), count, memory,
+                              placed.data());
+    std::array<long double, 2> most{};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::vector<double> q(
+          rows.begin() + static_cast<std::ptrdiff_t>(i * model.variables),
+          rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * model.variables));
+      for (std::size_t b = 0; b < 2; ++b) {
+        const auto exact = place_by_long_double(world.robots[0], q, links[b], centers[b]);
+        long double off = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          off += std::pow(placed[3 * (2 * i + b) + k] - exact[k], 2);
+        off = std::sqrt(off);
+        EXPECT_LT(off, model.outer[b].radius - radii[b]);
+        if (off > most[b]) {
+          most[b] = off;
+          if (b == 1) worst = q;
+        }
+      }
+    }
+    EXPECT_GT(most[1], 2e-8);  // the oracle sees rounding
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      rows[i] = std::clamp(worst[i % model.variables] + std::normal_distribution<double>(
+                                                            0, std::pow(0.1, round + 1))(random),
+                           model.low[i % model.variables], model.high[i % model.variables]);
+  }
+}
+
+/// The bounds matter: without them answers are wrong next to contacts, which no others are.
+TEST(Lanes, BoundsThatAreTakenAwayAreMissed) {
+  const World world = cell(true);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
+  const std::vector<double> rows =
+      rows_at_contact(checker, 3000, 50, {1e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6});
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  const auto wrong = [&](const detail::Model& m) {
+    return wrong_answers(answers_of(m, instruction_sets().back(), rows), free);
+  };
+  EXPECT_EQ(wrong(model), (std::array<std::size_t, 2>{0, 0}));
+  const std::array<float, 2> radii{0.08F, 0.05F};
+  detail::Model outer = model, inner = model;
+  for (std::size_t b = 0; b < 2; ++b) {
+    outer.outer[b].radius = radii[b];
+    inner.inner[b].radius = radii[b];
+  }
+  for (detail::ShapeModel& s : outer.shapes) s.whole.radius = outer.outer[s.outer.begin].radius;
+  for (detail::Obstacle& o : outer.obstacles) o.radius -= 8e-6F;
+  for (detail::ObstacleGroup& g : outer.groups) g.radius -= 8e-6F;
+  for (detail::Obstacle& o : inner.obstacles) o.inner_radius += 8e-6F;
+  EXPECT_GT(wrong(outer)[0], 10U);
+  EXPECT_GT(wrong(inner)[1], 10U);
+}
+
+TEST(BallCover, HoldsAndLiesInBodies) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const ConvexBody body =
+        polytope(seed, 20 + 5 * static_cast<int>(seed), {0.1, 0.02, 0.3}, 0.01 * (seed % 2));
+    const BoundingSet set({body, capsule({0, 0, 0}, {0.3, 0.2, 0}, 0.02)},
+                          collide::Direction::Outer, 0);
+    const std::vector<detail::BallCover> covers = detail::cover_by_balls({&set}, 2 + 3 * seed);
+    EXPECT_LE(covers[0].outer.size(), 2 + 3 * seed);
+    for (std::size_t b = 0; b < 2; ++b)
+      for (int i = 0; i < 500; ++i) {
+        // Mostly next to corners and edges.
+        const auto& v = set.body(b).core.vertices;
+        Vec3 p = Vec3::Zero();
+        double sum = 0;
+        for (const Vec3& corner : v) {
+          const double weight = std::pow(share(random), i % 3 == 0 ? 1 : 60);
+          p += weight * corner;
+          sum += weight;
+        }
+        p /= sum;
+        double least = HUGE_VAL;
+        for (const detail::Ball& held : covers[0].outer)
+          least = std::min(least, (p - held.center).norm() + set.body(b).radius - held.radius);
+        EXPECT_LE(least, 0);
+      }
+    for (const detail::Ball& inner : covers[0].inner) {
+      double reach = HUGE_VAL;  // how far the ball is in one of the bodies, by their planes
+      const auto depth = [&](const ConvexBody& of) {
+        if (of.core.triangles.empty()) {
+          const Vec3 d = of.core.vertices[1] - of.core.vertices[0];
+          const double t =
+              std::clamp((inner.center - of.core.vertices[0]).dot(d) / d.squaredNorm(), 0.0, 1.0);
+          return of.radius - (inner.center - of.core.vertices[0] - t * d).norm() - inner.radius;
+        }
+        double least = HUGE_VAL;
+        for (const auto& t : of.core.triangles) {
+          const Vec3& a = of.core.vertices[t[0]];
+          const Vec3 n =
+              (of.core.vertices[t[1]] - a).cross(of.core.vertices[t[2]] - a).normalized();
+          least = std::min(least, n.dot(a - inner.center) + of.radius - inner.radius);
+        }
+        return least;
+      };
+      reach = std::max(depth(set.body(0)), depth(set.body(1)));
+      EXPECT_GT(reach, -1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kaboum::filter
