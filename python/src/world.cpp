@@ -1,6 +1,7 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
 #include <kaboum/engines/engine_options.h>
+#include <kaboum/filter/batch_checker.h>
 #include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
@@ -14,7 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "arguments.h"
 #include "mesh.h"
@@ -26,11 +29,18 @@
 namespace kaboum::python {
 namespace {
 
+/// Batch checkers of a world's robots, made when they are first needed.
+struct BatchCheckers {
+  std::mutex mutex;
+  std::map<std::size_t, std::shared_ptr<const filter::BatchChecker>> of;
+};
+
 /// A scene and its checker, which refers to it. It never changes.
 struct WorldValue {
   std::shared_ptr<const world::SceneFile> scene;
   std::shared_ptr<const world::Checker> checker;
   std::string margins;  ///< in words
+  std::shared_ptr<BatchCheckers> batches = std::make_shared<BatchCheckers>();
 
   [[nodiscard]] const world::World& world() const { return scene->world; }
 };
@@ -236,20 +246,46 @@ py::object contact_pairs(const WorldValue& in, const py::object& q,
   return made;
 }
 
+/// Below so many rows, making a batch checker takes longer than it saves.
+constexpr std::size_t kFewRows = 20000;
+constexpr std::size_t kRowsAtOnce = 1U << 16;
+
+/// Null for few rows, where none was made before.
+std::shared_ptr<const filter::BatchChecker> batch_checker(const WorldValue& in, std::size_t robot,
+                                                          std::size_t rows) {
+  const std::scoped_lock lock(in.batches->mutex);
+  auto& made = in.batches->of[robot];
+  if (!made && rows >= kFewRows)
+    made = std::make_shared<const filter::BatchChecker>(*in.checker, initial_state(in.world()),
+                                                        robot, filter::BatchChecker::Options{});
+  return made;
+}
+
 py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
                            const std::optional<std::string>& robot, const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
+  const std::size_t variables = in.world().robots[index].kinematics.variables.size();
   bool one = false;
-  const robot::Path rows =
-      rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  const robot::Path rows = rows_of(q, variables, "q", one);
   Watch watch(progress);
-  const std::vector<char> free = run(0, [&] {
-    world::Scratch scratch;
-    std::vector<char> out;
-    for_rows(rows, watch, [&](const std::vector<double>& row) {
-      out.push_back(in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0);
-    });
-    return out;
+  std::vector<std::uint8_t> free(rows.size());
+  run(0, [&] {
+    const auto batch = batch_checker(in, index, rows.size());
+    if (!batch) {
+      world::Scratch scratch;
+      for_rows(rows, watch, [&, i = std::size_t{0}](const std::vector<double>& row) mutable {
+        free[i++] = in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0;
+      });
+      return;
+    }
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.insert(values.end(), row.begin(), row.end());
+    for (std::size_t first = 0; first < rows.size(); first += kRowsAtOnce) {
+      watch(std::to_string(first) + " of " + std::to_string(rows.size()) + " configurations");
+      const std::size_t count = std::min(kRowsAtOnce, rows.size() - first);
+      batch->decide({values.data() + first * variables, count * variables},
+                    {free.data() + first, count});
+    }
   });
   py::array_t<bool> out = row_of<bool>(free.size());
   for (std::size_t i = 0; i < free.size(); ++i)

@@ -32,6 +32,36 @@ shows 1 'arm/tip and box are within epsilon' "$BIN/kaboum-check" near.json --con
 printf 'j1,j2\n0,0\n1.57,0\n0.5,0\n' >some.csv
 shows 1 'configuration 2: arm/tip and box' "$BIN/kaboum-check" near.json --configurations some.csv
 grep -q 'configuration 3: free' out.txt || fail "the third configuration is free"
+# The same at once, from CSV and from an array of NumPy.
+shows 1 '^2 of 3 configurations are free, 1 are not' "$BIN/kaboum-check" near.json --batch some.csv --verdicts free.txt
+[ "$(tr -d '\n' <free.txt)" = 101 ] || fail "verdicts: $(cat free.txt)"
+npy() {
+  python3 - "$@" <<'END' || fail "array $*"
+import struct, sys
+values, shape = [0, 0, 1.57, 0, 0.5, 0], sys.argv[2]
+header = f"{{'descr': '{sys.argv[3]}', 'fortran_order': False, 'shape': {shape}, }}\n".encode()
+body = struct.pack("<6" + {"<f8": "d", "<f4": "f", "<i8": "q"}[sys.argv[3]], *(values if sys.argv[3][1] == "f" else [0] * 6))
+open(sys.argv[1], "wb").write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + body)
+END
+}
+npy rows.npy '(3, 2)' '<f8'
+shows 1 '^2 of 3 ' "$BIN/kaboum-check" near.json --batch rows.npy --verdicts free.npy --report batch.json
+[ "$(tail -c 3 free.npy | od -An -tu1 | tr -d ' \n')" = 101 ] || fail "verdicts of an array"
+[ $(($(wc -c <free.npy) % 64)) = 3 ] || fail "the header of an array is not aligned"
+grep -q '"in_contact": 1' batch.json || fail "no batch in the report"
+npy rows.npy '(3, 2)' '<f4'
+shows 1 '^2 of 3 ' "$BIN/kaboum-check" near.json --batch rows.npy
+shows 0 '^3 of 3 ' "$BIN/kaboum-check" free.json --batch rows.npy
+npy bad.npy '(4, 2)' '<f4'
+expect 3 'other than 4 rows' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(6,)' '<f8'
+expect 3 'a row for each' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(3, 2)' '<i8'
+expect 3 'float32 or float64' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(2, 3)' '<f8'
+expect 3 'bad.npy' "$BIN/kaboum-check" near.json --batch bad.npy
+expect 2 'needs --batch' "$BIN/kaboum-check" near.json --verdicts v.npy
+expect 2 'not for --batch' "$BIN/kaboum-check" near.json --batch rows.npy --distance
 printf 'j1,j2\n0,0\n3,0\n' >through.csv
 shows 1 'free until waypoint 1 + 0\.[34]' "$BIN/kaboum-check" near.json --path through.csv --report motion.json
 grep -q '"outcome": "contact"' motion.json || fail "no outcome in the report"

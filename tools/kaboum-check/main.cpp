@@ -13,6 +13,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "batch.h"
 #include "common/check_report.h"
 #include "engine.h"
 #include "inside.h"
@@ -273,12 +274,16 @@ int check(const tools::CheckOptions& o) {
   const std::vector<StatedPath> stated = stated_paths(o, scene.world);
   std::vector<std::string> inputs = scene.inputs;
   inputs.push_back(o.configurations);
+  inputs.push_back(o.batch);
   for (const StatedPath& path : stated) inputs.push_back(path.file);
-  tools::require_apart({{"--report", o.common.report}, {"--preview", o.preview}}, inputs);
+  tools::require_apart(
+      {{"--report", o.common.report}, {"--preview", o.preview}, {"--verdicts", o.verdicts}},
+      inputs);
   std::vector<std::string> notes = scene.notes;
   tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   std::optional<std::size_t> robot;
-  const bool moves = !o.paths.empty() || !o.configuration.empty() || !o.configurations.empty();
+  const bool moves =
+      !o.paths.empty() || !o.configuration.empty() || !o.configurations.empty() || !o.batch.empty();
   if (stated.size() <= 1 && (moves || !o.robot.empty())) {
     const bool named = stated.size() == 1 && stated[0].robot;
     robot = named && o.robot.empty() ? *stated[0].robot : world::robot_named(scene.world, o.robot);
@@ -296,7 +301,8 @@ int check(const tools::CheckOptions& o) {
   robot::Path values{{}};
   if (robot && paths.empty()) {
     const world::RobotModel& model = scene.world.robots[*robot];
-    values = !o.configurations.empty()
+    values = !o.batch.empty() ? tools::read_batch(o.batch, model.kinematics, o.reading, notes)
+             : !o.configurations.empty()
                  ? robot::read_path(o.configurations, model.kinematics, o.reading, notes)
              : !o.configuration.empty() ? parse_configuration(o, model.kinematics)
                                         : robot::Path{model.home};
@@ -305,9 +311,10 @@ int check(const tools::CheckOptions& o) {
   const auto tell = [&](const std::string& line) { say(o, line); };
   const bool own = o.engine.library == engines::Library::Own;
   if (!own) report["engine"] = tools::engine_json(o);
-  const int code = own ? paths.empty() ? check_states(o, scene, robot, values, report)
-                                       : check_paths(o, scene, paths, report)
-                   : paths.empty()
+  const int code = !o.batch.empty() ? tools::check_batch(o, scene, *robot, values, tell, report)
+                   : own            ? paths.empty() ? check_states(o, scene, robot, values, report)
+                                                    : check_paths(o, scene, paths, report)
+                              : paths.empty()
                        ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
                        : tools::check_paths_by_engine(o, scene, paths, tell, report);
   if (!notes.empty()) report["notes"] = notes;
@@ -326,9 +333,10 @@ void require_meaning(const tools::CheckOptions& o) {
                       "; without, what is looked at are the robots at home");
   };
   const bool moves = !o.paths.empty();
-  const bool given = moves || !o.configuration.empty() || !o.configurations.empty();
+  const bool given =
+      moves || !o.configuration.empty() || !o.configurations.empty() || !o.batch.empty();
   for (const auto& option : robot::path_options())
-    require(option, given, "--path, --configuration or --configurations");
+    require(option, given, "--path, --configuration, --configurations or --batch");
   for (const auto& option : world::motion_options()) require(option, moves, "--path");
   for (const auto& option : motion::keep_options()) require(option, moves, "--path");
 }
@@ -345,6 +353,7 @@ int main(int argc, char** argv) {
   return tools::run(app, argc, argv, [&] {
     require_meaning(options);
     tools::require_engine_meaning(options);
+    tools::require_batch_meaning(options);
     return check(options);
   });
 }

@@ -27,11 +27,22 @@ void describe(CLI::App& app, CheckOptions& o) {
                              "Decide the robot at these joint values, separated by commas [home]")
                   ->type_name("Q1,Q2,…")
                   ->excludes(path);
-  app.add_option("--configurations", o.configurations,
-                 "Decide each line of a file of joint values, CSV or JSON")
+  auto* several = app.add_option("--configurations", o.configurations,
+                                 "Decide each line of a file of joint values, CSV or JSON")
+                      ->type_name("FILE")
+                      ->excludes(path)
+                      ->excludes(one);
+  app.add_option("--batch", o.batch,
+                 "Decide each of very many configurations, and say how many are free: an array of "
+                 "NumPy (.npy, a row for each), CSV or JSON")
       ->type_name("FILE")
       ->excludes(path)
-      ->excludes(one);
+      ->excludes(one)
+      ->excludes(several);
+  app.add_option("--verdicts", o.verdicts,
+                 "With --batch: write 1 for each configuration that is free, else 0; an array of "
+                 "uint8 where the name ends in .npy, else lines")
+      ->type_name("FILE");
   add_request_options(app, robot::path_options(), o.reading, o.stated);
   add_request_options(app, world::state_options(), o.state, o.stated);
   add_request_options(app, world::margin_options(), o.margin, o.stated);

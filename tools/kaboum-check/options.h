@@ -20,7 +20,7 @@ class App;
 namespace kaboum::tools {
 
 struct CheckOptions {
-  std::string scene, robot, configuration, configurations, preview;
+  std::string scene, robot, configuration, configurations, batch, verdicts, preview;
   std::vector<std::string> paths, inside;
   robot::PathOptions reading;
   world::Checker::Options state;
