@@ -78,7 +78,7 @@ void BatchChecker::filter(std::span<const double> rows, std::span<Answer> answer
     return;
   }
   detail::LaneMemory memory(model);
-  detail::filter_rows(model, impl_->instructions, rows.data(), answers.size(), memory,
+  detail::filter_rows(model, impl_->instructions, rows.data(), nullptr, answers.size(), memory,
                       answers.data());
 }
 
@@ -108,6 +108,164 @@ BatchCounts BatchChecker::decide(std::span<const double> rows, std::span<std::ui
           const auto row = rows.subspan((first + i) * variables, variables);
           state.q[impl_->robot].assign(row.begin(), row.end());
           is_free = impl_->checker->is_free(state, scratch);
+          ++counts.exactly;
+        }
+        ++(is_free ? counts.free : counts.contact);
+        free[first + i] = is_free ? 1 : 0;
+      }
+      if (progress) {
+        const std::scoped_lock lock(mutex);
+        progress();
+      }
+    }
+    const std::scoped_lock lock(mutex);
+    out += counts;
+  });
+  return out;
+}
+
+namespace {
+
+/// A part of a motion, from a share of its way to another one.
+struct Stretch {
+  std::size_t motion = 0;
+  double begin = 0, end = 1;
+};
+
+/// Motions that are looked at at once.
+class MotionBatch {
+ public:
+  using Answer = BatchChecker::Answer;
+
+  MotionBatch(const detail::Model& model, Instructions set, const double* from, const double* to,
+              std::size_t count)
+      : model_(model),
+        set_(set),
+        from_(from),
+        to_(to),
+        result_(count, Answer::Free),
+        memory_(model) {
+    for (std::size_t i = 0; i < count; ++i) stretches_.push_back({i});
+  }
+
+  /// Halves stretches until they are free, in contact, or too short for that. @return of each
+  /// motion what is known: free where all stretches are, in contact where one is
+  const std::vector<Answer>& run() {
+    while (!stretches_.empty()) {
+      look();
+      std::vector<Stretch> next;
+      for (std::size_t i = 0; i < stretches_.size(); ++i) {
+        const Stretch& s = stretches_[i];
+        Answer& result = result_[s.motion];
+        if (answers_[i] == Answer::Contact) result = Answer::Contact;
+        if (answers_[i] != Answer::Open) continue;
+        if (move_of(s) <= kFine * model_.size) {
+          if (result == Answer::Free) result = Answer::Open;
+          continue;
+        }
+        const double middle = 0.5 * (s.begin + s.end);
+        next.push_back({s.motion, s.begin, middle});
+        next.push_back({s.motion, middle, s.end});
+      }
+      stretches_ = std::move(next);
+      std::erase_if(stretches_,
+                    [&](const Stretch& s) { return result_[s.motion] == Answer::Contact; });
+    }
+    return result_;
+  }
+
+ private:
+  static constexpr double kFine = 0.004;  ///< of the robot's size: moves that are not halved
+
+  /// How far points move in half of a stretch, about.
+  [[nodiscard]] double move_of(const Stretch& s) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < model_.variables; ++k)
+      sum +=
+          std::abs(to_[s.motion * model_.variables + k] - from_[s.motion * model_.variables + k]) *
+          model_.levers[k];
+    return 0.5 * (s.end - s.begin) * sum;
+  }
+
+  void look() {
+    const std::size_t n = model_.variables;
+    rows_.clear();
+    widths_.clear();
+    for (const Stretch& s : stretches_) {
+      const double middle = 0.5 * (s.begin + s.end), half = 0.5 * (s.end - s.begin);
+      for (std::size_t k = 0; k < n; ++k) {
+        const double a = from_[s.motion * n + k], b = to_[s.motion * n + k];
+        rows_.push_back(std::clamp(a + middle * (b - a), std::min(a, b), std::max(a, b)));
+        // More than is rounded: of the row, and of the place between.
+        widths_.push_back(half * std::abs(b - a) * (1 + 0x1p-40) +
+                          0x1p-48 * (std::abs(a) + std::abs(b)));
+      }
+    }
+    answers_.resize(stretches_.size());
+    detail::filter_rows(model_, set_, rows_.data(), widths_.data(), answers_.size(), memory_,
+                        answers_.data());
+  }
+
+  const detail::Model& model_;
+  Instructions set_;
+  const double *from_, *to_;
+  std::vector<Answer> result_;
+  std::vector<Stretch> stretches_;
+  std::vector<double> rows_, widths_;
+  std::vector<Answer> answers_;
+  detail::LaneMemory memory_;
+};
+
+bool is_within(const detail::Model& model, std::span<const double> row) {
+  for (std::size_t k = 0; k < row.size(); ++k)
+    if (!(row[k] >= model.low[k] && row[k] <= model.high[k])) return false;
+  return true;
+}
+
+}  // namespace
+
+BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span<const double> to,
+                                         std::span<std::uint8_t> free,
+                                         const world::MotionOptions& options,
+                                         const std::function<void()>& progress) const {
+  constexpr std::size_t kPart = 64;
+  const detail::Model& model = impl_->model;
+  const std::size_t n = model.variables;
+  if (from.size() != free.size() * n || to.size() != from.size())
+    throw Error(ErrorCode::InvalidArgument,
+                "rows of " + std::to_string(n) + " values are expected");
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!std::ranges::all_of(from, is_finite) || !std::ranges::all_of(to, is_finite))
+    throw Error(ErrorCode::InvalidArgument, "a value that is not finite");
+  BatchCounts out;
+  std::mutex mutex;
+  parallel_ranges((free.size() + kPart - 1) / kPart, {}, [&](std::size_t begin, std::size_t end) {
+    world::Scratch scratch;
+    world::MotionOptions exact = options;
+    exact.where = false;
+    exact.scratch = &scratch;
+    exact.progress = {};
+    BatchCounts counts;
+    for (std::size_t part = begin; part < end; ++part) {
+      const std::size_t first = part * kPart, count = std::min(kPart, free.size() - first);
+      const auto row = [&](std::span<const double> of, std::size_t i) {
+        return of.subspan((first + i) * n, n);
+      };
+      bool usable = !model.unusable && !model.always_contact && n > 0;
+      for (std::size_t i = 0; usable && i < count; ++i)
+        usable = is_within(model, row(from, i)) && is_within(model, row(to, i));
+      std::vector<Answer> answers(count, Answer::Open);
+      if (usable)
+        answers = MotionBatch(model, impl_->instructions, from.data() + first * n,
+                              to.data() + first * n, count)
+                      .run();
+      for (std::size_t i = 0; i < count; ++i) {
+        bool is_free = answers[i] == Answer::Free;
+        if (answers[i] == Answer::Open) {
+          const auto a = row(from, i), b = row(to, i);
+          is_free = check_motion(*impl_->checker, impl_->state, impl_->robot,
+                                 {{a.begin(), a.end()}, {b.begin(), b.end()}}, exact)
+                        .outcome == world::MotionAnswer::Outcome::Free;
           ++counts.exactly;
         }
         ++(is_free ? counts.free : counts.contact);

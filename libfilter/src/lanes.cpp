@@ -76,7 +76,7 @@ constexpr std::size_t kMostLanes = 16;
 }  // namespace
 
 LaneMemory::LaneMemory(const Model& model)
-    : floats_((12 * (model.steps.size() + 1) +
+    : floats_((14 * (model.steps.size() + 1) +
                3 * (model.shapes.size() + model.outer.size() + model.inner.size()) + 1) *
               kMostLanes),
       ready_(model.shapes.size()) {}
@@ -115,13 +115,14 @@ View view_of(const Model& model, LaneMemory& memory) {
 }  // namespace
 
 void filter_rows(const Model& model, [[maybe_unused]] Instructions set, const double* rows,
-                 std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers) {
+                 const double* widths, std::size_t count, LaneMemory& memory,
+                 BatchChecker::Answer* answers) {
   const View view = view_of(model, memory);
 #ifdef KABOUM_AVX2
-  if (set == Instructions::Avx512) return avx512::filter_rows(view, rows, count, answers);
-  if (set == Instructions::Avx2) return avx2::filter_rows(view, rows, count, answers);
+  if (set == Instructions::Avx512) return avx512::filter_rows(view, rows, widths, count, answers);
+  if (set == Instructions::Avx2) return avx2::filter_rows(view, rows, widths, count, answers);
 #endif
-  baseline::filter_rows(view, rows, count, answers);
+  baseline::filter_rows(view, rows, widths, count, answers);
 }
 
 void place_outer_balls(const Model& model, [[maybe_unused]] Instructions set, const double* rows,

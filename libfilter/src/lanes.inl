@@ -32,6 +32,9 @@ inline unsigned bits_of(const Ints& mask) {
 #endif
 }
 
+/// Factors of squared distances that hold the rounding of these and of their bounds.
+constexpr float kAbove = 1 + 0x1p-18F, kBelow = 1 - 0x1p-18F;
+
 inline Floats magnitude(const Floats& x) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(x) & 0x7fffffff);
 }
@@ -64,6 +67,12 @@ inline void read_values(const View& m, const double* rows, unsigned count, std::
   for (unsigned lane = 0; lane < KABOUM_LANES; ++lane)
     out[lane] = rows[(lane < count ? lane : count - 1) * m.variables + variable];
 }
+
+/// How far points of a frame move in a stretch of values: a point at a distance r from the frame's
+/// origin by at most shift + turn · r.
+struct Motion {
+  Floats turn, shift;
+};
 
 /// Poses of all frames. @return the lanes whose values are beyond what errors are bounded for
 inline unsigned place_frames(const View& m, const double* rows, unsigned count, Frame* frames) {
@@ -107,6 +116,22 @@ inline unsigned place_frames(const View& m, const double* rows, unsigned count, 
   return bits_of(beyond);
 }
 
+/// @param widths  how far values may be from those of the rows, for each variable
+inline void bound_motions(const View& m, const double* widths, unsigned count, Motion* motions) {
+  motions[0] = {Floats{}, Floats{}};
+  for (std::size_t j = 0; j < m.steps; ++j) {
+    const Step& step = m.step[j];
+    const Motion& p = motions[step.parent];
+    Doubles width;
+    read_values(m, widths, count, step.variable, width);
+    const Floats x = __builtin_convertvector(width, Floats) * step.factor * kAbove;
+    const Floats turn = step.turns ? p.turn + x : p.turn;
+    Floats shift = p.shift + p.turn * step.length;
+    if (!step.turns) shift += x + p.turn * step.slide;
+    motions[j + 1] = {turn, shift};
+  }
+}
+
 inline Point place(const Frame& frame, const float* c) {
   const Floats* r = frame.r;
   return {r[0] * c[0] + r[1] * c[1] + r[2] * c[2] + frame.t[0],
@@ -114,16 +139,15 @@ inline Point place(const Frame& frame, const float* c) {
           r[6] * c[0] + r[7] * c[1] + r[8] * c[2] + frame.t[2]};
 }
 
-/// Factors of squared distances that hold the rounding of these and of their bounds.
-constexpr float kAbove = 1 + 0x1p-18F, kBelow = 1 - 0x1p-18F;
-
 /// Lanes in which two points may be no farther apart than `reach`.
-inline unsigned may_meet(const Point& a, const Point& b, float reach) {
+template <typename Reach>
+inline unsigned may_meet(const Point& a, const Point& b, const Reach& reach) {
   const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
   const Ints apart = x * x + y * y + z * z > reach * reach * kAbove;
   return bits_of(~apart);
 }
-inline unsigned may_meet(const Point& a, const float* b, float reach) {
+template <typename Reach>
+inline unsigned may_meet(const Point& a, const float* b, const Reach& reach) {
   const Floats x = a.x - b[0], y = a.y - b[1], z = a.z - b[2];
   const Ints apart = x * x + y * y + z * z > reach * reach * kAbove;
   return bits_of(~apart);
@@ -152,8 +176,9 @@ inline Floats distance_of_box(const Point& p, const float* axes, const float* ce
 }
 
 /// Lanes in which a ball may meet an obstacle.
-inline unsigned may_meet(const View& m, const Point& p, float radius, const Obstacle& o) {
-  const float reach = radius + o.radius;
+template <typename Reach>
+inline unsigned may_meet(const View& m, const Point& p, const Reach& radius, const Obstacle& o) {
+  const Reach reach = radius + o.radius;
   const Ints apart = distance_of_box(p, o.axes, o.center, o.half) > reach * reach * kAbove;
   unsigned left = bits_of(~apart);
   for (std::uint32_t i = o.planes.begin; i < o.planes.end && left != 0; ++i) {
@@ -172,16 +197,21 @@ inline unsigned must_meet(const Point& p, float radius, const Obstacle& o) {
   return bits_of(near);
 }
 
-/// Configurations that are looked at at once, and what is known of them.
+/// Configurations that are looked at at once, and what is known of them; with Moving, stretches of
+/// values round them: free is what is so in all of a stretch, in contact what is so at its
+/// configuration.
+template <bool Moving>
 class Pack {
  public:
-  Pack(const View& m, const double* rows, unsigned count) : m_(m) {
+  Pack(const View& m, const double* rows, const double* widths, unsigned count) : m_(m) {
     frames_ = reinterpret_cast<Frame*>(m.memory);
-    whole_ = reinterpret_cast<Point*>(frames_ + m.steps + 1);
+    motions_ = reinterpret_cast<Motion*>(frames_ + m.steps + 1);
+    whole_ = reinterpret_cast<Point*>(motions_ + m.steps + 1);
     outer_ = whole_ + m.shapes;
     inner_ = outer_ + m.outer_count;
     all_ = count == 32 ? ~0U : (1U << count) - 1;
     open_ = place_frames(m, rows, count, frames_) & all_;
+    if constexpr (Moving) bound_motions(m, widths, count, motions_);
     all_ &= ~open_;
     for (std::size_t s = 0; s < m.shapes; ++s) {
       whole_[s] = place(frames_[m.shape[s].frame], m.shape[s].whole.center);
@@ -204,7 +234,7 @@ class Pack {
     const ShapeModel& shape = m_.shape[pair.shape];
     const Point& whole = whole_[pair.shape];
     const ObstacleGroup& group = m_.group[pair.group];
-    const float radius = shape.whole.radius + pair.margin;
+    const auto radius = radius_of(shape.frame, shape.whole, pair.margin);
     const unsigned near = may_meet(whole, group.center, radius + group.radius);
     for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
       const unsigned left = near & all_ & ~contact_;
@@ -219,7 +249,7 @@ class Pack {
     place_outer(pair.shape);
     unsigned doubt = 0;
     for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
-      doubt |= near & may_meet(m_, outer_[k], m_.outer[k].radius + pair.margin, o);
+      doubt |= near & may_meet(m_, outer_[k], radius_of(shape.frame, m_.outer[k], pair.margin), o);
     if (doubt == 0) return;
     place_inner(pair.shape);
     unsigned meet = 0;
@@ -232,18 +262,18 @@ class Pack {
     const ShapeModel &a = m_.shape[pair.a], &b = m_.shape[pair.b];
     const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
     const unsigned near = all_ & ~contact_ &
-                          may_meet(whole_a, whole_b, a.whole.radius + b.whole.radius + pair.margin);
+                          may_meet(whole_a, whole_b, radius_of(a.frame, a.whole, pair.margin) + radius_of(b.frame, b.whole, 0));
     if (near == 0) return;
     place_outer(pair.a);
     place_outer(pair.b);
     unsigned doubt = 0;
     for (std::uint32_t i = a.outer.begin; i < a.outer.end && doubt != near; ++i) {
-      const float reach = m_.outer[i].radius + pair.margin;
-      const unsigned left = near & ~doubt & may_meet(outer_[i], whole_b, reach + b.whole.radius);
+      const auto reach = radius_of(a.frame, m_.outer[i], pair.margin);
+      const unsigned left = near & ~doubt & may_meet(outer_[i], whole_b, reach + radius_of(b.frame, b.whole, 0));
       if (left == 0) continue;
       unsigned found = 0;
       for (std::uint32_t k = b.outer.begin; k < b.outer.end && found != left; ++k)
-        found |= left & may_meet(outer_[i], outer_[k], reach + m_.outer[k].radius);
+        found |= left & may_meet(outer_[i], outer_[k], reach + radius_of(b.frame, m_.outer[k], 0));
       doubt |= found;
     }
     if (doubt == 0) return;
@@ -277,17 +307,32 @@ class Pack {
       inner_[k] = place(frames_[shape.frame], m_.inner[k].center);
   }
 
+  /// Radius of a ball that moves, and what is added to it.
+  [[nodiscard]] auto radius_of(std::uint32_t frame, const FrameBall& ball, float more) const {
+    if constexpr (Moving) {
+      const Motion& motion = motions_[frame];
+      return (motion.shift + motion.turn * ball.length) * kAbove + (ball.radius + more);
+    } else {
+      return ball.radius + more;
+    }
+  }
+
   const View& m_;
   Frame* frames_;
+  Motion* motions_;
   Point *whole_, *outer_, *inner_;
   unsigned all_ = 0, contact_ = 0, open_ = 0;
 };
 
-void filter_rows(const View& m, const double* rows, std::size_t count, Answer* answers) {
+/// @param widths  as of bound_motions; null: none
+template <bool Moving>
+void filter_all(const View& m, const double* rows, const double* widths, std::size_t count,
+                Answer* answers) {
   for (std::size_t first = 0; first < count; first += KABOUM_LANES) {
     const std::size_t left = count - first;
     const unsigned here = left < KABOUM_LANES ? static_cast<unsigned>(left) : KABOUM_LANES;
-    Pack pack(m, rows + first * m.variables, here);
+    const std::size_t at = first * m.variables;
+    Pack<Moving> pack(m, rows + at, Moving ? widths + at : nullptr, here);
     pack.decide();
     const unsigned contact = pack.contact(), open = pack.open();
     for (unsigned lane = 0; lane < here; ++lane)
@@ -295,6 +340,11 @@ void filter_rows(const View& m, const double* rows, std::size_t count, Answer* a
                               : ((open >> lane) & 1) != 0  ? Answer::Open
                                                            : Answer::Free;
   }
+}
+void filter_rows(const View& m, const double* rows, const double* widths, std::size_t count,
+                 Answer* answers) {
+  if (widths != nullptr) return filter_all<true>(m, rows, widths, count, answers);
+  filter_all<false>(m, rows, nullptr, count, answers);
 }
 
 void place_outer_balls(const View& m, const double* rows, std::size_t count, float* centers) {

@@ -119,6 +119,9 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
             std::max(std::abs(model.low[joint.variable]), std::abs(model.high[joint.variable])) +
         std::abs(joint.offset);
     model.unusable = model.unusable || !(most <= kMostAngle);
+    step.length = rounded_up(origin.translation.norm() * kSums);
+    step.slide = step.turns ? 0 : rounded_up(most * kSums);
+    step.factor = rounded_up(std::abs(joint.multiplier) * kSums);
     out.bounds.push_back(
         bounds_of(out.bounds[parent.frame], origin.translation.norm(), step.turns, most));
     const auto frame = static_cast<std::uint32_t>(model.steps.size() + 1);
@@ -148,6 +151,7 @@ FrameBall outer_ball(const Chain& chain, const LinkPlace& link, const Ball& ball
   const PlacedBall at = placed(chain, link, ball.center);
   FrameBall out;
   put(at.center, out.center);
+  out.length = rounded_up(at.center.norm() * kSums);
   out.radius = rounded_up((ball.radius * (1 + 1e-8) + at.error + 2.5 * error) * kSums);
   return out;
 }
@@ -301,6 +305,18 @@ void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   model.groups.push_back(out);
 }
 
+void add_levers(const Chain& chain, Model& model) {
+  for (const FrameBounds& frame : chain.bounds) model.size = std::max(model.size, frame.reach);
+  for (const ShapeModel& shape : model.shapes)
+    model.size = std::max<double>(model.size, chain.bounds[shape.frame].reach + shape.whole.radius);
+  model.levers.assign(model.variables, 0.0);
+  for (std::size_t j = 0; j < model.steps.size(); ++j) {
+    const Step& step = model.steps[j];
+    const double lever = step.turns ? model.size - chain.bounds[j + 1].reach : 1;
+    model.levers[step.variable] += step.factor * std::max(lever, 0.1 * model.size);
+  }
+}
+
 /// The bounding sets of the robot's links.
 /// @param errors  of their places, as the checker has them
 void add_shapes(const world::RobotModel& robot, const Chain& chain,
@@ -353,6 +369,7 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   std::vector<double> errors;
   for (const auto& at : checker.places(state, links, scratch)) errors.push_back(at.place.error());
   add_shapes(model, chain, errors, most_balls, out);
+  add_levers(chain, out);
 
   const auto moves = [&](const Item& item) {
     return item.robot == robot && out.shapes[item.index].frame != 0;

@@ -19,11 +19,15 @@ struct Step {
   std::uint32_t variable = 0;
   bool turns = true;
   float fixed[12] = {};  ///< rotation row by row, then translation
+  float length = 0;      ///< of the translation, rounded up
+  float slide = 0;       ///< the largest |x| of a slide, rounded up
+  float factor = 0;      ///< |multiplier|, rounded up
 };
 
 /// A ball fixed to a frame.
 struct FrameBall {
   float center[3] = {};
+  float length = 0;  ///< of the centre, rounded up
   /// Outer: the radius and all errors, rounded up. Inner: without them, rounded down.
   float radius = 0;
 };
@@ -88,6 +92,10 @@ struct Model {
   std::vector<ObstacleGroup> groups;
   std::vector<ObstaclePair> obstacle_pairs;
   std::vector<ShapePair> shape_pairs;
+  /// For each variable, how far a point of the robot may move for a change by 1, about; only what
+  /// is worth halving hangs on it.
+  std::vector<double> levers;
+  double size = 0;              ///< of the robot, about
   bool always_contact = false;  ///< of things that the variables do not move
   bool unusable = false;        ///< nothing can be said: every row is open
 };

@@ -273,7 +273,8 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
     const auto batch = batch_checker(in, index, rows.size());
     if (!batch) {
       world::Scratch scratch;
-      for_rows(rows, watch, [&, i = std::size_t{0}](const std::vector<double>& row) mutable {
+      std::size_t i = 0;
+      for_rows(rows, watch, [&](const std::vector<double>& row) {
         free[i++] = in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0;
       });
       return;

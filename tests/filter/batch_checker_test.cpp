@@ -186,7 +186,7 @@ std::vector<Answer> answers_of(const detail::Model& model, Instructions set,
                                const std::vector<double>& rows) {
   std::vector<Answer> out(rows.size() / model.variables);
   detail::LaneMemory memory(model);
-  detail::filter_rows(model, set, rows.data(), out.size(), memory, out.data());
+  detail::filter_rows(model, set, rows.data(), nullptr, out.size(), memory, out.data());
   return out;
 }
 
@@ -312,6 +312,90 @@ TEST(Lanes, SinesErrByLessThanIsClaimed) {
     EXPECT_LT(most, 4 * 0x1p-24L) << name_of(set);
     EXPECT_GT(most, 0.5 * 0x1p-24L);
   }
+}
+
+/// Motions that are free, or not, at samples and by check_motion.
+TEST(BatchChecker, MotionsThatAreFreeAreFreeAtEveryInstant) {
+  for (const bool round : {false, true}) {
+    const World world = cell(round);
+    const world::Checker checker(world);
+    const BatchChecker batch(checker, initial_state(world), 0, {});
+    const std::size_t n = batch.variables(), count = 400;
+    const std::vector<double> from = random_rows(world, count, 11),
+                              ends = random_rows(world, count, 12);
+    std::vector<double> to;
+    for (std::size_t i = 0; i < from.size(); ++i)
+      to.push_back(from[i] + (i / n % 3 == 0 ? 1 : 0.15) * (ends[i] - from[i]));
+    std::vector<std::uint8_t> free(count);
+    const BatchCounts counts = batch.decide_motions(from, to, free, {});
+    EXPECT_EQ(counts.free + counts.contact, count);
+    EXPECT_GT(counts.free, count / 20);
+    EXPECT_GT(counts.contact, count / 20);
+    EXPECT_LT(counts.exactly, count * 3 / 4);
+    world::Scratch scratch;
+    world::WorldState state = initial_state(world);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto at = [&](double share) {
+        std::vector<double> q(n);
+        for (std::size_t k = 0; k < n; ++k)
+          q[k] = from[i * n + k] + share * (to[i * n + k] - from[i * n + k]);
+        return q;
+      };
+      bool seen = false;
+      for (int k = 0; k <= 400 && !seen; ++k) {
+        state.q[0] = at(k / 400.0);
+        seen = !checker.is_free(state, scratch);
+      }
+      if (seen) {
+        EXPECT_EQ(free[i], 0) << i;
+      }
+      if (!seen && free[i] == 0) {  // between samples, or nearer than the resolution
+        const auto exact = check_motion(checker, state, 0, {at(0), at(1)}, {});
+        EXPECT_EQ(exact.outcome, world::MotionAnswer::Outcome::Contact) << i;
+      }
+    }
+  }
+}
+
+/// What points move in a stretch is bounded; bounds that are too small are noticed.
+TEST(Lanes, StretchesHoldAllTheirConfigurations) {
+  const World world = cell(true);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
+  detail::Model mutant = model;
+  for (detail::Step& step : mutant.steps) step.factor *= 0.1F;
+  const std::vector<double> rows = rows_at_contact(checker, 12000, 13, {1e-4, 1e-3, 3e-3, 1e-2});
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::vector<double> widths;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    widths.push_back(0.05 * std::abs(share(random)) *
+                     std::min(1.0, std::min(rows[i] - model.low[i % model.variables],
+                                            model.high[i % model.variables] - rows[i])));
+  const std::size_t count = rows.size() / model.variables;
+  std::vector<Answer> answers(count), others(count);
+  detail::LaneMemory memory(model);
+  detail::filter_rows(model, instruction_sets().back(), rows.data(), widths.data(), count, memory,
+                      answers.data());
+  for (const Instructions set : instruction_sets()) {
+    detail::filter_rows(model, set, rows.data(), widths.data(), count, memory, others.data());
+    EXPECT_EQ(others, answers) << name_of(set);
+  }
+  detail::filter_rows(mutant, instruction_sets().back(), rows.data(), widths.data(), count, memory,
+                      others.data());
+  std::size_t wrong = 0, wrong_of_mutant = 0;
+  for (int round = 0; round < 8; ++round) {
+    std::vector<double> some = rows;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      some[i] += (share(random) < 0 ? -1 : 1) * widths[i];
+    const std::vector<std::uint8_t> free = by_checker(checker, some);
+    for (std::size_t i = 0; i < count; ++i) {
+      wrong += answers[i] == Answer::Free && free[i] == 0 ? 1 : 0;
+      wrong_of_mutant += others[i] == Answer::Free && free[i] == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(wrong_of_mutant, 5U);
 }
 
 /// Kinematics in long double, by Rodrigues' formula: another way than the vector code's.

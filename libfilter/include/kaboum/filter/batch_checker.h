@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/world/checker.h>
+#include <kaboum/world/motion_check.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -21,11 +22,11 @@ enum class Instructions : std::uint8_t { Baseline, Avx2, Avx512 };
 std::vector<Instructions> instruction_sets();
 const char* name_of(Instructions set);
 
-/// Counts of how configurations were decided.
+/// Counts of how configurations, or motions, were decided.
 struct BatchCounts {
   std::size_t free = 0;     ///< all, by either way
-  std::size_t contact = 0;  ///< all, by either way
-  std::size_t exactly = 0;  ///< of both, by the checker itself
+  std::size_t contact = 0;  ///< all others
+  std::size_t exactly = 0;  ///< of both, with the checker's help
 
   BatchCounts& operator+=(const BatchCounts& other);
 };
@@ -59,6 +60,16 @@ class BatchChecker {
   /// @throws Error{InvalidArgument} where sizes do not fit, or a value is not finite
   BatchCounts decide(std::span<const double> rows, std::span<std::uint8_t> free,
                      const std::function<void()>& progress = {}) const;
+
+  /// Decides straight motions in joint space, at every instant: of each from a row of `from` to the
+  /// same row of `to`.
+  /// @param free  for every motion 1: free at every instant, for certain; 0: at some instant sets
+  ///   meet, or are nearer than the resolution, or check_motion leaves it undecided
+  /// @param options  of world::check_motion, which decides the stretches that are open
+  /// @throws as decide
+  BatchCounts decide_motions(std::span<const double> from, std::span<const double> to,
+                             std::span<std::uint8_t> free, const world::MotionOptions& options,
+                             const std::function<void()>& progress = {}) const;
 
   /// Answer of the vector code alone.
   enum class Answer : std::uint8_t { Contact, Free, Open };
