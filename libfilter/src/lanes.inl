@@ -34,6 +34,8 @@ inline unsigned bits_of(const Ints& mask) {
 
 /// Factors of squared distances that hold the rounding of these and of their bounds.
 constexpr float kAbove = 1 + 0x1p-18F, kBelow = 1 - 0x1p-18F;
+/// Share of motions that holds the rounding of their sums, for up to 64 joints.
+constexpr float kMoves = 0x1p-14F;
 
 inline Floats magnitude(const Floats& x) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(x) & 0x7fffffff);
@@ -234,7 +236,8 @@ class Pack {
     const ShapeModel& shape = m_.shape[pair.shape];
     const Point& whole = whole_[pair.shape];
     const ObstacleGroup& group = m_.group[pair.group];
-    const auto radius = radius_of(shape.frame, shape.whole, pair.margin);
+    const auto motion = whole_motion(shape.frame, 0);
+    const auto radius = radius_of(motion, shape.whole, pair.margin);
     const unsigned near = may_meet(whole, group.center, radius + group.radius);
     for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
       const unsigned left = near & all_ & ~contact_;
@@ -247,9 +250,10 @@ class Pack {
                unsigned near) {
     if (near == 0) return;
     place_outer(pair.shape);
+    const auto motion = whole_motion(shape.frame, 0);
     unsigned doubt = 0;
     for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
-      doubt |= near & may_meet(m_, outer_[k], radius_of(shape.frame, m_.outer[k], pair.margin), o);
+      doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], pair.margin), o);
     if (doubt == 0) return;
     place_inner(pair.shape);
     unsigned meet = 0;
@@ -261,19 +265,24 @@ class Pack {
   void look_at(const ShapePair& pair) {
     const ShapeModel &a = m_.shape[pair.a], &b = m_.shape[pair.b];
     const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
-    const unsigned near = all_ & ~contact_ &
-                          may_meet(whole_a, whole_b, radius_of(a.frame, a.whole, pair.margin) + radius_of(b.frame, b.whole, 0));
+    const auto motion_a = whole_motion(a.frame, pair.common),
+               motion_b = whole_motion(b.frame, pair.common);
+    const unsigned near =
+        all_ & ~contact_ &
+        may_meet(whole_a, whole_b,
+                 radius_of(motion_a, a.whole, pair.margin) + radius_of(motion_b, b.whole, 0));
     if (near == 0) return;
     place_outer(pair.a);
     place_outer(pair.b);
     unsigned doubt = 0;
     for (std::uint32_t i = a.outer.begin; i < a.outer.end && doubt != near; ++i) {
-      const auto reach = radius_of(a.frame, m_.outer[i], pair.margin);
-      const unsigned left = near & ~doubt & may_meet(outer_[i], whole_b, reach + radius_of(b.frame, b.whole, 0));
+      const auto reach = radius_of(motion_a, m_.outer[i], pair.margin);
+      const unsigned left =
+          near & ~doubt & may_meet(outer_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
       if (left == 0) continue;
       unsigned found = 0;
       for (std::uint32_t k = b.outer.begin; k < b.outer.end && found != left; ++k)
-        found |= left & may_meet(outer_[i], outer_[k], reach + radius_of(b.frame, m_.outer[k], 0));
+        found |= left & may_meet(outer_[i], outer_[k], reach + radius_of(motion_b, m_.outer[k], 0));
       doubt |= found;
     }
     if (doubt == 0) return;
@@ -307,14 +316,32 @@ class Pack {
       inner_[k] = place(frames_[shape.frame], m_.inner[k].center);
   }
 
-  /// Radius of a ball that moves, and what is added to it.
-  [[nodiscard]] auto radius_of(std::uint32_t frame, const FrameBall& ball, float more) const {
-    if constexpr (Moving) {
-      const Motion& motion = motions_[frame];
-      return (motion.shift + motion.turn * ball.length) * kAbove + (ball.radius + more);
-    } else {
+  /// Motion of a frame, as seen from one that it hangs from.
+  [[nodiscard]] Motion motion_of(std::uint32_t frame, std::uint32_t from) const {
+    if (frame == from) return {Floats{}, Floats{}};
+    const Motion &all = motions_[frame], &part = motions_[from];
+    if (from == 0) return all;
+    // Differences of sums that are rounded: what that takes is added.
+    const float path = m_.step[frame - 1].path - m_.step[from - 1].path;
+    const Floats turn = all.turn - part.turn, shift = all.shift - part.shift - part.turn * path;
+    return {
+        (turn > 0 ? turn : Floats{}) + all.turn * kMoves,
+        (shift > 0 ? shift : Floats{}) + (all.shift + all.turn * m_.step[frame - 1].path) * kMoves};
+  }
+  [[nodiscard]] auto whole_motion(std::uint32_t frame, std::uint32_t from) const {
+    if constexpr (Moving)
+      return motion_of(frame, from);
+    else
+      return 0;
+  }
+
+  /// Radius of a ball with a motion, and what is added to it.
+  template <typename Any>
+  [[nodiscard]] auto radius_of(const Any& motion, const FrameBall& ball, float more) const {
+    if constexpr (Moving)
+      return (motion.shift + motion.turn * ball.length) * (1 + kMoves) + (ball.radius + more);
+    else
       return ball.radius + more;
-    }
   }
 
   const View& m_;

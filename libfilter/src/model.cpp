@@ -25,7 +25,7 @@ constexpr double kDoubles = 0x1p-38;     ///< all roundings of doubles, of the l
 constexpr double kSums = 1 + 8 * kUnit;  ///< sums of three floats that are rounded
 constexpr double kFarthest = 100;        ///< values of variables beyond are left open
 constexpr double kMostAngle = 1000, kLargest = 1e6;
-constexpr std::size_t kMostPlanes = 80;
+constexpr std::size_t kMostPlanes = 80, kMostSteps = 64;
 
 float rounded_up(double x) {
   const auto out = static_cast<float>(x);
@@ -121,6 +121,8 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
     model.unusable = model.unusable || !(most <= kMostAngle);
     step.length = rounded_up(origin.translation.norm() * kSums);
     step.slide = step.turns ? 0 : rounded_up(most * kSums);
+    step.path = step.length + step.slide;
+    if (parent.frame > 0) step.path += model.steps[parent.frame - 1].path;
     step.factor = rounded_up(std::abs(joint.multiplier) * kSums);
     out.bounds.push_back(
         bounds_of(out.bounds[parent.frame], origin.translation.norm(), step.turns, most));
@@ -305,6 +307,12 @@ void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   model.groups.push_back(out);
 }
 
+/// The last frame that two frames are, or hang from.
+std::uint32_t common_frame(const Model& model, std::uint32_t a, std::uint32_t b) {
+  while (a != b) (a > b ? a : b) = model.steps[std::max(a, b) - 1].parent;
+  return a;
+}
+
 void add_levers(const Chain& chain, Model& model) {
   for (const FrameBounds& frame : chain.bounds) model.size = std::max(model.size, frame.reach);
   for (const ShapeModel& shape : model.shapes)
@@ -341,7 +349,7 @@ void add_shapes(const world::RobotModel& robot, const Chain& chain,
     out.inner.end = size_of(model.inner);
     const PlacedBall whole = placed(chain, link, ball.center);
     model.unusable = model.unusable || !(whole.reach + ball.radius < kLargest) ||
-                     !(chain.bounds[link.frame].rotation < 1e-3);
+                     !(chain.bounds[link.frame].rotation < 1e-3) || model.steps.size() > kMostSteps;
     model.shapes.push_back(out);
   }
 }
@@ -388,7 +396,9 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
     const float above = rounded_up(margin * kSums), below = rounded_down(margin / kSums);
     const auto shape = static_cast<std::uint32_t>(a.index);
     if (b.robot == robot)
-      out.shape_pairs.push_back({shape, static_cast<std::uint32_t>(b.index), above, below});
+      out.shape_pairs.push_back(
+          {shape, static_cast<std::uint32_t>(b.index),
+           common_frame(out, out.shapes[a.index].frame, out.shapes[b.index].frame), above, below});
     else
       out.obstacle_pairs.push_back({shape, group_of(b), above, below});
   }

@@ -21,6 +21,7 @@ struct Step {
   float fixed[12] = {};  ///< rotation row by row, then translation
   float length = 0;      ///< of the translation, rounded up
   float slide = 0;       ///< the largest |x| of a slide, rounded up
+  float path = 0;        ///< sum of lengths and slides from the root on, about
   float factor = 0;      ///< |multiplier|, rounded up
 };
 
@@ -76,6 +77,7 @@ struct ObstaclePair {
 
 struct ShapePair {
   std::uint32_t a = 0, b = 0;
+  std::uint32_t common = 0;  ///< the last frame that both are fixed to or hang from
   float margin = 0, least_margin = 0;
 };
 
