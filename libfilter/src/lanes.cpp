@@ -24,6 +24,8 @@ struct View {
   const Step* step;
   const FrameBall *outer, *inner;
   const ShapeModel* shape;
+  const Corner* corner;
+  const Witness* witness;
   const Obstacle* obstacle;
   const Plane* plane;
   const ObstacleGroup* group;
@@ -103,6 +105,8 @@ View view_of(const Model& model, LaneMemory& memory) {
           model.outer.data(),
           model.inner.data(),
           model.shapes.data(),
+          model.corners.data(),
+          model.witnesses.data(),
           model.obstacles.data(),
           model.planes.data(),
           model.groups.data(),

@@ -185,8 +185,8 @@ inline unsigned may_meet(const View& m, const Point& p, const Reach& radius, con
   unsigned left = bits_of(~apart);
   for (std::uint32_t i = o.planes.begin; i < o.planes.end && left != 0; ++i) {
     const float* n = m.plane[i].normal;
-    const Ints below = p.x * n[0] + p.y * n[1] + p.z * n[2] <= m.plane[i].offset + radius;
-    left &= bits_of(below);
+    const Ints above = p.x * n[0] + p.y * n[1] + p.z * n[2] > m.plane[i].offset + radius;
+    left &= bits_of(~above);
   }
   return left;
 }
@@ -267,10 +267,15 @@ class Pack {
     const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
     const auto motion_a = whole_motion(a.frame, pair.common),
                motion_b = whole_motion(b.frame, pair.common);
-    const unsigned near =
+    unsigned near =
         all_ & ~contact_ &
         may_meet(whole_a, whole_b,
                  radius_of(motion_a, a.whole, pair.margin) + radius_of(motion_b, b.whole, 0));
+    for (std::uint32_t i = pair.witnesses.begin; i < pair.witnesses.end && near != 0; ++i) {
+      const Witness& w = m_.witness[i];
+      near &= w.of_first ? not_separated(w, a, motion_a, b, motion_b)
+                         : not_separated(w, b, motion_b, a, motion_a);
+    }
     if (near == 0) return;
     place_outer(pair.a);
     place_outer(pair.b);
@@ -294,6 +299,36 @@ class Pack {
         meet |= doubt & must_meet(inner_[i], inner_[k],
                                   m_.inner[i].radius + m_.inner[k].radius + pair.least_margin);
     note(doubt, meet);
+  }
+
+  /// Lanes in which a witness does not separate two shapes.
+  template <typename Any>
+  [[nodiscard]] unsigned not_separated(const Witness& w, const ShapeModel& a, const Any& motion_a,
+                                       const ShapeModel& b, const Any& motion_b) const {
+    const Frame &at_a = frames_[a.frame], &at_b = frames_[b.frame];
+    Floats n[3], local[3];
+    for (int k = 0; k < 3; ++k)
+      n[k] = at_a.r[3 * k] * w.normal[0] + at_a.r[3 * k + 1] * w.normal[1] +
+             at_a.r[3 * k + 2] * w.normal[2];
+    for (int k = 0; k < 3; ++k)
+      local[k] = at_b.r[k] * n[0] + at_b.r[3 + k] * n[1] + at_b.r[6 + k] * n[2];
+    const float* first = m_.corner[b.corners.begin].at;
+    Floats least = local[0] * first[0] + local[1] * first[1] + local[2] * first[2];
+    for (std::uint32_t i = b.corners.begin + 1; i < b.corners.end; ++i) {
+      const float* p = m_.corner[i].at;
+      const Floats along = local[0] * p[0] + local[1] * p[1] + local[2] * p[2];
+      least = along < least ? along : least;
+    }
+    const Floats beyond = (at_b.t[0] - at_a.t[0]) * n[0] + (at_b.t[1] - at_a.t[1]) * n[1] +
+                          (at_b.t[2] - at_a.t[2]) * n[2] + least;
+    if constexpr (Moving) {
+      const Floats moves =
+          (motion_a.shift + motion_a.turn * a.reach + motion_b.shift + motion_b.turn * b.reach) *
+          (1 + kMoves);
+      return bits_of(~(beyond > moves + w.offset));
+    } else {
+      return bits_of(~(beyond > w.offset));
+    }
   }
 
   void note(unsigned doubt, unsigned meet) {

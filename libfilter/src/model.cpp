@@ -7,9 +7,13 @@
 #include <kaboum/world/margins.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
-#include <set>
+#include <random>
+#include <utility>
+
+#include "lanes.h"
 
 namespace kaboum::filter::detail {
 namespace {
@@ -307,10 +311,174 @@ void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   model.groups.push_back(out);
 }
 
+void add_corners(const world::Checker& checker, const world::RobotModel& robot, std::size_t index,
+                 const Chain& chain, Model& model) {
+  for (std::size_t s = 0; s < model.shapes.size(); ++s) {
+    ShapeModel& shape = model.shapes[s];
+    const LinkPlace& link = chain.links[robot.shapes[s].link];
+    double reach = 0;
+    shape.corners.begin = size_of(model.corners);
+    for (const Vec3& p : checker.hull_of({index, s})) {
+      const Vec3 at = link.pose * p;
+      Corner corner;
+      put(at, corner.at);
+      model.corners.push_back(corner);
+      reach = std::max(reach, at.norm());
+    }
+    shape.corners.end = size_of(model.corners);
+    shape.reach = rounded_up(reach * (1 + 1e-6));
+  }
+}
+
+double largest_radius(const collide::BoundingSet& set) {
+  double out = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) out = std::max(out, set.body(i).radius);
+  return out;
+}
+
+/// Planes that separate two shapes in configurations that balls leave open.
+class WitnessSearch {
+ public:
+  /// @param places  of both shapes where the pair is open
+  WitnessSearch(const world::RobotModel& robot, const ShapePair& pair,
+                const std::vector<std::array<Transform, 2>>& places, const world::Checker& checker,
+                std::size_t index)
+      : places_(places),
+        corners_{&checker.hull_of({index, pair.a}), &checker.hull_of({index, pair.b})},
+        reach_(largest_radius(robot.shapes[pair.a].outer) +
+               largest_radius(robot.shapes[pair.b].outer) + pair.margin) {
+    const collide::Polytope a(*corners_[0]), b(*corners_[1]);
+    for (const auto& [at_a, at_b] : places_) {
+      const collide::Gap gap = collide::gap_between({a, at_a}, {b, at_b});
+      const Vec3 d = gap.on_b - gap.on_a;
+      if (!(gap.lower > 0) || !(d.norm() > 0)) continue;
+      normals_.emplace_back(0, at_a.linear.transpose() * d.normalized());
+      normals_.emplace_back(1, -(at_b.linear.transpose() * d.normalized()));
+    }
+  }
+
+  /// Normals and of which shape, those that separate most first.
+  [[nodiscard]] std::vector<std::pair<std::size_t, Vec3>> best() const {
+    std::vector<std::vector<char>> separates;
+    for (const auto& [of, normal] : normals_) {
+      auto& row = separates.emplace_back();
+      const double above = top(of, normal);
+      for (const auto& place : places_) row.push_back(beyond(of, normal, place) > above + reach_);
+    }
+    std::vector<char> done(places_.size());
+    std::vector<std::pair<std::size_t, Vec3>> out;
+    while (out.size() < 6 && !normals_.empty()) {
+      std::size_t most = 0, found = 0;
+      for (std::size_t i = 0; i < normals_.size(); ++i) {
+        std::size_t gain = 0;
+        for (std::size_t k = 0; k < done.size(); ++k) gain += separates[i][k] > done[k] ? 1 : 0;
+        if (gain > most) {
+          most = gain;
+          found = i;
+        }
+      }
+      if (20 * most < places_.size() || most < 2) break;
+      for (std::size_t k = 0; k < done.size(); ++k) done[k] |= separates[found][k];
+      out.push_back(normals_[found]);
+    }
+    return out;
+  }
+
+  /// The farthest of a shape's corners along a normal of its own.
+  [[nodiscard]] double top(std::size_t of, const Vec3& normal) const {
+    double out = -HUGE_VAL;
+    for (const Vec3& p : *corners_[of]) out = std::max(out, normal.dot(p));
+    return out;
+  }
+  [[nodiscard]] double reach() const { return reach_; }
+
+ private:
+  /// The nearest of the other shape's corners along a normal.
+  [[nodiscard]] double beyond(std::size_t of, const Vec3& normal,
+                              const std::array<Transform, 2>& place) const {
+    const Vec3 world = place[of].linear * normal, local = place[1 - of].linear.transpose() * world;
+    double least = HUGE_VAL;
+    for (const Vec3& p : *corners_[1 - of]) least = std::min(least, local.dot(p));
+    return least + world.dot(place[1 - of].translation - place[of].translation);
+  }
+
+  const std::vector<std::array<Transform, 2>>& places_;
+  std::array<const std::vector<Vec3>*, 2> corners_;
+  double reach_;
+  std::vector<std::pair<std::size_t, Vec3>> normals_;
+};
+
+/// Adds planes that separate a pair of shapes, as configurations that are drawn show them.
+void add_witnesses(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
+                   const Chain& chain, const std::vector<double>& errors,
+                   const std::vector<double>& rows, std::size_t number, Model& model) {
+  constexpr std::size_t kMostOpen = 60;
+  ShapePair& pair = model.shape_pairs[number];
+  const world::RobotModel& arm = checker.world().robots[robot];
+  Model alone = model;
+  alone.shape_pairs = {pair};
+  alone.obstacle_pairs.clear();
+  std::vector<BatchChecker::Answer> answers(rows.size() / model.variables);
+  LaneMemory memory(alone);
+  filter_rows(alone, Instructions::Baseline, rows.data(), nullptr, answers.size(), memory,
+              answers.data());
+  const auto open =
+      static_cast<std::size_t>(std::ranges::count(answers, BatchChecker::Answer::Open));
+  if (100 * open < answers.size()) return;
+  std::vector<std::array<Transform, 2>> places;
+  world::Scratch scratch;
+  world::WorldState at = state;
+  for (std::size_t i = 0; i < answers.size() && places.size() < kMostOpen; ++i) {
+    if (answers[i] != BatchChecker::Answer::Open) continue;
+    const double* row = rows.data() + i * model.variables;
+    at.q[robot].assign(row, row + model.variables);
+    const auto both = checker.places(at, {{robot, pair.a}, {robot, pair.b}}, scratch);
+    places.push_back({both[0].place.pose(), both[1].place.pose()});
+  }
+  const WitnessSearch search(arm, pair, places, checker, robot);
+  const std::array<std::uint32_t, 2> shapes{pair.a, pair.b};
+  double error = 0;
+  for (const std::uint32_t s : shapes) {
+    const FrameBounds& frame = chain.bounds[model.shapes[s].frame];
+    error += (2 * frame.rotation + 12 * kUnit) * model.shapes[s].reach + frame.translation +
+             10 * kUnit * frame.reach + 2.5 * errors[s];
+  }
+  pair.witnesses.begin = size_of(model.witnesses);
+  for (const auto& [of, normal] : search.best()) {
+    const Mat3& aligned = chain.links[arm.shapes[shapes[of]].link].pose.linear;
+    const Vec3& shift = chain.links[arm.shapes[shapes[of]].link].pose.translation;
+    Witness witness;
+    put(Vec3(aligned * normal * (1 - 0x1p-9)), witness.normal);
+    witness.of_first = of == 0;
+    const Vec3 exact(witness.normal[0], witness.normal[1], witness.normal[2]);
+    double most = -HUGE_VAL;
+    for (const Vec3& p : checker.hull_of({robot, shapes[of]}))
+      most = std::max(most, exact.dot(aligned * p + shift));
+    witness.offset = rounded_up(
+        most + (search.reach() * (1 + 1e-8) + 1.1 * error + 8 * kUnit * std::abs(most)) * kSums);
+    model.witnesses.push_back(witness);
+  }
+  pair.witnesses.end = size_of(model.witnesses);
+}
+
 /// The last frame that two frames are, or hang from.
 std::uint32_t common_frame(const Model& model, std::uint32_t a, std::uint32_t b) {
   while (a != b) (a > b ? a : b) = model.steps[std::max(a, b) - 1].parent;
   return a;
+}
+
+/// Values within the limits, the same every time.
+std::vector<double> drawn_rows(const Model& model) {
+  constexpr std::size_t kRows = 2000;
+  std::mt19937_64 random(1);
+  std::vector<double> out;
+  out.reserve(kRows * model.variables);
+  for (std::size_t i = 0; i < kRows; ++i)
+    for (std::size_t k = 0; k < model.variables; ++k) {
+      const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+      out.push_back(model.low[k] + share * (model.high[k] - model.low[k]));
+    }
+  return out;
 }
 
 void add_levers(const Chain& chain, Model& model) {
@@ -397,14 +565,22 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
     const auto shape = static_cast<std::uint32_t>(a.index);
     if (b.robot == robot)
       out.shape_pairs.push_back(
-          {shape, static_cast<std::uint32_t>(b.index),
-           common_frame(out, out.shapes[a.index].frame, out.shapes[b.index].frame), above, below});
+          {shape,
+           static_cast<std::uint32_t>(b.index),
+           common_frame(out, out.shapes[a.index].frame, out.shapes[b.index].frame),
+           above,
+           below,
+           {}});
     else
       out.obstacle_pairs.push_back({shape, group_of(b), above, below});
   }
   out.always_contact = std::ranges::any_of(
       checker.find_contacts(state, scratch, {}),
       [&](const auto& contact) { return !moves(contact.items[0]) && !moves(contact.items[1]); });
+  add_corners(checker, model, robot, chain, out);
+  const std::vector<double> rows = drawn_rows(out);
+  for (std::size_t i = 0; i < out.shape_pairs.size(); ++i)
+    add_witnesses(checker, state, robot, chain, errors, rows, i, out);
   // What a link cannot reach is left out.
   std::erase_if(out.obstacle_pairs, [&](const ObstaclePair& pair) {
     const ShapeModel& shape = out.shapes[pair.shape];

@@ -38,11 +38,26 @@ struct Range {
   std::uint32_t begin = 0, end = 0;
 };
 
+/// A corner of the hull of a link's set, in its frame.
+struct Corner {
+  float at[3] = {};
+};
+
+/// A plane fixed to one shape of a pair that is above it: where the other one's corners are all
+/// beyond it by more than `offset`, the two are apart.
+struct Witness {
+  float normal[3] = {};
+  float offset = 0;  ///< of the shape's hull along the normal, with radii, margin and all errors
+  bool of_first = true;
+};
+
 /// The bounding set of a link.
 struct ShapeModel {
   std::uint32_t frame = 0;
   FrameBall whole;  ///< holds all of it
   Range outer, inner;
+  Range corners;
+  float reach = 0;  ///< of the corners, rounded up
 };
 
 /// A box along its own axes, enlarged by a ball: a sphere, capsule or box, or what holds a body.
@@ -79,6 +94,7 @@ struct ShapePair {
   std::uint32_t a = 0, b = 0;
   std::uint32_t common = 0;  ///< the last frame that both are fixed to or hang from
   float margin = 0, least_margin = 0;
+  Range witnesses;
 };
 
 /// All that the vector code reads. Coordinates are the world's, from the robot's base on.
@@ -89,6 +105,8 @@ struct Model {
   std::vector<Step> steps;        ///< of frame i + 1
   std::vector<FrameBall> outer, inner;
   std::vector<ShapeModel> shapes;
+  std::vector<Corner> corners;
+  std::vector<Witness> witnesses;
   std::vector<Obstacle> obstacles;
   std::vector<Plane> planes;
   std::vector<ObstacleGroup> groups;

@@ -489,6 +489,24 @@ TEST(Lanes, BoundsThatAreTakenAwayAreMissed) {
   EXPECT_GT(wrong(inner)[1], 10U);
 }
 
+TEST(Lanes, WitnessesThatLieAreNoticed) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+  ASSERT_FALSE(model.witnesses.empty());
+  detail::Model mutant = model, none = model;
+  for (detail::Witness& w : mutant.witnesses) w.offset -= 0.01F;
+  for (detail::ShapePair& pair : none.shape_pairs) pair.witnesses = {};
+  const std::vector<double> rows = random_rows(world, 20000, 21);
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  const auto open = [&](const detail::Model& m) {
+    return std::ranges::count(answers_of(m, instruction_sets().back(), rows), Answer::Open);
+  };
+  EXPECT_EQ(wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0], 0U);
+  EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 5U);
+  EXPECT_LT(open(model), open(none));
+}
+
 TEST(BallCover, HoldsAndLiesInBodies) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> share(0, 1);

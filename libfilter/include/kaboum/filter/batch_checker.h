@@ -38,7 +38,7 @@ class BatchChecker {
  public:
   struct Options {
     /// Balls that stand for the robot's links, at most; at least one for every convex body is used.
-    std::size_t most_balls = 200;
+    std::size_t most_balls = 100;
     Instructions instructions = instruction_sets().back();
   };
 
