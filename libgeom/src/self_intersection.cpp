@@ -69,8 +69,8 @@ bool meet_improperly(const NamedTriangle& a, const NamedTriangle& b) {
                                     point(a.at[apex]), point(b.at[other])) == CGAL::POSITIVE;
 }
 
-SelfIntersections self_intersections(const Mesh& mesh) {
-  SelfIntersections result;
+std::vector<Meeting> meetings(const Mesh& mesh) {
+  std::vector<Meeting> result(mesh.triangles.size(), Meeting::Proper);
   if (mesh.empty()) return result;
   const Bvh bvh(mesh);
   const auto named = [&](std::uint32_t t) {
@@ -103,9 +103,19 @@ SelfIntersections self_intersections(const Mesh& mesh) {
                    meets[u] = 1;
                  });
   });
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    result.flat += flat[t] != 0 ? 1 : 0;
-    result.triangles += meets[t] != 0 ? 1 : 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (flat[t] != 0)
+      result[t] = Meeting::Flat;
+    else if (meets[t] != 0)
+      result[t] = Meeting::Improper;
+  return result;
+}
+
+SelfIntersections self_intersections(const Mesh& mesh) {
+  SelfIntersections result;
+  for (const Meeting m : meetings(mesh)) {
+    result.flat += m == Meeting::Flat ? 1 : 0;
+    result.triangles += m == Meeting::Improper ? 1 : 0;
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "common/epsilon_map.h"
 #include "common/request_options.h"
 #include "common/set_format.h"
+#include "inertia.h"
 
 namespace kaboum::tools {
 namespace {
@@ -106,6 +107,12 @@ void describe(CLI::App& app, DecomposeOptions& o) {
       "need no check, because they are connected or their bodies are proved never to "
       "touch, at whatever joint values within the limits (for one turn of joints without "
       "limits); not with --links");
+  app.add_option("--inertia", o.inertia,
+                 "Replace a robot's inertials by those of its links' shapes (those that the bodies "
+                 "stand for), spread evenly: exact integrals over closed meshes, boxes and round "
+                 "shapes, with bounds in the report. mass: links keep the masses that their file "
+                 "states; or a density [kg/m^3] [what the file says stays]")
+      ->type_name("mass|DENSITY");
   app.add_option(
          "--depfile", o.depfile,
          "Write a Makefile dependency rule; names that have no place in one are refused. If "
@@ -144,6 +151,13 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   if (!is_robot(o.input) && o.srdf)
     throw Error(ErrorCode::InvalidArgument, "--srdf is for robots (.urdf, .xacro, .xml, .sdf); " +
                                                 o.input + " is taken for a mesh");
+  if (app.count("--inertia") != 0) density_of(o.inertia);
+  if (!is_robot(o.input) && !o.inertia.empty())
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--inertia is for robots (.urdf, .xacro, .xml, .sdf); " + o.input + " is taken for a mesh");
+  if (!o.inertia.empty() && o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
+    throw Error(ErrorCode::InvalidArgument, "--inertia needs --bodies polytopes of a robot");
   for (const char* budget : {"--robot-bodies", "--robot-vertices"}) {
     if (app.count(budget) == 0) continue;
     if (!is_robot(o.input))
@@ -162,7 +176,7 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
                   "--repair is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
     std::vector<std::string> others{"--bodies", "--epsilons", "--robot-bodies", "--robot-vertices",
                                     "--srdf",   "--preview",  "--html-report",  "--robot-format",
-                                    "--for",    "--no-cache"};
+                                    "--for",    "--no-cache", "--inertia"};
     for (const auto& option : certify::set_options())
       if (option.name != "epsilon" && option.name != "effort" && option.name != "geometry")
         others.push_back("--" + std::string(option.name));

@@ -25,6 +25,7 @@
 #include <optional>
 #include <utility>
 
+#include "inertia.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/next_steps.h"
@@ -45,6 +46,12 @@ certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::Robo
                                     const robot::ShapeChoice& choice) {
   certify::RobotRequest r{
       certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
+  if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
+  return r;
+}
+
+certify::InertiaRequest inertia_request(const DecomposeOptions& o) {
+  certify::InertiaRequest r{o.robot.shapes, density_of(o.inertia), o.set.preparation, {}};
   if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
   return r;
 }
@@ -75,11 +82,15 @@ struct Run {
   std::vector<std::pair<std::string, std::string>> warnings = {};  ///< on meshes
   std::size_t cached = 0;                                          ///< meshes
   std::optional<scene::RobotPairs> pairs = {};                     ///< with --srdf
+  std::vector<certify::LinkInertia> inertia = {};
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
     return made.bodies.certificate();
   }
-  [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
+  [[nodiscard]] int code() const {
+    const int of_shapes = exit_code(outcome_of(verdicts));
+    return of_shapes == kDone && !all_known(inertia) ? kNo : of_shapes;
+  }
   /// The set of a link; null: a mesh of it is kept.
   [[nodiscard]] const certify::CertifiedLink* set_of(std::uint32_t link) const {
     for (const certify::CertifiedLink& set : made.links)
@@ -266,6 +277,7 @@ Json robot_report(const Run& run, const RobotWriter& output) {
                  {"notes", all_notes(run)},
                  {"parameters", run.request.parameters()}});
   if (run.pairs) report["pairs_of_links"] = pairs_report(*run.pairs);
+  if (!run.o.inertia.empty()) report["inertia"] = report_of(run.robot.robot, run.inertia);
   return report;
 }
 
@@ -474,7 +486,12 @@ int decompose_robot(const DecomposeOptions& o) {
                                o.robot.xacro_arguments)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
-  RobotWriter output(folder_options(o.robot), o.output, run.robot, "bodies", "");
+  robot_folder::FolderOptions folder = folder_options(o.robot);
+  if (!o.inertia.empty()) {
+    run.inertia = find_inertia(run.robot, inertia_request(o));
+    folder.inertials = inertials_of(run.robot.robot, run.inertia);
+  }
+  RobotWriter output(std::move(folder), o.output, run.robot, "bodies", "");
   run.request = robot_request(o, run.robot, output.options().shapes);
   run.request.partial = true;
   const certify::WantedMeshes meshes =
@@ -493,6 +510,9 @@ int decompose_robot(const DecomposeOptions& o) {
   for (const std::string& text : run.written.lines()) log(o.common.quiet, text);
   say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
   if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
+  if (!o.inertia.empty())
+    for (const std::string& line : in_words(run.robot.robot, run.inertia))
+      log(o.common.quiet, line);
   if (is_page(o.preview))
     io::write_file(o.preview,
                    page::page_of_robot({o.input, o.set.request.unit,

@@ -237,6 +237,10 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                                                 ": a robot's meshes are enclosed; simplify them "
                                                 "one by one for others");
   require_robot_folder(o.output, "");
+  if (o.robot.writes("usd"))
+    throw Error(ErrorCode::InvalidArgument,
+                "--robot-format usd is for convex bodies (bcd-decompose): enclosing meshes have "
+                "hollows, which convexHull would fill");
   apply_preset(app, o.output, o.robot, nullptr);
   bring_lengths_into("m", certify::mesh_options(), o.mesh);
   require_separate(o);

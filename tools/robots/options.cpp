@@ -23,13 +23,14 @@ void add_formats(CLI::App& app, RobotOptions& o) {
   std::vector<std::string> names;
   for (const robot_folder::Loader& loader : robot_folder::loaders())
     names.emplace_back(loader.name);
-  app.add_option(
-         "--robot-format", o.formats,
-         "Also write the robot as MJCF (NAME.xml) or SDF (NAME.sdf), beside the format that "
-         "it is in, which is always written (repeatable)")
+  app.add_option("--robot-format", o.formats,
+                 "Also write the robot as MJCF (NAME.xml), SDF (NAME.sdf) or USD with UsdPhysics "
+                 "(NAME.usda, "
+                 "of convex bodies only), beside the format that it is in, which is always written "
+                 "(repeatable)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"urdf", "mjcf", "sdf"}).description(""))
-      ->type_name("urdf|mjcf|sdf");
+      ->check(CLI::IsMember({"urdf", "mjcf", "sdf", "usd"}).description(""))
+      ->type_name("urdf|mjcf|sdf|usd");
   app.add_option("--for", o.preset,
                  "Set --robot-format, --mesh-prefix, the bodies' format and --min-thickness as the "
                  "program that is to load a robot needs them, where no other option sets them")

@@ -34,6 +34,7 @@ robot_folder::FolderOptions folder_options(const RobotOptions& o) {
           .mesh_prefix = o.prefix,
           .mjcf = o.writes("mjcf"),
           .sdf = o.writes("sdf"),
+          .usd = o.writes("usd"),
           .urdf = o.writes("urdf"),
           .bodies = o.bodies,
           .declare_convex = o.declare_convex};

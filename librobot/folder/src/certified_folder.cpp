@@ -4,6 +4,7 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/robot_folder/certified_folder.h>
 
+#include <algorithm>
 #include <map>
 #include <span>
 
@@ -24,6 +25,13 @@ NewShapes shapes_of(const RobotWriter& writer, const certify::BodiesCertificate&
                     writer.options().bodies);
     return out;
   });
+}
+
+/// Number of the shapes of the same link before one.
+std::size_t count_before(const std::vector<robot::LinkShape>& shapes, std::size_t s) {
+  return static_cast<std::size_t>(
+      std::count_if(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(s),
+                    [&](const robot::LinkShape& other) { return other.link == shapes[s].link; }));
 }
 
 }  // namespace
@@ -48,7 +56,20 @@ void write_certified(RobotWriter& writer, const certify::CertifiedRobot& made,
         meshes.emplace(s, bodies.meshes[*mesh].made.found.set.bytes());
     writer.reuse(*cache, meshes);
   }
-  writer.write(shapes_of(writer, bodies), write_mesh, std::move(links), note);
+  const NewShapes shapes = shapes_of(writer, bodies);
+  std::map<std::string, const geom::Mesh*> by_file;
+  for (std::size_t s = 0; s < bodies.shapes.size(); ++s) {
+    const robot::LinkShape& shape = bodies.shapes[s];
+    const auto& files = shapes[shape.link][count_before(bodies.shapes, s)].meshes;
+    if (!files) continue;
+    const auto& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
+    for (std::size_t b = 0; b < files->size(); ++b) by_file[(*files)[b]] = &set.bodies[b].core;
+  }
+  writer.set_meshes([&](const std::string& file) {
+    const auto found = by_file.find(file);
+    return found == by_file.end() ? nullptr : found->second;
+  });
+  writer.write(shapes, write_mesh, std::move(links), note);
 }
 
 WrittenRobot write_robot(const std::string& folder, const robot::RobotFile& robot,

@@ -74,7 +74,7 @@ constexpr std::string_view kMadeByUs =
     "<!-- Made by KABouM, which replaces this file: the shapes are those in bodies/ or meshes/ -->";
 
 /// Of all documents but the URDF.
-constexpr std::array<const char*, 3> kExtensions{".xml", ".sdf", ".srdf"};
+constexpr std::array<const char*, 4> kExtensions{".xml", ".sdf", ".srdf", ".usda"};
 
 bool is_made_by_us(const fs::path& document) {
   try {
@@ -102,7 +102,9 @@ fs::path urdf_name(const fs::path& robot) {
 }  // namespace
 
 std::string marked(std::string document) {
-  if (document.find(kMadeByUs) == std::string::npos) document += std::string(kMadeByUs) + "\n";
+  if (document.find(kMadeByUs) != std::string::npos) return document;
+  if (document.starts_with("#usda")) document += "# ";
+  document += std::string(kMadeByUs) + "\n";
   return document;
 }
 

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/inertial_edit.h>
 #include <kaboum/robot/model_text.h>
 #include <kaboum/robot_folder/robot_writer.h>
 #include <kaboum/robot_folder/urdf_text.h>
@@ -22,6 +23,7 @@ using robot::Geometry;
 
 constexpr const char* kMjcf = ".xml";
 constexpr const char* kSdf = ".sdf";
+constexpr const char* kUsd = ".usda";
 
 /// What MuJoCo does not read of meshes that stay.
 void note_unread(const robot::Robot& robot, const std::string& file, const FileNote& note) {
@@ -48,6 +50,7 @@ struct RobotWriter::State {
   std::optional<certify::CacheFolder> cache = {};              ///< none: all is written
   PartsHash meshes_hash = {};            ///< of meshes' places and what is in them
   std::vector<std::string> places = {};  ///< of meshes, relative to the folder
+  robot::MeshOfFile mesh_of = [](const std::string& /*file*/) { return nullptr; };
 
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> other_formats(
       const NewShapes& shapes, const FileNote& note) const;
@@ -89,6 +92,7 @@ void RobotWriter::plan(const robot::LinkMeshes& meshes) {
   state_->folder.name_meshes(meshes, shapes, state_->document->mesh_stems());
   if (state_->o.mjcf) state_->folder.require_own_document(kMjcf);
   if (state_->o.sdf) state_->folder.require_own_document(kSdf);
+  if (state_->o.usd) state_->folder.require_own_document(kUsd);
 }
 
 std::vector<std::pair<std::string, std::string>> RobotWriter::State::other_formats(
@@ -99,17 +103,22 @@ std::vector<std::pair<std::string, std::string>> RobotWriter::State::other_forma
       if (note) note(folder.document(extension).string(), text);
     out.emplace_back(extension, std::move(made.text));
   };
+  const auto model_with = [&](const std::string& prefix, KeptNames kept) {
+    robot::Model model = new_model(robot, o.shapes, shapes, folder.path(), prefix, kept);
+    for (const auto& [link, inertial] : o.inertials) model.dynamics.links[link] = inertial;
+    return model;
+  };
   if (o.mjcf) {
-    const robot::Model model =
-        new_model(robot, o.shapes, shapes, folder.path(), {}, KeptNames::Files);
+    const robot::Model model = model_with({}, KeptNames::Files);
     if (note) note_unread(model.robot, folder.document(kMjcf).string(), note);
     add(kMjcf, robot::to_mjcf(model));
   }
-  if (o.sdf)
-    add(kSdf, robot::to_sdf(new_model(robot, o.shapes, shapes, folder.path(),
-                                      with_slash(o.mesh_prefix), KeptNames::Moved)));
+  if (o.sdf) add(kSdf, robot::to_sdf(model_with(with_slash(o.mesh_prefix), KeptNames::Moved)));
+  if (o.usd) add(kUsd, robot::to_usd(model_with({}, KeptNames::Files), mesh_of));
   return out;
 }
+
+void RobotWriter::set_meshes(robot::MeshOfFile meshes) { state_->mesh_of = std::move(meshes); }
 
 void RobotWriter::reuse(const certify::CacheFolder& cache,
                         const std::map<std::size_t, std::span<const char>>& meshes) {
@@ -177,7 +186,10 @@ void RobotWriter::write(const NewShapes& shapes, decltype(RobotContents::write_m
   const MeshNames names{with_slash(state_->o.mesh_prefix), state_->o.declare_convex};
   contents.documents.insert(contents.documents.end(), state_->more.begin(), state_->more.end());
   for (auto& [extension, text] : contents.documents) text = marked(std::move(text));
-  contents.urdf = marked(s.document->text(shapes, s.o.shapes.visual, names));
+  std::string text = s.document->text(shapes, s.o.shapes.visual, names);
+  if (!s.o.inertials.empty())
+    text = robot::with_inertials(text, s.folder.urdf().string(), s.o.inertials).text;
+  contents.urdf = marked(std::move(text));
   s.write_or_reuse(contents);
 }
 
@@ -185,6 +197,7 @@ std::vector<std::string> RobotWriter::State::documents() const {
   std::vector<std::string> out{folder.urdf().string()};
   if (o.mjcf) out.push_back(folder.document(kMjcf).string());
   if (o.sdf) out.push_back(folder.document(kSdf).string());
+  if (o.usd) out.push_back(folder.document(kUsd).string());
   for (const auto& [extension, text] : more) out.push_back(folder.document(extension).string());
   return out;
 }

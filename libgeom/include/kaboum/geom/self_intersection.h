@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace kaboum::geom {
 
@@ -16,6 +17,17 @@ struct NamedTriangle {
 /// True if two triangles that have an area meet in anything but the corner or the edge that both
 /// have by name; exact. Corners of different names at the same place meet improperly.
 bool meet_improperly(const NamedTriangle& a, const NamedTriangle& b);
+
+/// The way a triangle meets the others of its mesh.
+enum class Meeting : std::uint8_t {
+  Proper,    ///< in corners and edges that both have by name
+  Improper,  ///< otherwise
+  Flat,      ///< not looked at: it has no area
+};
+
+/// Of each triangle of a mesh, decided exactly. Corners are the same if their indices are.
+/// @pre indices in range, coordinates finite
+std::vector<Meeting> meetings(const Mesh& mesh);
 
 struct SelfIntersections {
   std::size_t triangles = 0;  ///< that meet another one improperly

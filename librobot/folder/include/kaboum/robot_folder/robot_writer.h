@@ -1,7 +1,9 @@
 #pragma once
 
 #include <kaboum/certify/cache_folder.h>
+#include <kaboum/robot/dynamics.h>
 #include <kaboum/robot/link_meshes.h>
+#include <kaboum/robot/usd.h>
 #include <kaboum/robot_folder/new_shapes.h>
 #include <kaboum/robot_folder/robot_folder.h>
 
@@ -20,9 +22,11 @@ struct FolderOptions {
   robot::ShapeChoice shapes;       ///< that other shapes stand for
   std::string mesh_prefix;         ///< put before names of meshes in URDF and SDF
   bool mjcf = false, sdf = false;  ///< formats that are written besides the robot's own
+  bool usd = false;                ///< with UsdPhysics; `RobotWriter::set_meshes`
   bool urdf = false;               ///< asked for: refused of robots that are in another format
   std::string bodies = "stl";      ///< format of convex bodies' files: stl or obj
   bool declare_convex = false;     ///< in the URDF, as Drake asks for
+  std::map<std::string, robot::Inertial> inertials = {};  ///< by link, instead of the file's
 };
 
 /// Receiver of notes on files, for the user.
@@ -50,6 +54,9 @@ class RobotWriter {
 
   /// Another file that holds something of the robot, beside its URDF.
   void add_document(std::string extension, std::string text);
+
+  /// The bodies of files that new shapes name, for formats that hold them themselves.
+  void set_meshes(robot::MeshOfFile meshes);
 
   /// Has `write` leave files alone that are there as an earlier run has written them.
   /// @param meshes  what all files of a mesh are made of, by the shape that it stands for

@@ -1,0 +1,210 @@
+// Moments of solids whose surfaces may cross themselves. docs/algorithms/inertia.md has the proof.
+
+#include <kaboum/base/error.h>
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/float32.h>
+#include <kaboum/geom/predicates.h>
+#include <kaboum/geom/self_intersection.h>
+#include <kaboum/geom/topology.h>
+#include <kaboum/geom/winding.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "exact_integrals.h"
+#include "union_find.h"
+
+namespace kaboum::geom {
+
+using namespace exact_integrals;
+
+namespace {
+
+/// The winding number in front of a triangle, the same all over it; none: it is crossed, or not
+/// found.
+using Front = std::optional<int>;
+
+/// Winding numbers in front of triangles.
+class Fronts {
+ public:
+  explicit Fronts(const Mesh& mesh)
+      : mesh_(mesh), bvh_(std::make_shared<Bvh>(mesh)), winding_(mesh, bvh_) {
+    const Box3 box = bounding_box(mesh);
+    near_ = 0x1p-34 * box.diagonal();
+    meetings_ = meetings(mesh);
+    find();
+  }
+
+  [[nodiscard]] const std::vector<Front>& of_triangles() const { return fronts_; }
+  [[nodiscard]] bool is_flat(std::uint32_t t) const { return meetings_[t] == Meeting::Flat; }
+
+ private:
+  /// Triangles that an edge joins in which no others end, and which meet others properly, have one
+  /// number in front.
+  void find() {
+    const std::size_t count = mesh_.triangles.size();
+    UnionFind patches(count);
+    const std::vector<EdgeUse> uses = edge_uses(mesh_);
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+      if (edge.size() != 2 || edge[0].forward == edge[1].forward) return;
+      if (meetings_[edge[0].triangle] == Meeting::Proper &&
+          meetings_[edge[1].triangle] == Meeting::Proper)
+        patches.join(edge[0].triangle, edge[1].triangle);
+    });
+    std::vector<Front> of_patch(count);
+    std::vector<int> tries(count, 0);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (meetings_[t] != Meeting::Proper) continue;
+      const std::uint32_t patch = patches.find(t);
+      constexpr int kTries = 50;
+      if (of_patch[patch] || tries[patch] >= kTries) continue;
+      ++tries[patch];
+      of_patch[patch] = look(t);
+    }
+    fronts_.resize(count);
+    for (std::uint32_t t = 0; t < count; ++t)
+      if (meetings_[t] == Meeting::Proper) fronts_[t] = of_patch[patches.find(t)];
+  }
+
+  /// The number at a point that lies beside the triangle's middle, where no other triangle is near.
+  [[nodiscard]] Front look(std::uint32_t t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    const Vec3 &p = mesh_.vertices[a], &q = mesh_.vertices[b], &r = mesh_.vertices[c];
+    const Vec3 normal = (q - p).cross(r - p);
+    if (!(normal.norm() > 0) || !std::isfinite(normal.norm())) return {};
+    const Vec3 middle = (p + q + r) / 3, at = middle + normal.normalized() * (near_ / 4);
+    // No other triangle meets the box, so none is between the point and the triangle's middle,
+    // which is in the box for sure: the point is in front of the triangle, or behind it.
+    const Box3 round{at.array() - near_, at.array() + near_};
+    const double rounding = 0x1p-50 * std::max({p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff(),
+                                                r.cwiseAbs().maxCoeff()});
+    if (!(round.min.array() < middle.array() - rounding).all() ||
+        !(middle.array() + rounding < round.max.array()).all())
+      return {};
+    bool alone = true;
+    bvh_->traverse(
+        [&](const Box3& box) {
+          return alone && (box.min.array() <= round.max.array()).all() &&
+                 (round.min.array() <= box.max.array()).all();
+        },
+        [&](std::uint32_t other) {
+          if (other != t && !is_beside(other, round)) alone = false;
+        });
+    if (!alone) return {};
+    const Sign side = orient3d(p, q, r, at);
+    const std::optional<int> w = winding_(at);
+    if (!w || side == Sign::Zero) return {};
+    return side == Sign::Negative ? *w - 1 : *w;
+  }
+
+  /// Whether a plane separates a triangle from a box, for sure: whatever its normal is, projections
+  /// on it are wrong by less than `error`.
+  [[nodiscard]] bool is_beside(std::uint32_t t, const Box3& box) const {
+    std::array<Vec3, 3> corner;
+    double scale = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = mesh_.vertices[mesh_.triangles[t][k]];
+      scale = std::max(scale, corner[k].cwiseAbs().maxCoeff());
+    }
+    const Vec3 half = (box.max - box.min) / 2, middle = box.min + half;
+    const auto separates = [&](const Vec3& axis) {
+      const double a = axis.dot(corner[0] - middle), b = axis.dot(corner[1] - middle),
+                   c = axis.dot(corner[2] - middle);
+      const double error = 0x1p-48 * scale * axis.cwiseAbs().sum();
+      const double reach = axis.cwiseAbs().dot(half) + error;
+      return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
+    };
+    const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).stableNormalized();
+    if (separates(Vec3::UnitX()) || separates(Vec3::UnitY()) || separates(Vec3::UnitZ()) ||
+        separates(normal))
+      return true;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (separates((corner[(k + 1) % 3] - corner[k]).stableNormalized().cross(normal)))
+        return true;
+    return false;
+  }
+
+  const Mesh& mesh_;
+  std::shared_ptr<const Bvh> bvh_;
+  WindingNumber winding_;
+  std::vector<Meeting> meetings_;
+  std::vector<Front> fronts_;
+  double near_ = 0;
+};
+
+/// The tetrahedra of triangles with an apex.
+class Cones {
+ public:
+  Cones(const Mesh& mesh, const Vec3& apex) : mesh_(mesh), apex_(apex) {}
+
+  /// A triangle that is all of it a border between inside and outside.
+  void add(std::uint32_t t) { sums_.add(corners(t)); }
+
+  /// One of which that is not known of any part.
+  void add_unknown(std::uint32_t t) {
+    Sums own;
+    const auto corner = corners(t);
+    own.add(corner);
+    Range volume = own.integrals().one;
+    if (volume.lower == 0) return;
+    volume = volume.lower < 0 ? Range(volume.lower, 0) : Range(0, volume.upper);
+    std::array<Range, 3> box;
+    for (int i = 0; i < 3; ++i) {
+      box[i] = Range(0);
+      for (const auto& point : corner) {
+        const Rational x(point[i]);
+        box[i] = {std::min(box[i].lower, x), std::max(box[i].upper, x)};
+      }
+    }
+    unknown_ += of_parts(box, volume);
+    has_unknown_ = true;
+  }
+
+  [[nodiscard]] Integrals known() const { return shifted(sums_.integrals(), apex_); }
+  [[nodiscard]] Integrals unknown() const { return shifted(unknown_, apex_); }
+  [[nodiscard]] bool has_unknown() const { return has_unknown_; }
+
+ private:
+  [[nodiscard]] std::array<std::array<Dyadic, 3>, 3> corners(std::uint32_t t) const {
+    std::array<std::array<Dyadic, 3>, 3> out;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i)
+        out[k][i] = Dyadic(mesh_.vertices[mesh_.triangles[t][k]][i]) - Dyadic(apex_[i]);
+    return out;
+  }
+
+  const Mesh& mesh_;
+  Vec3 apex_;
+  Sums sums_;
+  Integrals unknown_;
+  bool has_unknown_ = false;
+};
+
+}  // namespace
+
+Moments moments_of(const SolidMesh& solid) {
+  const Mesh& mesh = solid.mesh();
+  if (!solid.closed()) throw Error(ErrorCode::InvalidInput, "it is open");
+  if (solid.filled_triangles() > 0) throw Error(ErrorCode::InvalidInput, "it has holes");
+  const Fronts fronts(mesh);
+  Cones cones(mesh, to_float32(bounding_box(mesh).center()));
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (fronts.is_flat(t)) continue;
+    const Front& front = fronts.of_triangles()[t];
+    if (!front)
+      cones.add_unknown(t);
+    else if (*front == 0)
+      cones.add(t);
+    // Else both its sides are inside, or both outside.
+  }
+  Moments out;
+  out.numbers_ = std::make_shared<const Moments::Numbers>(
+      Moments::Numbers{cones.known(), -cones.unknown(), cones.has_unknown()});
+  return out;
+}
+
+}  // namespace kaboum::geom

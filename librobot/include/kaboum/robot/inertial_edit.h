@@ -1,0 +1,25 @@
+#pragma once
+
+#include <kaboum/robot/dynamics.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kaboum::robot {
+
+/// A document of a robot with other masses.
+struct InertialEdit {
+  std::string text;
+  std::vector<std::string> missing;  ///< links that have no element of their name: unnamed, copied
+};
+
+/// The URDF, MJCF or SDF with these inertials in the place of the links' own; all else stays.
+/// @param name  of the file, for messages
+/// @throws Error{InvalidInput} on other documents, and naming the line where MJCF's compiler would
+///   take masses from geoms all the same, or scale them (inertiafromgeom="true", settotalmass).
+InertialEdit with_inertials(std::string_view text, const std::string& name,
+                            const std::map<std::string, Inertial>& inertials);
+
+}  // namespace kaboum::robot
