@@ -1,5 +1,5 @@
 #!/bin/sh
-# readers.sh ROBOT_POSES TOOLS: readers.py by the Python that has the engines; 77 where there is none.
+# with_engines.sh SCRIPT ARGUMENT...: a script by the Python that has the engines; 77 where there is none.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 python=${KABOUM_ENGINES:-$here/../../build/engines}/bin/python
@@ -7,4 +7,6 @@ if [ ! -x "$python" ]; then
   echo "skipped: no engines in $python; scripts/setup --engines"
   exit 77
 fi
-exec "$python" "$here/readers.py" "$@"
+script=$1
+shift
+exec "$python" "$here/$script" "$@"
