@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "exact_integrals.h"
+#include "triangle_contact.h"
 #include "union_find.h"
 
 namespace kaboum::geom {
@@ -40,6 +41,34 @@ class Fronts {
   }
 
   [[nodiscard]] const std::vector<Front>& of_triangles() const { return fronts_; }
+  /// Triangles that meet one improperly.
+  [[nodiscard]] std::vector<std::uint32_t> crossing(std::uint32_t t) const {
+    std::vector<std::uint32_t> out;
+    const NamedTriangle own = named(t);
+    Box3 box;
+    for (const Vec3& p : own.at) box.extend(p);
+    bvh_->traverse([&](const Box3& other) { return overlap(box, other); },
+                   [&](std::uint32_t u) {
+                     if (u != t && !is_flat(u) && meet_improperly(own, named(u))) out.push_back(u);
+                   });
+    return out;
+  }
+
+  /// The number in front of a part of a triangle that has these corners but for rounding.
+  /// @param crossing  triangles that may change it; those that meet the part are put into `left`
+  [[nodiscard]] Front of_part(std::uint32_t t, const std::array<Vec3, 3>& part,
+                              const std::vector<std::uint32_t>& crossing,
+                              std::vector<std::uint32_t>& left) const {
+    Box3 box;
+    for (const Vec3& p : part) box.extend(p);
+    const double slack =
+        0x1p-46 * std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    box = {box.min.array() - slack, box.max.array() + slack};
+    for (const std::uint32_t u : crossing)
+      if (!is_beside(u, box)) left.push_back(u);
+    return left.empty() ? look(t, part) : Front();
+  }
+
   [[nodiscard]] bool is_flat(std::uint32_t t) const { return meetings_[t] == Meeting::Flat; }
 
  private:
@@ -63,24 +92,30 @@ class Fronts {
       constexpr int kTries = 50;
       if (of_patch[patch] || tries[patch] >= kTries) continue;
       ++tries[patch];
-      of_patch[patch] = look(t);
+      of_patch[patch] = look(t, named(t).at);
     }
     fronts_.resize(count);
     for (std::uint32_t t = 0; t < count; ++t)
       if (meetings_[t] == Meeting::Proper) fronts_[t] = of_patch[patches.find(t)];
   }
 
-  /// The number at a point that lies beside the triangle's middle, where no other triangle is near.
-  [[nodiscard]] Front look(std::uint32_t t) const {
-    const auto& [a, b, c] = mesh_.triangles[t];
-    const Vec3 &p = mesh_.vertices[a], &q = mesh_.vertices[b], &r = mesh_.vertices[c];
+  [[nodiscard]] NamedTriangle named(std::uint32_t t) const {
+    const Triangle& c = mesh_.triangles[t];
+    return {c, {mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]}};
+  }
+
+  /// The number at a point beside the middle of a triangle's part, where no other triangle is near.
+  /// @param part  its corners but for rounding
+  [[nodiscard]] Front look(std::uint32_t t, const std::array<Vec3, 3>& part) const {
+    const auto [p, q, r] = named(t).at;
     const Vec3 normal = (q - p).cross(r - p);
     if (!(normal.norm() > 0) || !std::isfinite(normal.norm())) return {};
-    const Vec3 middle = (p + q + r) / 3, at = middle + normal.normalized() * (near_ / 4);
+    const Vec3 middle = (part[0] + part[1] + part[2]) / 3,
+               at = middle + normal.normalized() * (near_ / 4);
     // No other triangle meets the box, so none is between the point and the triangle's middle,
     // which is in the box for sure: the point is in front of the triangle, or behind it.
     const Box3 round{at.array() - near_, at.array() + near_};
-    const double rounding = 0x1p-50 * std::max({p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff(),
+    const double rounding = 0x1p-46 * std::max({p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff(),
                                                 r.cwiseAbs().maxCoeff()});
     if (!(round.min.array() < middle.array() - rounding).all() ||
         !(middle.array() + rounding < round.max.array()).all())
@@ -141,13 +176,14 @@ class Cones {
  public:
   Cones(const Mesh& mesh, const Vec3& apex) : mesh_(mesh), apex_(apex) {}
 
-  /// A triangle that is all of it a border between inside and outside.
-  void add(std::uint32_t t) { sums_.add(corners(t)); }
+  using Corners = std::array<std::array<Dyadic, 3>, 3>;
+
+  /// A triangle, or a part of one, all of which is a border between inside and outside.
+  void add(const Corners& corner) { sums_.add(corner); }
 
   /// One of which that is not known of any part.
-  void add_unknown(std::uint32_t t) {
+  void add_unknown(const Corners& corner) {
     Sums own;
-    const auto corner = corners(t);
     own.add(corner);
     Range volume = own.integrals().one;
     if (volume.lower == 0) return;
@@ -164,17 +200,47 @@ class Cones {
     has_unknown_ = true;
   }
 
+  /// Cut into quarters until parts are known, or small.
+  void add_cut(std::uint32_t t, const Fronts& fronts) {
+    add_part(t, corners(t), fronts.crossing(t), fronts, 0);
+  }
+
+  /// Relative to the apex.
+  [[nodiscard]] Corners corners(std::uint32_t t) const {
+    Corners out;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i)
+        out[k][i] = Dyadic(mesh_.vertices[mesh_.triangles[t][k]][i]) - Dyadic(apex_[i]);
+    return out;
+  }
+
   [[nodiscard]] Integrals known() const { return shifted(sums_.integrals(), apex_); }
   [[nodiscard]] Integrals unknown() const { return shifted(unknown_, apex_); }
   [[nodiscard]] bool has_unknown() const { return has_unknown_; }
 
  private:
-  [[nodiscard]] std::array<std::array<Dyadic, 3>, 3> corners(std::uint32_t t) const {
-    std::array<std::array<Dyadic, 3>, 3> out;
+  static constexpr int kCuts = 5;
+
+  void add_part(std::uint32_t t, const Corners& corner, const std::vector<std::uint32_t>& crossing,
+                const Fronts& fronts, int depth) {
+    std::array<Vec3, 3> at;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) at[k][i] = CGAL::to_double(corner[k][i]) + apex_[i];
+    std::vector<std::uint32_t> left;
+    const Front front = fronts.of_part(t, at, crossing, left);
+    if (front == Front(0)) add(corner);
+    if (front) return;
+    if (depth == kCuts) {
+      add_unknown(corner);
+      return;
+    }
+    Corners middle;  // of the sides opposite to the corners
     for (std::size_t k = 0; k < 3; ++k)
       for (int i = 0; i < 3; ++i)
-        out[k][i] = Dyadic(mesh_.vertices[mesh_.triangles[t][k]][i]) - Dyadic(apex_[i]);
-    return out;
+        middle[k][i] = (corner[(k + 1) % 3][i] + corner[(k + 2) % 3][i]) * Dyadic(0.5);
+    for (std::size_t k = 0; k < 3; ++k)
+      add_part(t, {corner[k], middle[(k + 2) % 3], middle[(k + 1) % 3]}, left, fronts, depth + 1);
+    add_part(t, middle, left, fronts, depth + 1);
   }
 
   const Mesh& mesh_;
@@ -196,9 +262,9 @@ Moments moments_of(const SolidMesh& solid) {
     if (fronts.is_flat(t)) continue;
     const Front& front = fronts.of_triangles()[t];
     if (!front)
-      cones.add_unknown(t);
+      cones.add_cut(t, fronts);
     else if (*front == 0)
-      cones.add(t);
+      cones.add(cones.corners(t));
     // Else both its sides are inside, or both outside.
   }
   Moments out;

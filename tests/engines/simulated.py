@@ -5,12 +5,11 @@ usage: simulated.py ROBOT_POSES BIN
 
 Robots are made here, and decomposed. Every engine must have the bodies that were written, each with its vertices where they
 belong, and links where they are by our own kinematics, at 100 configurations. Then a humanoid stands on its new feet for 5 s,
-and a gripper holds a box for 5 s, as both did before. Below $KABOUM_ROBOTS a Unitree G1 of MuJoCo Menagerie stands as well.
+and a gripper holds a box for 5 s, as both did before.
 Run by the Python of `scripts/setup --engines`; an engine that is not there is named; exit code 77 where there is no MuJoCo.
 """
 import json
 import math
-import os
 import pathlib
 import subprocess
 import sys
@@ -463,26 +462,6 @@ def hold_with_pybullet(path):
         pybullet.disconnect(client)
 
 
-def menagerie_g1():
-    for folder in (x for x in os.environ.get("KABOUM_ROBOTS", "").split(os.pathsep) if x):
-        for path in sorted(pathlib.Path(folder).rglob("unitree_g1/scene.xml")):
-            return path
-    return None
-
-
-def g1_stands(tools, place):
-    """With hulls of what is drawn for feet, instead of Menagerie's spheres."""
-    scene = menagerie_g1()
-    if scene is None:
-        print("skipped: no unitree_g1 of MuJoCo Menagerie below $KABOUM_ROBOTS")
-        return
-    fallen = stands(scene, "pelvis", None, 0.05)
-    written = decompose(tools, scene.parent / "g1.xml", place / "g1", "--visual", "--drop-sheets")
-    text = scene.read_text().replace('file="g1.xml"', f'file="{written}"')
-    (written.parent / "scene.xml").write_text(text)
-    print(f"g1: {fallen} m lower before,", stands(written.parent / "scene.xml", "pelvis", None, 0.05), "m with its new feet")
-
-
 def main():
     program, tools = sys.argv[1], pathlib.Path(sys.argv[2]).absolute()
     engines = {"Pinocchio with Coal": with_pinocchio, "Drake": with_drake, "PyBullet": with_pybullet}
@@ -511,7 +490,6 @@ def main():
                 print(f"gripper: {engine} {'holds' if len(failures) == before else 'does NOT hold'} the box")
             except ImportError as error:
                 print(f"skipped: no {engine}: {error}")
-        g1_stands(tools, place)
     print("failed" if failures else "passed", f"({len(failures)} failures)")
     return 1 if failures else 0
 
