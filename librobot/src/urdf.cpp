@@ -64,15 +64,15 @@ bool holds_shapes(const XMLElement& element) {
 
 /// Elements that readers pass over, and the shapes in them with it. Extensions for simulators
 /// (<gazebo>, <transmission>, <sensor> ...) describe no shapes of the robot; those of
-/// <self_collision_checking> stand for a link's collision shapes among links, and no reader of URDF
-/// takes them.
+/// <self_collision_checking> stand for a link's collision shapes among links, those of
+/// <self_filter> for what is taken out of sensors' points, and no reader of URDF takes them.
 void refuse_unread(const XMLElement& parent, std::initializer_list<std::string_view> read,
                    const std::string& name) {
   for (const auto* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     const std::string_view tag = e->Name();
     if (std::find(read.begin(), read.end(), tag) != read.end()) continue;
     if (tag == "gazebo" || tag == "transmission" || tag == "sensor" || tag == "ros2_control" ||
-        tag == "self_collision_checking")
+        tag == "self_collision_checking" || tag == "self_filter")
       continue;
     if (holds_shapes(*e))
       fail_at(name, e->GetLineNum(),

@@ -293,9 +293,9 @@ TEST(Urdf, BadFilesAreRefused) {
                "</mesh></geometry></collision></link>"),
       "belongs beside <geometry>");
   has(robot_of("<link name='a'/>") + robot_of("<link name='b'/>"), "one robot");
-  EXPECT_EQ(message(robot_of("<link name='a'><self_collision_checking>" + box +
-                             "</self_collision_checking></link>")),
-            "no error");
+  for (const std::string tag : {"self_collision_checking", "self_filter"})
+    EXPECT_EQ(message(robot_of("<link name='a'><" + tag + ">" + box + "</" + tag + "></link>")),
+              "no error");
   EXPECT_EQ(message(robot_of("<link name='a'/><gazebo reference='a'><visual/></gazebo>"
                              "<transmission name='t'><joint name='j'/></transmission>"
                              "<material name='grey'/>")),
