@@ -36,31 +36,25 @@ void Contraction::push_all() {
 }
 
 bool Contraction::pass(std::size_t target, double limit, CollapsePolicy* policy) {
-  using Validity = CollapseEvaluator::Validity;
   bool progress = false;
   queue_.clear();
+  refused_.clear();
+  has_refused_.assign(m_.position.size(), 0);
   limit_ = limit;
   if (limit == kNoLimit) queue_.reserve(room(m_.mesh.size() * 3 / 2));
   push_all();
   std::size_t purge_at = room(queue_.size());
   BucketQueue::Entry e;
-  CollapseEvaluator::Candidate& candidate = evaluator_.candidate();
+  const bool tries_again = policy != nullptr && policy->tries_again();
   const auto goes_on = [&] { return policy == nullptr || policy->goes_on(); };
   while (vertices_ > target && goes_on() && queue_.pop(e)) {
-    if (stale(e) || (policy != nullptr && !policy->is_hopeful(e))) continue;
-    // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
-    const Validity validity =
-        evaluate(e.a, e.b, policy != nullptr ? policy->purpose() : CollapseEvaluator::Purpose::Due);
-    if (validity == Validity::Later) postpone(e);
-    if (validity == Validity::None && policy != nullptr) policy->has_no_place(e);
-    if (validity != Validity::Valid) continue;
-    if (policy != nullptr && !policy->assess(e)) continue;
-    if (!queue_.due(candidate.cost)) {
-      postpone(e);
+    if (stale(e)) continue;
+    postponed_ = false;
+    if (!contract(e, policy)) {
+      if (tries_again && !postponed_) refuse(e.a, e.b);
       continue;
     }
-    if (policy != nullptr ? !policy->admit(e) : !evaluator_.keeps_shape()) continue;
-    apply(policy);
+    if (tries_again) try_again_around(e.a);
     progress = true;
     if (queue_.size() > purge_at) {
       queue_.purge([&](const BucketQueue::Entry& x) { return stale(x); });
@@ -68,6 +62,40 @@ bool Contraction::pass(std::size_t target, double limit, CollapsePolicy* policy)
     }
   }
   return progress;
+}
+
+bool Contraction::contract(BucketQueue::Entry& e, CollapsePolicy* policy) {
+  using Validity = CollapseEvaluator::Validity;
+  if (policy != nullptr && !policy->is_hopeful(e)) return false;
+  // Evaluated anew each time it is popped: what is applied holds for the planes of this moment.
+  const Validity validity =
+      evaluate(e.a, e.b, policy != nullptr ? policy->purpose() : CollapseEvaluator::Purpose::Due);
+  if (validity == Validity::Later) return postpone(e);
+  if (validity == Validity::None) {
+    if (policy != nullptr) policy->has_no_place(e);
+    return false;
+  }
+  if (policy != nullptr && !policy->assess(e)) return false;
+  if (!queue_.due(evaluator_.candidate().cost)) return postpone(e);
+  if (policy != nullptr ? !policy->admit(e) : !evaluator_.keeps_shape()) return false;
+  apply(policy);
+  return true;
+}
+
+void Contraction::refuse(std::uint32_t a, std::uint32_t b) {
+  refused_.insert(edge_key(a, b));
+  has_refused_[a] = has_refused_[b] = 1;
+}
+
+/// Refused edges whose star the contraction to v has changed enter the queue again.
+void Contraction::try_again_around(std::uint32_t v) {
+  around_ = evaluator_.neighbours(v);
+  for (const std::uint32_t w : around_) {
+    if (has_refused_[w] == 0) continue;
+    has_refused_[w] = 0;
+    for (const std::uint32_t x : evaluator_.neighbours(w))
+      if (refused_.erase(edge_key(w, x)) != 0) push_edge(w, x);
+  }
 }
 
 void Contraction::apply(CollapsePolicy* policy) {
@@ -85,7 +113,10 @@ void Contraction::apply(CollapsePolicy* policy) {
   ++statistics_.contractions;
   m_.update_normals_around(a);
   if (policy != nullptr) policy->after();
-  for (const std::uint32_t w : evaluator_.neighbours(a)) push_edge(a, w);
+  for (const std::uint32_t w : evaluator_.neighbours(a)) {
+    if (!refused_.empty()) refused_.erase(edge_key(a, w));
+    push_edge(a, w);
+  }
 }
 
 void Contraction::contracted(std::uint32_t a, std::uint32_t b) {

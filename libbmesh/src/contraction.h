@@ -1,10 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <unordered_set>
+#include <vector>
 
 #include "collapse_evaluator.h"
 
 namespace kaboum::bmesh {
+
+/// An edge, whichever end is named first.
+inline std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
 
 /// Which edges are contracted, and when, besides what the quadrics say. All calls are about the
 /// candidate at hand.
@@ -16,6 +25,9 @@ class CollapsePolicy {
   virtual ~CollapsePolicy() = default;
 
   [[nodiscard]] virtual CollapseEvaluator::Purpose purpose() const = 0;
+  /// Whether an edge that is refused enters the queue again when a contraction has changed its
+  /// star.
+  [[nodiscard]] virtual bool tries_again() const = 0;
   /// Whether the edge is worth looking at: asked before it is the candidate.
   [[nodiscard]] virtual bool is_hopeful(const BucketQueue::Entry& e) = 0;
   /// To be told that there is no valid place for its vertex.
@@ -62,6 +74,7 @@ class Contraction {
   /// Keeps an entry for when its cost is due. @return false
   bool postpone(const BucketQueue::Entry& e) {
     const double cost = evaluator_.candidate().cost;
+    postponed_ = true;
     if (!(cost > limit_)) queue_.push(cost, e);
     return false;
   }
@@ -84,6 +97,10 @@ class Contraction {
  private:
   void push_all();
   void push_edge(std::uint32_t a, std::uint32_t b);
+  /// Whether the entry's edge was contracted; if not, it waits in the queue, or is refused.
+  bool contract(BucketQueue::Entry& e, CollapsePolicy* policy);
+  void refuse(std::uint32_t a, std::uint32_t b);
+  void try_again_around(std::uint32_t v);
   // Stamps only rise, so a sum of two is unchanged only if both are.
   [[nodiscard]] bool stale(const BucketQueue::Entry& e) const {
     return stamp_[e.a] + stamp_[e.b] != e.stamps;
@@ -95,7 +112,11 @@ class Contraction {
   std::vector<std::uint32_t> stamp_;  // of a vertex: raised when it is moved or vanishes
   std::vector<Step>* steps_;
   BucketQueue queue_;
-  double limit_ = kNoLimit;  // of what enters the queue
+  double limit_ = kNoLimit;                    // of what enters the queue
+  bool postponed_ = false;                     // the edge popped last waits in the queue
+  std::unordered_set<std::uint64_t> refused_;  // edges that wait until their star has changed
+  std::vector<char> has_refused_;              // of a vertex: some of its edges may be refused
+  std::vector<std::uint32_t> around_;
   std::size_t vertices_;
   DecimateStatistics statistics_;
   CollapseEvaluator evaluator_;

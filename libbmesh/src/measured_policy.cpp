@@ -30,10 +30,6 @@ constexpr std::size_t kProgress = 1024;
 /// The star of an edge was measured before, but not as it is.
 constexpr std::uint32_t kUnmeasured = ~0U;
 
-std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
 }  // namespace
 
 void MeasuredPolicy::begin_measuring() {
@@ -54,7 +50,7 @@ bool MeasuredPolicy::goes_on() {
 /// risen to what it takes.
 bool MeasuredPolicy::is_hopeful(const BucketQueue::Entry& e) {
   if (!state_.optimiser || state_.hurries) return true;
-  const auto at = refusals_.find(key(e.a, e.b));
+  const auto at = refusals_.find(edge_key(e.a, e.b));
   if (at == refusals_.end()) return true;
   const Refusal& r = at->second;
   if (r.version != state_.optimiser->version(e.a, e.b)) return true;
@@ -66,7 +62,8 @@ bool MeasuredPolicy::is_hopeful(const BucketQueue::Entry& e) {
 void MeasuredPolicy::has_no_place(const BucketQueue::Entry& e) { refuse(e.a, e.b, kNever, false); }
 
 void MeasuredPolicy::refuse(std::uint32_t a, std::uint32_t b, double takes, bool by_epsilon) {
-  if (state_.optimiser) refusals_[key(a, b)] = {state_.optimiser->version(a, b), takes, by_epsilon};
+  if (state_.optimiser)
+    refusals_[edge_key(a, b)] = {state_.optimiser->version(a, b), takes, by_epsilon};
 }
 
 /// Refuses the candidate for good. @return false
@@ -178,7 +175,7 @@ bool MeasuredPolicy::measure(BucketQueue::Entry& e) {
 /// The new triangles at more points, before they are made; what is found to be beyond what is due
 /// goes back into the queue. @return whether it is not.
 bool MeasuredPolicy::measure_densely(BucketQueue::Entry& e) {
-  if (!state_.optimiser || state_.options.cost != Cost::Distance || state_.epsilon) return true;
+  if (!state_.measuring || state_.options.cost != Cost::Distance || state_.epsilon) return true;
   describe_change();
   points_.clear();
   for (const NewTriangle& t : added_) {

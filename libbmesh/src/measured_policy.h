@@ -25,6 +25,7 @@ class MeasuredPolicy final : public CollapsePolicy {
   // ---- CollapsePolicy
 
   [[nodiscard]] CollapseEvaluator::Purpose purpose() const override;
+  [[nodiscard]] bool tries_again() const override { return state_.measuring; }
   bool goes_on() override;
   bool is_hopeful(const BucketQueue::Entry& e) override;
   void has_no_place(const BucketQueue::Entry& e) override;

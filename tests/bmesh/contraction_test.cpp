@@ -3,9 +3,12 @@
 #include "contraction.h"
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/predicates.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/verify/inclusion.h>
+
+#include <optional>
 
 #include "compact.h"
 #include "support/families.h"
@@ -30,6 +33,21 @@ struct Bare {
   std::vector<Step> steps;
   std::optional<Context> context;
   std::optional<Contraction> contraction;
+};
+
+/// Admits all, and tries again what was refused.
+struct Again : CollapsePolicy {
+  [[nodiscard]] CollapseEvaluator::Purpose purpose() const override {
+    return CollapseEvaluator::Purpose::Due;
+  }
+  [[nodiscard]] bool tries_again() const override { return true; }
+  [[nodiscard]] bool is_hopeful(const BucketQueue::Entry&) override { return true; }
+  void has_no_place(const BucketQueue::Entry&) override {}
+  [[nodiscard]] bool goes_on() override { return true; }
+  [[nodiscard]] bool assess(BucketQueue::Entry&) override { return true; }
+  [[nodiscard]] bool admit(BucketQueue::Entry&) override { return true; }
+  void before() override {}
+  void after() override {}
 };
 
 TEST(Contraction, EnclosesAndCountsItsSteps) {
@@ -63,6 +81,32 @@ TEST(Contraction, StopsAtTheLimitOfCosts) {
   EXPECT_LT(few, some);
   EXPECT_LE(some, all);
   EXPECT_GT(few, 4U);
+}
+
+// What is refused is tried again when its star has changed: no pass leaves an edge that another
+// pass would contract.
+TEST(Contraction, LeavesNothingToAnotherPass) {
+  std::uint64_t refused = 0;
+  Again again;
+  std::vector<test::Family> families = test::closed_families();
+  for (test::Family& f : test::open_families()) families.push_back(std::move(f));
+  for (const Direction d : {Direction::Outer, Direction::Inner}) {
+    for (const test::Family& f : families) {
+      std::optional<Bare> bare;
+      try {
+        bare.emplace(f.mesh, d);
+      } catch (const Error&) {
+        continue;  // sheets
+      }
+      bare->contraction->pass(0, Contraction::kNoLimit, &again);
+      const DecimateStatistics& s = bare->contraction->statistics();
+      refused += s.rejected_no_position + s.rejected_fold + s.rejected_topology;
+      const std::size_t left = bare->contraction->vertices();
+      EXPECT_FALSE(bare->contraction->pass(0)) << f.name;
+      EXPECT_EQ(bare->contraction->vertices(), left) << f.name;
+    }
+  }
+  EXPECT_GT(refused, 0U);
 }
 
 // Every valid candidate is on or beyond the planes of all triangles that it replaces; exactly.
