@@ -351,7 +351,7 @@ class Report(unittest.TestCase):
                 self.assertLess(gained[change], 1, text)
             kept = keep.read(folder)["whole"]
             rows = kept["author"]["tables"][0]["rows"]
-            self.assertEqual([row[1] for row in rows], ["boundingmesh, QEM_Classic", "planes", "boundingmesh, MinConstant", "planes-adapted", "distance"])
+            self.assertEqual([row[1] for row in rows], ["boundingmesh, QEM_Classic", "planes", "boundingmesh, MinConstant", "triangles", "distance"])
             self.assertTrue(all((row[2], row[-2]) == ("0", "encloses") for row in rows), rows)
             self.assertTrue(all(float(row[7]) < 1e-4 for row in rows if row[1].startswith("boundingmesh")), rows)
             self.assertTrue(all(float(row[7]) > 1e-3 for row in rows if not row[1].startswith("boundingmesh")), rows)
