@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
@@ -26,6 +27,44 @@ double scale_of(const Model& model) {
   for (const geom::Mesh& mesh : model.scene) look(mesh);
   return std::clamp(10 / smallest, 1e-4, 1e4);
 }
+
+/// Asks convex pairs for their distance alone. A simulation asks how deep they are in each other,
+/// too, which takes most of the time and sometimes fails (docs/algorithms/collision-engines.md).
+class Dispatcher : public btCollisionDispatcher {
+ public:
+  explicit Dispatcher(btCollisionConfiguration* configuration)
+      : btCollisionDispatcher(configuration) {
+    setNearCallback(look_at);
+  }
+
+  bool found = false;  ///< a contact of two hulls; the other pairs are left out then
+
+ private:
+  static const btConvexHullShape* hull_of(const btCollisionObject& object) {
+    const btCollisionShape* shape = object.getCollisionShape();
+    return shape->getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE
+               ? static_cast<const btConvexHullShape*>(shape)
+               : nullptr;
+  }
+
+  static void look_at(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                      const btDispatcherInfo& info) {
+    bool& found = static_cast<Dispatcher&>(dispatcher).found;
+    if (found) return;
+    const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+    const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    const btConvexHullShape *x = hull_of(a), *y = hull_of(b);
+    if (x == nullptr || y == nullptr) {
+      defaultNearCallback(pair, dispatcher, info);
+      return;
+    }
+    const btTransform &at_x = a.getWorldTransform(), &at_y = b.getWorldTransform();
+    btGjkEpaSolver2::sResults results;  // without margins
+    found = !btGjkEpaSolver2::Distance(x, at_x, y, at_y, at_y.getOrigin() - at_x.getOrigin(),
+                                       results) ||
+            results.distance <= x->getMargin() + y->getMargin();
+  }
+};
 
 /// Convex parts by GJK, triangles of the robot by GImpact, all behind a tree of boxes.
 class BulletEngine : public Engine {
@@ -59,7 +98,9 @@ class BulletEngine : public Engine {
   }
 
   bool collide() override {
+    dispatcher_.found = false;
     world_.performDiscreteCollisionDetection();
+    if (dispatcher_.found) return true;
     for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
       const btPersistentManifold* manifold = dispatcher_.getManifoldByIndexInternal(i);
       for (int k = 0; k < manifold->getNumContacts(); ++k)
@@ -109,7 +150,7 @@ class BulletEngine : public Engine {
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btCollisionObject>> objects_;
   btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_;
+  Dispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
   btCollisionWorld world_;
   std::vector<std::uint32_t> links_;

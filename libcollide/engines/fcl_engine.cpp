@@ -5,6 +5,7 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
 #include <fcl/narrowphase/distance.h>
+#include <kaboum/geom/turned_box.h>
 
 #include "engine.h"
 #include "fcl_geometry.h"
@@ -12,19 +13,36 @@
 namespace kaboum::collide {
 namespace {
 
+/// Leaves out pairs whose own boxes, turned, are apart: FCL's box of an object that is turned is
+/// that of a ball round it (docs/algorithms/collision-engines.md).
+bool collide_near(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+  const auto box = [](const fcl::CollisionObjectd& object) {
+    return static_cast<const geom::TurnedBox*>(object.getUserData());
+  };
+  return box(*a)->meets(*box(*b)) && fcl::DefaultCollisionFunction<double>(a, b, data);
+}
+
 /// libccd as the narrow phase of convex parts: FCL's default.
 class FclEngine : public Engine {
  public:
-  explicit FclEngine(const Model& model) : margin_(model.margin) {
+  explicit FclEngine(const Model& model)
+      : margin_(model.margin), robot_boxes_(model.robot.size()), scene_boxes_(model.scene.size()) {
     for (const Part& part : model.robot) {
+      geom::TurnedBox& box = robot_boxes_[links_.size()];
+      box.own = geom::bounding_box(part.mesh);
       links_.push_back(part.link);
       robot_objects_.push_back(
           std::make_unique<fcl::CollisionObjectd>(fcl_geometry(part.mesh, model.convex)));
+      robot_objects_.back()->setUserData(&box);
       robot_.registerObject(robot_objects_.back().get());
     }
     for (const geom::Mesh& mesh : model.scene) {
       scene_objects_.push_back(
           std::make_unique<fcl::CollisionObjectd>(fcl_geometry(mesh, model.convex)));
+      geom::TurnedBox& box = scene_boxes_[scene_objects_.size() - 1];
+      box.own = geom::bounding_box(mesh);
+      box.put({});
+      scene_objects_.back()->setUserData(&box);
       scene_objects_.back()->computeAABB();
       scene_.registerObject(scene_objects_.back().get());
     }
@@ -40,6 +58,7 @@ class FclEngine : public Engine {
       t.translation() = pose.translation;
       robot_objects_[i]->setTransform(t);
       robot_objects_[i]->computeAABB();
+      robot_boxes_[i].put(pose);
     }
     robot_.update();
   }
@@ -47,7 +66,7 @@ class FclEngine : public Engine {
   bool collide() override {
     if (margin_ > 0) return distance() <= margin_;
     fcl::DefaultCollisionData<double> data;
-    robot_.collide(&scene_, &data, fcl::DefaultCollisionFunction<double>);
+    robot_.collide(&scene_, &data, collide_near);
     return data.result.isCollision();
   }
 
@@ -60,6 +79,7 @@ class FclEngine : public Engine {
  private:
   double margin_;
   std::vector<std::uint32_t> links_;
+  std::vector<geom::TurnedBox> robot_boxes_, scene_boxes_;  // where objects point to
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> robot_objects_, scene_objects_;
   fcl::DynamicAABBTreeCollisionManagerd robot_, scene_;
 };

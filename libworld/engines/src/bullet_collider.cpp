@@ -6,6 +6,7 @@
 #include <btBulletCollisionCommon.h>
 #include <kaboum/base/error.h>
 #include <kaboum/geom/body_polytopes.h>
+#include <kaboum/geom/turned_box.h>
 
 #include <algorithm>
 #include <limits>
@@ -13,7 +14,6 @@
 #include <vector>
 
 #include "adapters.h"
-#include "turned_box.h"
 
 namespace kaboum::engines {
 namespace {
@@ -76,7 +76,7 @@ class BulletCollider : public Collider {
   struct Body {
     geom::Mesh mesh;
     bool convex = false;
-    TurnedBox box;
+    geom::TurnedBox box;
     std::unique_ptr<btTriangleMesh> triangles;
     std::unique_ptr<btGImpactMeshShape> surface;
     std::unique_ptr<btConvexHullShape> hull;

@@ -2,13 +2,12 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/engines/engine_world.h>
+#include <kaboum/geom/turned_box.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/world/exact_meshes.h>
 
 #include <algorithm>
 #include <mutex>
-
-#include "turned_box.h"
 
 namespace kaboum::engines {
 
@@ -90,7 +89,7 @@ class EngineWorld : public world::Substitute {
 
   /// Where a thing is.
   struct Place {
-    TurnedBox box;
+    geom::TurnedBox box;
     geom::Transform pose;
     bool known = false;  ///< to the collider, too
     bool placed = false, looked_at = false;

@@ -5,11 +5,11 @@
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/collision.h>
 #include <kaboum/geom/body_polytopes.h>
+#include <kaboum/geom/turned_box.h>
 
 #include <vector>
 
 #include "adapters.h"
-#include "turned_box.h"
 
 namespace kaboum::engines {
 namespace {
@@ -71,7 +71,7 @@ class FclCollider : public Collider {
  private:
   struct Body {
     std::shared_ptr<const fcl::CollisionGeometryd> shape;
-    TurnedBox box;
+    geom::TurnedBox box;
   };
   struct Thing {
     std::vector<Body> bodies;
