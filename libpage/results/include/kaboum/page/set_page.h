@@ -35,7 +35,8 @@ struct RobotWords {
   std::vector<Step> steps = {};  ///< what to do next
 };
 
-/// A page of a robot's bodies over its shapes: a verdict for each link, and a slider for each joint.
+/// A page of a robot's bodies over its shapes: a verdict for each link, and a slider for each
+/// joint.
 /// @throws Error as reading its meshes.
 std::string page_of_robot(const RobotWords& words, const robot::RobotFile& robot,
                           const certify::CertifiedRobot& made,
