@@ -234,7 +234,7 @@ done
 shows 0 'verified' "$BIN/bound-verify" cover wrap/b/m.wrl wrapped/links/l.glb
 
 # Some links only.
-expect 0 'of 1 link, from 1 mesh$' "$D" robot/r.urdf -o some --links arm/1 --epsilon 3% --effort fast
+expect 0 'of 1 link, from 1 mesh ' "$D" robot/r.urdf -o some --links arm/1 --epsilon 3% --effort fast
 grep -q 'filename="../robot/meshes/bracket.obj"' some/r.urdf || fail "a link that was not asked for is changed"
 shows 0 'verified' "$V" robot robot/r.urdf some/r.urdf
 expect 0 'from 2 meshes' "$D" robot/r.urdf -o rerun --epsilon 3% --effort fast
