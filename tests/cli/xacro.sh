@@ -84,7 +84,7 @@ grep -q "xacro-args 'of:=a b' reach:=0.5" with.json || fail "the check has no ar
 shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot robot/arm.urdf.xacro with/arm.urdf --epsilon 2% --xacro-args 'of:=a b' --xacro-args reach:=0.5
 expect 3 'xacro fails, exit code 3: got: .*; arguments that it wants are stated by --xacro-args' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2%
 for bad in reach :=1 --deps:=1; do
-  expect 2 'no argument of xacro|requires|not expected' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2% --xacro-args "$bad"
+  expect 2 'is no argument of xacro: NAME:=VALUE is meant' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2% --xacro-args "$bad"
 done
 expect 2 'are for files called NAME.xacro' "$D" of-urdf/arm.urdf -o x --epsilon 2% --xacro-args a:=1
 pgrep -f "$WORK/bin/xacro" >/dev/null && fail "xacro still runs"

@@ -21,7 +21,7 @@ std::string other_value(const Option<Request>& o) {
     case OptionDescription::Kind::Memory:
       return "1000";
     case OptionDescription::Kind::Number:
-      return option_text::of(0.5 * (o.low + std::min(o.high, 1.0)));
+      return option_text::of(0.5 * (o.low + std::min(o.high, o.low + 1.0)));
     case OptionDescription::Kind::Length:
       return o.absolute ? "0.125" : "0.125%";
     case OptionDescription::Kind::Choice:

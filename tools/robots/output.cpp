@@ -3,6 +3,7 @@
 #include "output.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/geom/prepare.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot_folder/urdf_text.h>
 
@@ -58,9 +59,15 @@ void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
                    (more == 0 ? std::string()
                               : "; so it is for " + counted(more, "more mesh", "more meshes")));
   }
-  if (lines.size() > warnings.size())
+  std::size_t shown = warnings.size();
+  for (const std::string& text : lines)
+    if (geom::is_warning(text)) {
+      log(quiet, text);
+      ++shown;
+    }
+  if (lines.size() > shown)
     log(quiet,
-        counted(lines.size() - warnings.size(), "note", "notes") +
+        counted(lines.size() - shown, "note", "notes") +
             " on how meshes are read and prepared: --verbose prints them, reports have them");
 }
 

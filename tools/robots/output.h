@@ -23,7 +23,8 @@ robot_folder::FolderOptions folder_options(const RobotOptions& options);
 /// Notes on files, for later.
 robot_folder::FileNote note_in(Notes& notes);
 
-/// Notes on meshes, for the terminal: warnings, and how many others there are; with --verbose all.
+/// Notes on meshes, for the terminal: those of what is not enclosed, warnings, and how many others
+/// there are; with --verbose all.
 /// @param warnings  of meshes, by their files
 void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
                const std::vector<std::pair<std::string, std::string>>& warnings);
