@@ -108,7 +108,7 @@ bool is_of_body(const MassOf<double>& m) {
   Eigen::Matrix3d inertia;
   inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(inertia, Eigen::EigenvaluesOnly);
-  const Vec3 main = found.eigenvalues();
+  const Vec3& main = found.eigenvalues();
   return main[0] > 0 && main[0] + main[1] >= main[2];
 }
 
@@ -245,9 +245,8 @@ MassProperties properties_of(const Integrals& solid, const Integrals& sum,
 }  // namespace
 
 MassProperties Moments::with_density(double density) const {
-  const Range rho{Rational(density)};
   return properties_of(numbers_->of_solid(), numbers_->sum,
-                       [&](const Range& /*volume*/) { return rho; });
+                       [density](const Range& /*volume*/) { return Range{Rational(density)}; });
 }
 
 MassProperties Moments::with_mass(double mass) const {

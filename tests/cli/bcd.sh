@@ -95,7 +95,7 @@ assert number["min_thickness"]["wished"] == 0.005, number["min_thickness"]
 assert abs(share["min_thickness"]["wished"] - 0.02 * share["diagonal"]) < 1e-12, share["min_thickness"]
 assert "--min-thickness 2%" in share["parameters"]
 END
-expect 0 'verified exactly' "$D" "$BRACKET" -o aspect.glb --epsilon 5% --effort fast --max-aspect 10 --report aspect.json
+expect 0 'verified exactly' "$D" "$BRACKET" -o aspect.glb --epsilon 5% --effort fast --max-aspect 30 --report aspect.json
 grep -q '"max_aspect"' aspect.json || fail "no aspect in the report"
 shows 0 'verified' "$BIN/bound-verify" cover "$BRACKET" aspect.glb --epsilon 5%
 # What cannot be kept with both is said, and is no success.
