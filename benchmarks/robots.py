@@ -314,7 +314,7 @@ def summary_of(rows):
     return (f"{len(rows)} robots are listed. {absent} of them are not in the snapshots, {len(later)} are not measured yet. "
             f"Of the other {len(there)}:\n\n"
             f"- {len(written)} are written, {len(there) - len(written)} refused or stopped;\n"
-            f"- {len(loads)} of those written are loaded by an engine;\n"
+            f"- {len(loads)} of those written are loaded by one engine at least;\n"
             f"- of {len(held)} every link is held; of {len(checked)} the printed check decided;\n"
             f"- kinematics were compared {len(compared)} times with an engine's, originals and what is "
             f"written: {len(near)} times all links are where the engine has them, within {worst:.1e}.\n")
@@ -323,13 +323,16 @@ def summary_of(rows):
 def page_of(rows):
     commits = sorted({row["commit"] for row in rows if row.get("missing") != LATER})
     dates = sorted({row["date"] for row in rows})
+    efforts = sorted({row["effort"] for row in rows if "effort" in row})
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         machine = re.search(r"model name\s*: (.*)", file.read())
     return ("# A table of robots\n\n"
             "Public robots, each decomposed for collision checks, its links judged, its printed check run, and what was\n"
-            "written loaded by the engines of [today](engines.md#engines-of-today). CPU seconds are those of\n"
-            "`bcd-decompose` without cache. Made by `benchmarks/robots.py`, which says how; sources are folders of public\n"
-            "repositories, named as in `benchmarks/robots.txt`.\n\n"
+            "written loaded by the engines of [today](engines.md#engines-of-today). The shapes are those for collisions, but\n"
+            "where a row says otherwise: links with shapes for drawing only are not counted, and nothing is made for them.\n"
+            f"Effort: {', '.join(efforts)}. CPU seconds are those of `bcd-decompose` without cache. Made by\n"
+            "`benchmarks/robots.py`, which says how; sources are folders of public repositories, named as in\n"
+            "`benchmarks/robots.txt`.\n\n"
             f"Measured {dates[0]}{'' if len(dates) == 1 else ' to ' + dates[-1]}, commit "
             f"{', '.join(commits)}, {machine.group(1) if machine else 'unknown processor'}, {os.cpu_count()} cores.\n\n"
             + summary_of(rows) + "\n" + table_of(rows))
@@ -363,6 +366,8 @@ def main():
     sources = pathlib.Path(args.sources[0]).resolve()
     args.commit = subprocess.run(["git", "-C", str(HERE), "rev-parse", "--short", "HEAD"],
                                  capture_output=True, text=True, check=False).stdout.strip()
+    if subprocess.run(["git", "-C", str(HERE), "diff", "--quiet", "HEAD"], check=False).returncode != 0:
+        args.commit += "+"  # with changes that are not committed
     args.readers = None if args.only_table else load_engines()
     rows = []
     for file, words in listed(args.list):

@@ -1,5 +1,8 @@
 """What is measured of anybody's mesh or set in the same way: surface distances, how far the original sticks out, and what bound-verify decides."""
 
+import collections
+
+import meshes
 from document import figure
 
 GAP, SECONDS = 0.1, 30  # of distances between solids: relative, CPU time
@@ -27,13 +30,24 @@ def surfaces(call, name, original, here, more=()):
 BAD_INPUT = 3  # bodies that are not convex, exactly (they are taken as one mesh then), or a mesh that is not closed
 
 
+def is_closed(path):
+    """Whether each edge of a mesh is run through as often one way as the other. Of formats that are not read here: yes."""
+    if path.suffix not in (".off", ".obj"):
+        return True
+    edges = collections.Counter()
+    for t in (meshes.read_off if path.suffix == ".off" else meshes.read_obj)(path)[1]:
+        for a, b in zip(t, t[1:] + t[:1]):
+            edges[min(a, b), max(a, b)] += 1 if a < b else -1
+    return not any(edges.values())
+
+
 def verdict(call, name, original, here, is_set):
     """What bound-verify says of whether the original's solid is inside, and the bracket of how far it sticks out [percent], None where
     nothing is decided, and where a mesh is not closed: simplifiers of surfaces may leave gaps, and gaps bound no solid. Faces of the original that enclose nothing may stick out of what encloses the solid."""
     result = f"{name}-verdict-report.json"
     command = ["cover", original, here] if is_set else ["mesh", "--outer", original, here]
     code = call(f"{name}-verdict", call.programs / "bound-verify", [*command, "--quiet", "--report", result], [original, call.folder / here], [result],
-                (0, 1, 7) if is_set else (0, 1, 7, BAD_INPUT))
+                (0, 1, 7) if is_set or is_closed(call.folder / here) else (0, 1, 7, BAD_INPUT))
     if code is None:
         return "not decided", None
     if code == BAD_INPUT:

@@ -115,10 +115,13 @@ def _cells(section):
 
 def changes(before, after):
     """(section, where, column, before, after, verdict) of all that differs between two results of one kind (section -> what is kept),
-    of sections that both have. The verdict is worse, better, changed or gone."""
+    of sections that both have. The verdict is worse, better, changed or gone. Of a section that was run for other models the figures
+    that both have are compared."""
     out = []
     for name in sorted(set(before) & set(after)):
         old, new = _cells(before[name]), _cells(after[name])
+        if before[name].get("models") != after[name].get("models"):
+            old, new = ({key: cells[key] for key in cells if key in old and key in new} for cells in (old, new))
         for key in [*old, *(k for k in new if k not in old)]:
             was, now = old.get(key, ""), new.get(key, "")
             if was != now:
@@ -141,11 +144,12 @@ def _verdict(key, was, now):
     return "better" if more == bool(MORE_IS_BETTER.search(key[1]) or MORE_IS_BETTER.search(key[0].rsplit(" / ", 1)[-1])) else "worse"
 
 
-def same_figures(first, second):
-    """Lines on all that differs between two results, whatever they are of; none where all figures are the same but for times."""
+def same_figures(first, second, wanted=None):
+    """Lines on all that differs between two results, whatever they are of; none where all figures are the same but for times.
+    @param wanted  sections; None: all"""
     lines = []
     for kind in ("whole", "quick"):
-        a, b = first.get(kind, {}), second.get(kind, {})
+        a, b = ({name: kept for name, kept in results.get(kind, {}).items() if wanted is None or name in wanted} for results in (first, second))
         lines += [f"{kind}: {name} is in one of them only" for name in sorted(set(a) ^ set(b))]
         lines += [f"{kind}: {name}: {where}: {column}: {was} | {now}" for name, where, column, was, now, _ in changes(a, b)]
     return lines

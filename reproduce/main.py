@@ -40,7 +40,7 @@ def arguments(argv):
     parser.add_argument("--keep", action="store_true", help="put the results of what is run into docs/, with date, machine and commit, and mark "
                         "what became worse")
     parser.add_argument("--compare", type=pathlib.Path, metavar="DIR", help="run nothing; say which figures of --out differ from those of DIR, a "
-                        "folder that another call wrote, or results.json; times and memory apart")
+                        "folder that another call wrote, or results.json; times and memory apart. With --sections, of these")
     options = parser.parse_args(argv)
     if options.jobs < 1 or options.limit < 1:
         parser.error("--jobs and --limit must be at least 1")
@@ -54,7 +54,7 @@ def compared(options):
             print(f"reproduce-thesis: {folder} has no results.json; run scripts/reproduce-thesis --out {folder}", file=sys.stderr)
             return 3
     first, second = keep.read(options.compare), keep.read(options.out)
-    lines = keep.same_figures(first, second)
+    lines = keep.same_figures(first, second, options.sections and options.sections.split(","))
     for line in lines:
         print(line)
     figures = sum(len(s["tables"]) for kind in second.values() for s in kind.values())

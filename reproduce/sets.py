@@ -323,10 +323,10 @@ def section(context, document):
         "table-4-3.csv.")
     if printed:
         document.paragraph(
-            "What the thesis measures follows from its figures. Its a→o of the hulls of links are 0.009 mm at most: facets across concave places "
+            "What the thesis measures is not said; its figures suggest it. Its a→o of the hulls of links are 0.009 mm at most: facets across concave places "
             "are farther from the original, and only the vertices are on it, so it went from vertices. Its o→a to 30 bodies fall from 42.30 to "
             "42.01 mm where vertices are contracted further. Contractions only enlarge bodies, and a point inside of a union "
-            "cannot come nearer to its boundary when the union grows, so it went to all faces, not to the union's boundary.")
+            "cannot come nearer to its boundary when the union grows, so it probably went to all faces, not to the union's boundary. That asks that its contractions kept all they enclosed, by more than the 0.3 mm that count here.")
     if not context.quick and not make.compared.is_file():
         document.paragraph("Segmentations by clusters and by voxels are left out: segmentation-benchmark is not built; "
                            "cmake --preset release -DKABOUM_BUILD_BENCHMARKS=ON.")
