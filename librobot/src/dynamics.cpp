@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "link_elements.h"
 #include "xml.h"
 
 namespace kaboum::robot {
@@ -63,16 +64,26 @@ JointDynamics read_joint(const XmlFile& file, const XMLElement& element) {
 
 }  // namespace
 
+LinkElements urdf_links(const tinyxml2::XMLDocument& document, const std::string& name) {
+  const XmlFile file(name);
+  LinkElements out;
+  for (const auto* e = document.RootElement()->FirstChildElement("link"); e != nullptr;
+       e = e->NextSiblingElement("link")) {
+    const std::string link = file.text(*e, "name");
+    if (!out.elements.emplace(link, e).second) file.fail(*e, "link '" + link + "' exists already");
+    if (const XMLElement* inertial = file.only_child(*e, "inertial"); inertial != nullptr)
+      out.inertials.emplace(link, read_inertial(file, *inertial));
+  }
+  return out;
+}
+
 Dynamics parse_dynamics(std::string_view text, const std::string& name) {
   tinyxml2::XMLDocument document;
   parse_xml(document, text, name);
   const XmlFile file(name);
   const XMLElement& root = *document.RootElement();
   Dynamics out;
-  for (const auto* e = root.FirstChildElement("link"); e != nullptr;
-       e = e->NextSiblingElement("link"))
-    if (const XMLElement* inertial = file.only_child(*e, "inertial"); inertial != nullptr)
-      out.links.emplace(file.text(*e, "name"), read_inertial(file, *inertial));
+  out.links = urdf_links(document, name).inertials;
   for (const auto* e = root.FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint"))
     out.joints.emplace(file.text(*e, "name"), read_joint(file, *e));

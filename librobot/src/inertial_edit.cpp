@@ -1,9 +1,12 @@
 // Documents of robots with other inertials: the document is edited, so that all else stays.
 
+#include <kaboum/base/error.h>
 #include <kaboum/robot/inertial_edit.h>
 
+#include <array>
 #include <functional>
 
+#include "link_elements.h"
 #include "model_words.h"
 #include "xml.h"
 
@@ -11,7 +14,6 @@ namespace kaboum::robot {
 namespace {
 
 using tinyxml2::XMLElement;
-using Write = std::function<void(XMLElement& inertial, const Inertial&)>;
 
 constexpr std::array<const char*, 6> kEntries{"ixx", "iyy", "izz", "ixy", "ixz", "iyz"};
 
@@ -48,27 +50,62 @@ void write_mjcf(XMLElement& e, const Inertial& inertial) {
   e.SetAttribute("fullinertia", digits({xx, yy, zz, xy, xz, yz}).c_str());
 }
 
-/// Gives the elements of a tag, wherever they are below this one, the inertials of their names.
-void edit_below(XMLElement& parent, std::string_view tag, const Write& write,
-                std::map<std::string, Inertial>& left) {
-  for (XMLElement* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-    const std::string_view own = e->Name();
-    if (own == "replicate") continue;  // one element for several links
-    const char* name = e->Attribute("name");
-    if (const auto found = own == tag && name != nullptr ? left.find(name) : left.end();
-        found != left.end()) {
-      XMLElement* fresh = parent.GetDocument()->NewElement("inertial");
-      write(*fresh, found->second);
-      XMLElement* old = e->FirstChildElement("inertial");
-      if (old != nullptr)
-        e->InsertAfterChild(old, fresh);
-      else
-        e->InsertFirstChild(fresh);
-      if (old != nullptr) e->DeleteChild(old);
-      left.erase(found);
-    }
-    edit_below(*e, tag, write, left);
+/// Takes the inertials of a link's element out: MJCF has frames in bodies.
+void delete_inertials(XMLElement& link) {
+  for (XMLElement* e = link.FirstChildElement(); e != nullptr;) {
+    XMLElement* next = e->NextSiblingElement();
+    const std::string_view tag = e->Name();
+    if (tag == "inertial")
+      link.DeleteChild(e);
+    else if (tag == "frame" || tag == "replicate")
+      delete_inertials(*e);
+    e = next;
   }
+}
+
+/// About the axes of the link.
+Inertial in_link_axes(const Inertial& inertial) {
+  Inertial out = inertial;
+  out.origin.linear = Mat3::Identity();
+  const Mat3& r = inertial.origin.linear;
+  if (!r.isIdentity(0)) out.inertia = r * inertial.inertia * r.transpose();
+  return out;
+}
+
+bool is_same(const Inertial& a, const Inertial& b) {
+  return a.mass == b.mass && a.origin.translation == b.origin.translation &&
+         a.origin.linear == b.origin.linear && a.inertia == b.inertia;
+}
+
+/// A kind of document: how its links are found, and how an inertial is stated.
+struct Kind {
+  std::function<LinkElements(tinyxml2::XMLDocument&, const std::string&)> links;
+  std::function<void(XMLElement& inertial, const Inertial&)> write;
+};
+
+const Kind* kind_of(std::string_view root) {
+  static const std::map<std::string_view, Kind> kinds{{"robot", {urdf_links, write_urdf}},
+                                                      {"sdf", {sdf_links, write_sdf}},
+                                                      {"mujoco", {mjcf_links, write_mjcf}}};
+  const auto found = kinds.find(root);
+  return found == kinds.end() ? nullptr : &found->second;
+}
+
+/// Reads the new text: these links have these inertials, and all others theirs.
+void require_written(const Kind& kind, const std::string& text, const std::string& name,
+                     std::map<std::string, Inertial> wanted) {
+  tinyxml2::XMLDocument document;
+  parse_xml(document, text, name);
+  const auto fail = [&](const std::string& link) {
+    throw Error(ErrorCode::OutputFailed,
+                name + ": link '" + link + "' has not the inertial that was written");
+  };
+  for (const auto& [link, inertial] : kind.links(document, name).inertials) {
+    const auto found = wanted.find(link);
+    if (found == wanted.end() || !is_same(found->second, inertial)) fail(link);
+    wanted.erase(found);
+  }
+  if (!wanted.empty()) fail(wanted.begin()->first);
 }
 
 void require_own_masses(const XmlFile& file, const XMLElement& root) {
@@ -92,23 +129,34 @@ InertialEdit with_inertials(std::string_view text, const std::string& name,
   parse_xml(document, text, name);
   XMLElement& root = *document.RootElement();
   const XmlFile file(name);
-  const std::string_view kind = root.Name();
-  std::map<std::string, Inertial> left = inertials;
-  if (kind == "robot") {
-    edit_below(root, "link", write_urdf, left);
-  } else if (kind == "sdf") {
-    edit_below(root, "link", write_sdf, left);
-  } else if (kind == "mujoco") {
-    require_own_masses(file, root);
-    edit_below(root, "body", write_mjcf, left);
-  } else {
-    file.fail(root, "neither URDF nor MJCF nor SDF: no masses can be written");
-  }
+  const Kind* kind = kind_of(root.Name());
+  if (kind == nullptr) file.fail(root, "neither URDF nor MJCF nor SDF: no masses can be written");
+  if (std::string_view(root.Name()) == "mujoco") require_own_masses(file, root);
+  const LinkElements links = kind->links(document, name);
+  std::map<std::string, Inertial> wanted = links.inertials;
   InertialEdit out;
-  for (const auto& [link, inertial] : left) out.missing.push_back(link);
+  for (const auto& [link, inertial] : inertials) {
+    const auto found = links.elements.find(link);
+    if (found == links.elements.end()) {
+      out.missing.push_back(link);
+      continue;
+    }
+    auto& e = *const_cast<XMLElement*>(found->second);  // of our document
+    XMLElement* fresh = document.NewElement("inertial");
+    wanted[link] = in_link_axes(inertial);
+    kind->write(*fresh, wanted[link]);
+    tinyxml2::XMLNode* old = e.FirstChildElement("inertial");
+    tinyxml2::XMLNode* before = old != nullptr ? old->PreviousSibling() : nullptr;
+    delete_inertials(e);
+    if (before != nullptr)
+      e.InsertAfterChild(before, fresh);
+    else
+      e.InsertFirstChild(fresh);
+  }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   out.text = printer.CStr();
+  require_written(*kind, out.text, name, std::move(wanted));
   return out;
 }
 

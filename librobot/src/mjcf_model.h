@@ -4,6 +4,7 @@
 #include <tinyxml2.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct MjcfMesh {
 struct MjcfFit {
   Transform pose;            ///< in the mesh's frame
   Vec3 size = Vec3::Zero();  ///< half sizes, as MJCF states them; 0: a mesh without volume
+  /// The rotation as the compiler's euler angles, where a class of the geom turns it: then MuJoCo
+  /// 2.2.2 passes over a `quat` of the geom's own. It takes `euler` before all else.
+  std::optional<Vec3> euler;
 };
 
 /// The primitive that MuJoCo makes of a geom of another type that names a mesh.
@@ -36,6 +40,8 @@ MjcfFit fit_to_mesh(Geometry::Shape shape, const MjcfMesh& asset, const geom::Me
 struct MjcfModel : MjcfRobot {
   using Elements = std::vector<std::vector<const tinyxml2::XMLElement*>>;
   Elements collision, visual;  ///< of each link, in the order of its shapes
+  /// The bodies of links; none of the world and of links that are made for joints.
+  std::vector<const tinyxml2::XMLElement*> bodies;
   std::map<std::string, MjcfMesh> meshes;
   std::string mesh_folder, texture_folder;  ///< of the compiler
   /// Bodies whose mass is that of their geoms, by link.

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 
+#include "link_elements.h"
 #include "mjcf_model.h"
 #include "model_words.h"
 #include "xml.h"
@@ -22,7 +23,8 @@ using Attributes = std::map<std::string, std::string>;
 
 constexpr std::size_t kMostLinks = 100'000;
 constexpr const char* kWorld = "world";
-/// Ways of stating a rotation that come before `quat`.
+/// Ways of stating a rotation that come before `quat`. MuJoCo 2.2.2 keeps those of a class beside
+/// an element's own, and takes the last of these that is there.
 constexpr std::array<const char*, 4> kOtherRotations{"axisangle", "xyaxes", "zaxis", "euler"};
 
 /// Attributes over those of a class: a rotation takes the place of the class's.
@@ -32,6 +34,14 @@ void lay_over(Attributes& below, const XMLElement& element) {
     for (const char* key : kOtherRotations) below.erase(key);
   for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
     below[a->Name()] = a->Value();
+}
+
+/// Where in kOtherRotations the last is that an element states itself; -1: none.
+int rotation_of(const XMLElement& element) {
+  int out = -1;
+  for (int i = 0; i < static_cast<int>(kOtherRotations.size()); ++i)
+    if (element.Attribute(kOtherRotations[static_cast<std::size_t>(i)]) != nullptr) out = i;
+  return out;
 }
 
 /// Default classes: the attributes that elements of a kind have where they state none.
@@ -55,6 +65,16 @@ class DefaultClasses {
     return out;
   }
 
+  /// Where in kOtherRotations the last is that a class of an element states, or one that this class
+  /// is made from; -1: none.
+  [[nodiscard]] int rotates(const XMLElement& element, const std::string& class_here) const {
+    const char* own = element.Attribute("class");
+    const std::string name = own != nullptr ? own : class_here;
+    const auto found =
+        rotations_.find({name.empty() || name == main_ ? "main" : name, element.Name()});
+    return found == rotations_.end() ? -1 : found->second;
+  }
+
   void require(const std::string& name, const XMLElement& element) const {
     static_cast<void>(named(name, element));
   }
@@ -72,12 +92,20 @@ class DefaultClasses {
   void read_into(const XMLElement& element, const std::string& name) {
     Kinds& kinds = classes_[name];
     for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-      if (std::string_view(e->Name()) != "default") lay_over(kinds[e->Name()], *e);
+      if (std::string_view(e->Name()) != "default") {
+        lay_over(kinds[e->Name()], *e);
+        int& last = rotations_.try_emplace({name, e->Name()}, -1).first->second;
+        last = std::max(last, rotation_of(*e));
+      }
     for (const auto* e = element.FirstChildElement("default"); e != nullptr;
          e = e->NextSiblingElement("default")) {
       const char* inner = e->Attribute("class");
       if (inner == nullptr) fail_at(name_, e->GetLineNum(), "a <default> without a class");
-      if (!classes_.contains(inner)) classes_[inner] = classes_[name];
+      if (!classes_.contains(inner)) {
+        classes_[inner] = classes_[name];
+        for (const auto& [tag, unused] : classes_[name])
+          rotations_[{inner, tag}] = rotations_[{name, tag}];
+      }
       read_into(*e, inner);
     }
   }
@@ -85,6 +113,7 @@ class DefaultClasses {
   const std::string& name_;
   std::string main_ = "main";
   std::map<std::string, Kinds> classes_;
+  std::map<std::pair<std::string, std::string>, int> rotations_;  // by class and tag
 };
 
 /// Settings of <compiler>.
@@ -217,6 +246,25 @@ class Reader {
     return q.normalized().toRotationMatrix();
   }
 
+  /// Angles that from_euler makes a rotation of, in the compiler's unit.
+  [[nodiscard]] Vec3 euler_of(const XMLElement& e, const Mat3& rotation) const {
+    const std::string& order = compiler_.euler;
+    const bool moving = std::ranges::all_of(order, [](char c) { return c >= 'x'; });
+    const bool still = std::ranges::all_of(order, [](char c) { return c < 'x'; });
+    if (!(moving || still) || order[0] == order[1] || order[1] == order[2])
+      fail(e, "its class turns it, and eulerseq=\"" + order +
+                  "\" states not every rotation; have MuJoCo save the model (mj_saveLastXML)");
+    const auto axis = [&](std::size_t i) {
+      return static_cast<Eigen::Index>(order[i] - (moving ? 'x' : 'X'));
+    };
+    Vec3 out = moving ? rotation.eulerAngles(axis(0), axis(1), axis(2))
+                      : rotation.eulerAngles(axis(2), axis(1), axis(0)).reverse().eval();
+    if (compiler_.degrees) out *= 180.0 / std::numbers::pi;
+    if (!from_euler({angle(out.x()), angle(out.y()), angle(out.z())}).isApprox(rotation, 1e-12))
+      fail(e, "its rotation cannot be stated as euler angles, as its class states one");
+    return out;
+  }
+
   /// The least rotation of z to a direction.
   static Mat3 turned_to(const Vec3& direction) {
     Vec3 axis = Vec3::UnitZ().cross(direction);
@@ -316,6 +364,7 @@ class Reader {
     out_.robot.links.back().name = links_.give(name);
     out_.collision.emplace_back();
     out_.visual.emplace_back();
+    out_.bodies.push_back(nullptr);
     out_.weighed_by_geoms.push_back(true);
     return static_cast<std::uint32_t>(out_.robot.links.size() - 1);
   }
@@ -433,6 +482,7 @@ class Reader {
       fixed.origin = ahead;
       link = add_below(link, name, fixed);
     }
+    out_.bodies[link] = &e;
     read_body(e, link, {}, class_inside, suffix);
   }
 
@@ -513,6 +563,11 @@ class Reader {
     const Attributes a = classes_.of(e, class_here);
     const std::string* kind = find(a, "type");
     const std::string type = kind == nullptr ? "sphere" : *kind;
+    const int by_class = classes_.rotates(e, class_here), own = rotation_of(e);
+    if (by_class > own && (own >= 0 || e.Attribute("quat") != nullptr))
+      note(e, std::string("a geom's own rotation stands for the ") +
+                  kOtherRotations[static_cast<std::size_t>(by_class)] +
+                  " of its class, as in MuJoCo 4.0; in 2.2.2 that of the class counts");
     const bool collides =
         number(e, a, "contype", 1) != 0 || number(e, a, "conaffinity", 1) != 0 || paired(e);
     if (type == "plane" || type == "hfield") {
@@ -530,7 +585,7 @@ class Reader {
     if (type == "mesh")
       place_mesh(e, a, g);
     else if (mesh != nullptr)
-      place_fitted(e, a, type, g);
+      place_fitted(e, a, type, by_class >= 0, g);
     else
       place_primitive(e, a, type, g);
     g.origin = frame * g.origin;
@@ -568,7 +623,7 @@ class Reader {
   }
 
   void place_fitted(const XMLElement& e, const Attributes& a, const std::string& type,
-                    Geometry& g) {
+                    bool turned_by_class, Geometry& g) {
     const MjcfMesh& mesh = mesh_of(e, a);
     if (!meshes_)
       fail(e, "a " + type + " that MuJoCo fits to the mesh '" + a.at("mesh") +
@@ -584,6 +639,7 @@ class Reader {
         fit_to_mesh(g.shape, mesh, read_mesh(e, file_of(mesh.file)), compiler_.fits_boxes);
     fit.size *= number(e, a, "fitscale", 1);
     fit.pose = pose(e, a) * fit.pose;
+    if (turned_by_class) fit.euler = euler_of(e, fit.pose.linear);
     g.origin = fit.pose;
     require_positive(e, type, {fit.size.x(), fit.size.y(), fit.size.z()});
     set_size(g, {fit.size.x(), fit.size.y(), fit.size.z()});
@@ -763,6 +819,7 @@ std::string state_fitted_sizes(std::string_view text, const std::string& name,
   for (const auto& [element, fit] : model.fitted) {
     auto& e = *const_cast<XMLElement*>(element);  // of our document
     for (const char* key : kOtherRotations) e.DeleteAttribute(key);
+    e.DeleteAttribute("quat");
     e.DeleteAttribute("mesh");
     e.DeleteAttribute("fitscale");
     e.SetAttribute("type", model.geoms.at(element).contains("type")
@@ -771,7 +828,10 @@ std::string state_fitted_sizes(std::string_view text, const std::string& name,
     e.SetAttribute("size", digits(fit.size).c_str());
     e.SetAttribute("pos", digits(fit.pose.translation).c_str());
     const std::array<double, 4> q = quaternion(fit.pose.linear);
-    e.SetAttribute("quat", digits({q[0], q[1], q[2], q[3]}).c_str());
+    if (fit.euler)
+      e.SetAttribute("euler", digits(*fit.euler).c_str());
+    else
+      e.SetAttribute("quat", digits({q[0], q[1], q[2], q[3]}).c_str());
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
@@ -786,6 +846,18 @@ MjcfModel read_mjcf(const tinyxml2::XMLDocument& document, const std::string& na
   } catch (const Error& error) {
     throw Error(error.code(), name + ": " + error.what());
   }
+  return out;
+}
+
+LinkElements mjcf_links(const tinyxml2::XMLDocument& document, const std::string& name) {
+  MjcfModel model = read_mjcf(document, name);
+  std::map<const XMLElement*, std::size_t> copies;
+  for (const XMLElement* body : model.bodies) ++copies[body];
+  LinkElements out;
+  out.inertials = std::move(model.dynamics.links);
+  for (std::size_t l = 0; l < model.bodies.size(); ++l)
+    if (const XMLElement* body = model.bodies[l]; body != nullptr && copies[body] == 1)
+      out.elements.emplace(model.robot.links[l].name, body);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <kaboum/robot/robot.h>
 
 #include <cmath>
+#include <set>
 
 namespace kaboum::robot {
 namespace {
@@ -51,7 +52,9 @@ void require_valid(const Robot& robot) {
   if (robot.links.empty() || robot.joints.size() + 1 != robot.links.size())
     fail("a robot needs one joint per link but the root");
   for (std::size_t j = 0; j < robot.joints.size(); ++j) require_valid(robot, robot.joints[j], j);
+  std::set<std::string_view> names;
   for (const Link& link : robot.links) {
+    if (!names.insert(link.name).second) fail("two links are called '" + link.name + "'");
     for (const Geometry& g : link.collision) require_valid(link, g);
     for (const Geometry& g : link.visual) require_valid(link, g);
   }

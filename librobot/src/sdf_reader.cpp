@@ -12,6 +12,7 @@
 #include <numbers>
 #include <set>
 
+#include "link_elements.h"
 #include "model_words.h"
 #include "xml.h"
 
@@ -46,6 +47,7 @@ class Reader {
     find_model();
     out_.robot.name = file_.text(*model_, "name");
     collect(*model_, "");
+    name_joints();
     build();
     try {
       require_valid(out_.robot);
@@ -93,18 +95,40 @@ class Reader {
   /// @param scope  of the names inside: empty, or "arm::"
   void collect(XMLElement& model, const std::string& scope) {
     refuse_includes(model);
-    std::set<std::string> tags;
+    std::set<std::string> joints;
     for (const char* tag : {"link", "joint", "frame", "model"})
       for (XMLElement* e = model.FirstChildElement(tag); e != nullptr;
            e = e->NextSiblingElement(tag)) {
         const std::string named = file_.text(*e, "name");
-        if (named == kWorld || !tags.insert(std::string(tag) + ' ' + named).second)
-          file_.fail(*e, "the name '" + named + "' is there already");
-        frames_.emplace(scope + named, e);  // before 1.7 a joint may have a link's name
+        if (named == kWorld || named == kModel) fail_twice(*e, named);
+        const bool fresh = std::string_view(tag) == "joint"
+                               ? joints.insert(named).second
+                               : frames_.emplace(scope + named, e).second;
+        if (!fresh) fail_twice(*e, scope + named);
         scopes_.emplace(e, scope);
         order_[tag].push_back(e);
         if (std::string_view(tag) == "model") collect(*e, scope + named + "::");
       }
+  }
+
+  /// Gives joints their names, after all else. Before 1.7 a joint may have the name of a link or a
+  /// nested model, which is what others mean by it, as in libsdformat.
+  void name_joints() {
+    for (XMLElement* e : order_["joint"]) {
+      const auto [other, fresh] = frames_.emplace(name_of(*e), e);
+      if (fresh) continue;
+      const std::string_view tag = other->second->Name();
+      if (minor_ >= 7 || (tag != "link" && tag != "model")) fail_twice(*e, other->first);
+    }
+  }
+
+  [[noreturn]] void fail_twice(const XMLElement& e, const std::string& named) const {
+    const auto other = frames_.find(named);
+    std::string what = "the name '" + named + "' is there already";
+    if (other != frames_.end())
+      what += ": <" + std::string(other->second->Name()) + "> in line " +
+              std::to_string(other->second->GetLineNum());
+    file_.fail(e, what);
   }
 
   /// The name from outside of what an element names, or of an element itself.
@@ -638,6 +662,17 @@ SdfRobot parse_sdf(std::string_view text, const std::string& name) {
   Reader reader(*document.RootElement(), name);
   reader.read();
   return std::move(reader.result());
+}
+
+LinkElements sdf_links(tinyxml2::XMLDocument& document, const std::string& name) {
+  Reader reader(*document.RootElement(), name);
+  reader.read();
+  LinkElements out;
+  out.inertials = std::move(reader.result().dynamics.links);
+  const std::vector<Link>& links = reader.result().robot.links;
+  for (std::size_t l = 0; l < links.size(); ++l)
+    if (reader.has_element(l)) out.elements.emplace(links[l].name, &reader.link_element(l));
+  return out;
 }
 
 std::string sdf_with_shapes(std::string_view text, const std::string& name, const ShapeEdit& edit) {

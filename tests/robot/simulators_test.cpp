@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
+#include <kaboum/robot/inertial_edit.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/sdf.h>
 
@@ -136,8 +137,49 @@ TEST(Mjcf, PrimitivesFittedToMeshes) {
     EXPECT_NEAR(ball.size.x(), *compiler == '\0' ? 1.75 / 3 : 1, 1e-9);
   }
   EXPECT_EQ(stated("<geom size='1'/>"), mjcf("<geom size='1'/>", mesh)) << "as it was";
+  // MuJoCo 2.2.2 passes over a geom's quat where its class turns it, and takes euler before all.
+  for (const char* order : {"xyz", "ZYX", "zyz"})
+    for (const std::string own : {"", "euler='0 0 0'", "quat='1 2 0 0'"}) {
+      const std::string geom = "<geom type='box' mesh='p' pos='0 0 1' class='c' " + own + "/>";
+      const std::string kinds = "<compiler eulerseq='" + std::string(order) +
+                                "'/><default><geom zaxis='1 1 0'/><default class='c'><geom "
+                                "axisangle='1 2 3 40'/></default></default>";
+      const std::string turned = stated(geom, kinds);
+      EXPECT_NE(turned.find("euler=\""), std::string::npos) << turned;
+      EXPECT_EQ(turned.find(" quat=\""), std::string::npos) << turned;
+      const Transform got = parse(turned).robot.links[0].collision.at(0).origin;
+      const Transform frame =
+          parse(mjcf("<geom type='box' size='1 1 1' pos='0 0 1' class='c' " + own + "/>", kinds))
+              .robot.links[0]
+              .collision.at(0)
+              .origin;
+      EXPECT_LT((got.translation - frame * Vec3(1, 0, 0)).norm(), 1e-12);
+      const Mat3 in_mesh = frame.linear.transpose() * got.linear;
+      EXPECT_LT((in_mesh.cwiseAbs() * shape.size / 4 - Vec3(1, 0.5, 0.25)).norm(), 1e-9) << turned;
+    }
+  const std::string degenerate = refusal([&] {
+    stated("<geom type='box' mesh='p'/>",
+           "<compiler eulerseq='xYz'/><default><geom euler='0 0 90'/></default>");
+  });
+  EXPECT_NE(degenerate.find("states not every rotation"), std::string::npos) << degenerate;
   const std::string hull = refusal([&] { stated("<geom type='box' mesh='h'/>"); });
   EXPECT_NE(hull.find("the hull of the mesh 'h'"), std::string::npos) << hull;
+}
+
+/// A class's rotation that an element's own one stands for here, and not in older engines.
+TEST(Mjcf, RotationsThatEnginesTakeDifferently) {
+  const auto notes = [](const std::string& own, const std::string& of_class) {
+    const Robot robot =
+        parse(mjcf("<geom size='1' " + own + "/>", "<default><geom " + of_class + "/></default>"))
+            .robot;
+    return robot.notes.size();
+  };
+  EXPECT_EQ(notes("quat='1 0 0 0'", "euler='0 0 90'"), 1U);
+  EXPECT_EQ(notes("axisangle='1 0 0 10'", "zaxis='0 1 0'"), 1U);
+  EXPECT_EQ(notes("euler='0 0 0'", "zaxis='0 1 0'"), 0U);
+  EXPECT_EQ(notes("euler='0 0 0'", "euler='0 0 90'"), 0U);
+  EXPECT_EQ(notes("quat='1 0 0 0'", "quat='0 0 0 1'"), 0U);
+  EXPECT_EQ(notes("", "euler='0 0 90'"), 0U);
 }
 
 TEST(Mjcf, Includes) {
@@ -226,6 +268,14 @@ TEST(Sdf, RefusedByNameAndLine) {
   has("<sdf version='2.0'><model name='s'/></sdf>", "version 2.0");
   has("<sdf version='1.9'/>", "no <model>");
   has(sdf("<link name='a'/><link name='a'/>"), "there already");
+  has(sdf("<link name='a'/>\n<frame name='a'/>"), "s.sdf:2: <frame>: the name 'a' is there");
+  has(sdf("<link name='a'/><model name='a'><link name='b'/></model>"), "there already");
+  has(sdf("<link name='__model__'/>"), "there already");
+  has(sdf("<link name='a::b'/><model name='a'><link name='b'/></model>"), "'a::b' is there");
+  const std::string joint =
+      "<link name='a'/><link name='b'/><joint name='a' type='fixed'><parent>a</parent>"
+      "<child>b</child></joint>";
+  has(sdf(joint), "<joint>: the name 'a' is there already: <link> in line 1");
   has(sdf("<include><uri>model://x</uri></include>"), "gz sdf -p");
   has(sdf("<link name='a'/><model name='m'><include><uri>model://x</uri></include></model>"),
       "gz sdf -p");
@@ -268,6 +318,21 @@ TEST(Sdf, NestedModels) {
   EXPECT_LT((inner.translation - Vec3(1, 1.5, 1)).norm(), 1e-15);
 }
 
+/// Before SDF 1.7 a joint may have the name of a nested model, which is what others mean by it.
+TEST(Sdf, JointsThatAreCalledAsModels) {
+  const Robot robot =
+      parse_sdf(
+          "<sdf version='1.6'><model name='s'><link name='base'/>"
+          "<link name='lower'><pose>0 0 5 0 0 0</pose></link>"
+          "<joint name='arm' type='fixed'><parent>base</parent><child>lower</child></joint>"
+          "<model name='arm'><pose>10 0 0 0 0 0</pose><link name='tip'/></model></model></sdf>",
+          "s.sdf")
+          .robot;
+  const std::vector<Transform> poses = forward(robot, {});
+  EXPECT_EQ(poses[robot.find_link("arm::tip").value()].translation, Vec3(10, 0, 0));
+  EXPECT_EQ(poses[robot.find_link("lower").value()].translation, Vec3(0, 0, 5));
+}
+
 /// multiplier (q − reference) + offset, through another joint that follows as well.
 TEST(Sdf, JointsThatFollow) {
   const auto joint = [](const std::string& name, const std::string& child,
@@ -307,6 +372,70 @@ TEST(Sdf, Edit) {
   EXPECT_EQ(a.collision[1].mesh, "bodies/p-1.stl");
   EXPECT_EQ(a.collision[1].size, Vec3(2, 2, 2));
   EXPECT_EQ(a.collision[1].origin.translation, Vec3(1, 0, 0));
+}
+
+Inertial of_mass(double mass) {
+  Inertial out;
+  out.mass = mass;
+  out.origin.translation = Vec3(0.1, 0.2, 0.3) * mass;
+  out.inertia = Vec3(1, 2, 3).asDiagonal();
+  return out;
+}
+
+/// Inertials go to the links that have them, whatever else has the same name.
+TEST(Inertials, OfLinksOfOneName) {
+  const std::string text =
+      sdf("<model name='inner'><link name='base'><inertial><mass>3</mass></inertial></link></model>"
+          "<link name='base'><inertial><mass>100</mass></inertial></link>");
+  const InertialEdit outer = with_inertials(text, "s.sdf", {{"base", of_mass(7)}});
+  EXPECT_TRUE(outer.missing.empty());
+  Dynamics got = parse_sdf(outer.text, "s.sdf").dynamics;
+  EXPECT_EQ(got.links.at("base").mass, 7);
+  EXPECT_EQ(got.links.at("inner::base").mass, 3);
+  const InertialEdit inner = with_inertials(text, "s.sdf", {{"inner::base", of_mass(7)}});
+  EXPECT_TRUE(inner.missing.empty());
+  got = parse_sdf(inner.text, "s.sdf").dynamics;
+  EXPECT_EQ(got.links.at("base").mass, 100);
+  EXPECT_EQ(got.links.at("inner::base").mass, 7);
+}
+
+TEST(Inertials, OfForeignElements) {
+  const std::string foreign = "<gazebo><plugin><link name=\"base\"/></plugin></gazebo>";
+  const InertialEdit made =
+      with_inertials("<robot name='r'>" + foreign + "<link name='base'/></robot>", "r.urdf",
+                     {{"base", of_mass(7)}});
+  const std::map<std::string, Inertial> got = parse_dynamics(made.text, "r.urdf").links;
+  EXPECT_EQ(got.at("base").mass, 7);
+  EXPECT_EQ(got.at("base").origin.translation, of_mass(7).origin.translation);
+  const std::size_t plugin = made.text.find("<plugin>"), end = made.text.find("</plugin>");
+  EXPECT_EQ(made.text.substr(plugin, end - plugin).find("inertial"), std::string::npos);
+}
+
+/// A body without a name is called body1 before the one of that name; copies share an element.
+TEST(Inertials, OfBodiesWithoutNames) {
+  const std::string inertial = "<inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>";
+  const std::string text = mjcf(
+      "<body>" + inertial + "</body><body name='body1' pos='5 0 0'><frame pos='1 0 0'>" + inertial +
+      "</frame></body><replicate count='2'><body name='r'>" + inertial + "</body></replicate>");
+  const InertialEdit made = with_inertials(
+      text, "m.xml",
+      {{"body1", of_mass(7)}, {"body1-2", of_mass(8)}, {"r0", of_mass(9)}, {"world", of_mass(9)}});
+  EXPECT_EQ(made.missing, (std::vector<std::string>{"r0", "world"}));
+  const Dynamics got = parse(made.text).dynamics;
+  EXPECT_EQ(got.links.at("body1").mass, 7);
+  EXPECT_EQ(got.links.at("body1-2").mass, 8);
+  EXPECT_EQ(got.links.at("body1-2").origin.translation, of_mass(8).origin.translation);
+  EXPECT_EQ(got.links.at("r0").mass, 2);
+}
+
+/// Moments in axes that are turned are stated in the link's.
+TEST(Inertials, OfTurnedAxes) {
+  Inertial turned = of_mass(1);
+  turned.origin.linear = rotation_from_rpy(0, 0, std::numbers::pi / 2);
+  const InertialEdit made =
+      with_inertials("<robot name='r'><link name='a'/></robot>", "r.urdf", {{"a", turned}});
+  const Mat3 got = parse_dynamics(made.text, "r.urdf").links.at("a").inertia;
+  EXPECT_LT((got - Mat3(Vec3(2, 1, 3).asDiagonal())).norm(), 1e-15);
 }
 
 }  // namespace

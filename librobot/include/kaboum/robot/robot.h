@@ -39,7 +39,7 @@ struct UnreadShape {
 };
 
 struct Link {
-  std::string name;
+  std::string name;  ///< which no other link has
   std::vector<Geometry> collision, visual;
   /// What the link has besides: nothing can be claimed to hold it, or to keep clear of it.
   std::vector<UnreadShape> unread = {};
@@ -81,7 +81,7 @@ struct Robot {
   [[nodiscard]] std::optional<std::uint32_t> find_link(std::string_view link_name) const;
 };
 
-/// Checks what Robot promises: indices, finite numbers, unit axes, rotations, limits in order.
+/// Checks what Robot promises: indices, links' names, finite numbers, unit axes, rotations, limits in order.
 /// @throws Error{InvalidInput} naming the joint or link.
 void require_valid(const Robot& robot);
 
