@@ -128,6 +128,33 @@ def mesh(name, more="", scale="1 1 1"):
     return f'{more}<geometry><mesh filename="{name}.off" scale="{scale}"/></geometry>'
 
 
+def masses_stay_apart(place):
+    """Links and foreign elements of one name: each inertial is in the element of its link."""
+    shape = '<collision name="c"><geometry><box><size>{0} {0} {0}</size></box></geometry></collision>'
+    (place / "nested.sdf").write_text(
+        '<sdf version="1.9"><model name="outer" canonical_link="base"><model name="inner"><link name="base"><inertial><mass>3</mass></inertial></link></model>'
+        f'<link name="base"><inertial><mass>100</mass></inertial>{shape.format(2)}</link>'
+        '<joint name="j" type="fixed"><parent>base</parent><child>inner::base</child></joint></model></sdf>')
+    (place / "plugin.urdf").write_text('<robot name="r"><gazebo><plugin name="p" filename="x"><link name="base"/></plugin></gazebo>'
+                                       f'<link name="base">{INERTIAL}<collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>')
+    bodies = "".join(f'<body {name}><joint axis="0 0 1"/><geom type="box" size="{size} {size} {size}"/><inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/></body>'
+                     for name, size, mass in (("", 1, 100), ('name="body1" pos="5 0 0"', 0.1, 2)))
+    (place / "names.xml").write_text(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>")
+    for name in ("nested.sdf", "plugin.urdf", "names.xml"):
+        run(place, name, "--inertia", "mass")
+    written = {name: ElementTree.parse(place / f"out_{pathlib.Path(name).stem}" / name).getroot() for name in ("nested.sdf", "plugin.urdf", "names.xml")}
+    got = [[link.findtext("inertial/mass"), link.find("inertial/pose") is not None] for link in written["nested.sdf"].iter("link")]
+    if [[float(mass), new] for mass, new in got] != [[3, False], [100, True]]:
+        fail(f"nested.sdf: inner::base and base have {got}")
+    if written["plugin.urdf"].find("gazebo/plugin/link/inertial") is not None or written["plugin.urdf"].find("link/inertial/mass").get("value") != "2.5":
+        fail("plugin.urdf: an inertial is in a foreign element")
+    if written["plugin.urdf"].find("link/inertial/inertia").get("ixx") == "3":
+        fail("plugin.urdf: the link has its old inertial")
+    got = [[float(body.find("inertial").get("mass")), float((body.find("inertial").get("fullinertia") or "nan").split()[0])] for body in written["names.xml"].iter("body")]
+    if [mass for mass, _ in got] != [100, 2] or not all(math.isclose(moment, mass * size**2 * 2 / 3, rel_tol=1e-12) for (mass, moment), size in zip(got, (1, 0.1))):
+        fail(f"names.xml: masses and moments of the bodies are {got}")
+
+
 def main():
     ell = box((0, 0, 0), (0.4, 0.1, 0.3))
     nest = box((0, 0, 0), (1, 1, 1)) + box((0.25, 0.25, 0.25), (0.5, 0.5, 0.75))             # a body inside a body
@@ -223,6 +250,8 @@ def main():
             fail(f"an open mesh: {err}")
         if re.sub(r">\s+<", "><", (place / "out_bad/bad.urdf").read_text() if (place / "out_bad/bad.urdf").exists() else "").count(INERTIAL) != 1:
             fail("the open link's inertial")
+
+        masses_stay_apart(place)
 
         for wrong in ("-1", "0", "x", "nan", "1e999", ""):
             run(place, "good.urdf", "--inertia", wrong, code=2)
