@@ -100,7 +100,8 @@ void require_written(const Kind& kind, const std::string& text, const std::strin
     throw Error(ErrorCode::OutputFailed,
                 name + ": link '" + link + "' has not the inertial that was written");
   };
-  for (const auto& [link, inertial] : kind.links(document, name).inertials) {
+  const LinkElements got = kind.links(document, name);
+  for (const auto& [link, inertial] : got.inertials) {
     const auto found = wanted.find(link);
     if (found == wanted.end() || !is_same(found->second, inertial)) fail(link);
     wanted.erase(found);
