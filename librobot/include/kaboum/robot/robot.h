@@ -81,7 +81,7 @@ struct Robot {
   [[nodiscard]] std::optional<std::uint32_t> find_link(std::string_view link_name) const;
 };
 
-/// Checks what Robot promises: indices, links' names, finite numbers, unit axes, rotations, limits in order.
+/// Checks what Robot promises: indices, names of links, numbers, unit axes, rotations, limits.
 /// @throws Error{InvalidInput} naming the joint or link.
 void require_valid(const Robot& robot);
 
