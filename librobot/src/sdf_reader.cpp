@@ -219,7 +219,7 @@ class Reader {
     std::set<std::string> asked;
     asked.swap(being_found_);
     known_[name] = Transform();
-    const Transform out = in_model(name + "::" + frame, model);
+    Transform out = in_model(name + "::" + frame, model);
     known_ = outside;
     being_found_ = asked;
     return out;
