@@ -409,7 +409,7 @@ class Reader {
     const XMLElement* e = file_.only_child(axis, "xyz");
     if (e == nullptr) return Vec3::UnitZ();
     const std::vector<double> x = numbers(*e, 3, 3);
-    const Vec3 stated(x[0], x[1], x[2]);
+    Vec3 stated(x[0], x[1], x[2]);
     const char* in = e->Attribute("expressed_in");
     const XMLElement* old = axis.FirstChildElement("use_parent_model_frame");
     const bool in_model_frame =
