@@ -40,7 +40,7 @@ constexpr double kSumUp = 1 + 0x1p-50;
 /// its name; null: they can.
 const char* flaw_of_kind(const SetRequest& r) {
   if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
-  if (r.min_thickness > 0 || r.max_aspect) return "cannot be thickened";
+  if (r.thickness || r.max_aspect) return "cannot be thickened";
   if (r.max_total_vertices) return "have no vertices to be counted";
   if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
   if (r.simplify) return "are not simplified";
@@ -64,7 +64,7 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
     if (condition)
       throw Error(ErrorCode::InvalidArgument, std::string("bodies inside the solid ") + what);
   };
-  refuse(r.min_thickness > 0 || r.max_aspect, "cannot be thickened");
+  refuse(r.thickness || r.max_aspect, "cannot be thickened");
   refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
   refuse(r.simplify.has_value(), "are not simplified");
@@ -121,15 +121,20 @@ void require_possible_regions(const SetRequest& r) {
   refuse(r.direction != SetRequest::Direction::Outer, "bodies inside the solid");
   refuse(r.max_bodies.has_value() || r.max_total_vertices.has_value(),
          "a limit on the number of bodies or vertices");
-  refuse(r.min_thickness > 0 || r.thickness, "a least thickness");
+  refuse(r.thickness.has_value(), "a least thickness");
   refuse(r.max_aspect.has_value(), "a limit on how long bodies are");
+}
+
+/// Least width of the bodies that is asked for; 0: none. [length]
+double least_thickness(const SetRequest& r, double diagonal) {
+  return r.thickness ? r.thickness->of(diagonal) : 0;
 }
 
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double diagonal,
                          const geom::ConvexSet& set) {
   for (const geom::ConvexBody& body : set.bodies) {
-    if (r.min_thickness > 0 &&
-        geom::least_width(body.core, r.min_thickness).lower < r.min_thickness)
+    if (const double wished = least_thickness(r, diagonal);
+        wished > 0 && geom::least_width(body.core, wished).lower < wished)
       return {"a body is thinner than «min-thickness»", {}, {}};
     if (!r.max_aspect) continue;
     const double least = geom::longest_upper(body.core.vertices) / *r.max_aspect;
@@ -196,7 +201,8 @@ class Search {
     else if (request.body_kind != SetRequest::BodyKind::Polytopes)
       simple_ = simple_of(request, diagonal, hooks);
     else if (request.direction == SetRequest::Direction::Outer)
-      cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks)};
+      cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks),
+                                 least_thickness(request, diagonal)};
     else
       inner_ = inner_of(request, diagonal, hooks);
   }
@@ -337,7 +343,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.pieces = s.leaves;
   c.pre_step_triangles = s.pre_step_triangles;
   c.thickened = s.thickened;
-  c.min_thickness = r.min_thickness;
+  c.min_thickness = least_thickness(r, diagonal);
   c.max_aspect = r.max_aspect.value_or(0);
   c.safety = safety;
   c.out_of_work = s.out_of_work;
@@ -376,9 +382,6 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   if (outer) require_area(solid);
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
-  if (asked.thickness) asked.min_thickness = asked.thickness->of(diagonal);
-  SetRequest limits = request;
-  limits.min_thickness = asked.min_thickness;
   Search search(prepared.solid, asked, diagonal, hooks);
   geom::ConvexSet made;
   made.provenance = origin_of(request, sha256);
@@ -390,18 +393,20 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     const Candidate candidate = search.run();
     if (candidate.stop == bcd::Stop::TooCoarse) return std::nullopt;
     made.bodies = candidate.bodies;
-    SetCertificate certificate = certificate_of(limits, prepared, candidate, diagonal, safety);
+    SetCertificate certificate = certificate_of(request, prepared, candidate, diagonal, safety);
     if (wrap) count_wrap(wrap->certificate(), given.why, certificate);
     made.provenance.epsilon = certificate.distance_upper;
     std::vector<char> container = io::serialise_convex_set(made, io::SetFormat::Glb);
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    Refutation found = refutation_of(limits, solid, diagonal, set);
+    Refutation found = refutation_of(request, solid, diagonal, set);
     if (found.reason.empty() && wrap && !given.wrapped.empty())
       found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;
     if (wrong.empty()) {
+      for (const geom::BoundedRegion& one : geom::bounded(request.regions, diagonal))
+        certificate.regions.push_back({one.name, one.epsilon, verify::may_reach(set, one.region)});
       // Segments, and walls of which the solid holds middle and corners.
       if (outer && !wrap && !prepared.report.left_out.empty())
         if (const std::string out = outside_of(set, mesh); !out.empty()) {

@@ -8,6 +8,7 @@
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/certify/sweep.h>
 #include <kaboum/geom/triangle_search.h>
+#include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -338,6 +339,30 @@ TEST_F(SetCacheTest, HasTheSameBytesForTheSameRequestOnly) {
   wrapped.wrap->clearance = 1e-3;
   EXPECT_NE(round, SetCache::key_of(coarse_torus(), "abc", wrapped).hash);
   EXPECT_TRUE(flaw.empty());
+}
+
+/// A least width is asked for in one way only, which records and keys of the cache know.
+template <class T>
+constexpr bool kHasOtherThickness = requires(T request) {
+  request.min_thickness;
+};
+static_assert(!kHasOtherThickness<SetRequest> && kHasOtherThickness<bcd::CoverOptions>);
+
+TEST_F(SetCacheTest, ThickBodiesAreNotThinOnesOfBefore) {
+  const SetCache cache(folder_);
+  const geom::Mesh plate = test::box({1, 1, 1e-3}, 1);
+  SetRequest request = fast_request(30);
+  ASSERT_TRUE(find_or_certify(plate, "abc", request, &cache));
+  request.thickness = Length{0.1};
+  const auto thick = find_or_certify(plate, "abc", request, &cache);
+  ASSERT_TRUE(thick);
+  EXPECT_FALSE(thick->cached);
+  EXPECT_EQ(thick->set.certificate().min_thickness, 0.1);
+  const auto again = find_or_certify(plate, "abc", request, &cache);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->cached);
+  for (const geom::ConvexBody& body : again->set.artefact().bodies)
+    EXPECT_GE(geom::least_width(body.core, 0.1).lower, 0.1);
 }
 
 TEST_F(SetCacheTest, DamagedEntriesAreMadeAgain) {

@@ -7,6 +7,7 @@
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot.h>
 #include <kaboum/certify/sweep.h>
+#include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
@@ -101,6 +102,22 @@ TEST_F(RobotTest, LinksAreHeldInTheirFrames) {
     const verify::Cover cover = verify::verify_cover(posed, back);
     EXPECT_EQ(cover.inclusion.solid.answer, verify::Answer::Verified);
     EXPECT_EQ(cover.inclusion.surface.answer, verify::Answer::Verified);
+  }
+}
+
+TEST_F(RobotTest, ThicknessIsInTheRobotsUnit) {
+  write(test::box({1, 1, 1e-3}, 1));  // its scales are 0.3 and 0.2
+  RobotRequest request = fast();
+  request.set.epsilon = Length{0.2};
+  request.set.thickness = Length{0.05};
+  const CertifiedRobot made = certify_robot(arm(), request);
+  ASSERT_EQ(made.links.size(), 2U);
+  const std::vector<geom::ConvexBody>& bodies = made.links[1].artefact().bodies;
+  ASSERT_FALSE(bodies.empty());
+  for (const geom::ConvexBody& body : bodies) {
+    const double width = geom::least_width(body.core, 0.05).lower;
+    EXPECT_GE(width, 0.05 * (1 - 1e-6));  // posed, and rounded
+    EXPECT_LE(width, 0.05 * 2.5);
   }
 }
 

@@ -50,9 +50,6 @@ struct CoverSettings : SearchSettings {
   /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
   /// the smallest distance with which both hold. Not with min_thickness.
   std::optional<std::size_t> max_total_vertices;
-  /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
-  /// are thickened, which counts towards epsilon. [length]
-  double min_thickness = 0;
   /// No two points of a body are farther apart than so many times its least width, ≥ 4: what is
   /// too thin for its length is thickened in the same way. Not with max_total_vertices.
   std::optional<double> max_aspect;
@@ -83,7 +80,11 @@ struct SearchRun {
 };
 
 /// Request for find_cover.
-struct CoverOptions : CoverSettings, SearchRun {};
+struct CoverOptions : CoverSettings, SearchRun {
+  /// Bodies are at least this wide in every direction, for engines that shrink hulls; thinner ones
+  /// are thickened, which counts towards epsilon. [length]
+  double min_thickness = 0;
+};
 
 /// Why a search ended.
 enum class Stop {

@@ -43,8 +43,8 @@ struct SetRequest : bcd::CoverSettings {
   /// Of outer sets with an epsilon: points of the bodies that lie in a region are within the
   /// region's own one, which counts where it is less. In the coordinates of what is decomposed.
   std::vector<geom::RequestedRegion> regions;
-  /// Least width of the bodies: `min_thickness`, which it takes the place of, with its unit or as a
-  /// percentage of the diagonal.
+  /// Least width of the bodies (bcd::CoverOptions::min_thickness), as a length or a percentage of
+  /// the diagonal.
   std::optional<Length> thickness;
 
   /// certify_file multiplies the file's coordinates by it first (io::scale).
@@ -91,6 +91,13 @@ struct SetCertificate {
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input
+  /// A region of the request: no point of the bodies in it is farther than `epsilon`.
+  struct Region {
+    std::string name;
+    double epsilon = 0;   ///< [length]
+    bool reached = true;  ///< false: no body has a point in it
+  };
+  std::vector<Region> regions;
   /// Why it is not known that an outer set holds all that the triangles, which are inside, are
   /// meant to bound; empty: it does.
   std::string undecided;
