@@ -55,18 +55,19 @@ class Fronts {
   }
 
   /// The number in front of a part of a triangle that has these corners but for rounding.
+  /// @param scale  largest number that took part in computing them
   /// @param crossing  triangles that may change it; those that meet the part are put into `left`
-  [[nodiscard]] Front of_part(std::uint32_t t, const std::array<Vec3, 3>& part,
+  [[nodiscard]] Front of_part(std::uint32_t t, const std::array<Vec3, 3>& part, double scale,
                               const std::vector<std::uint32_t>& crossing,
                               std::vector<std::uint32_t>& left) const {
     Box3 box;
     for (const Vec3& p : part) box.extend(p);
     const double slack =
-        0x1p-46 * std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+        0x1p-46 * std::max({box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff(), scale});
     box = {box.min.array() - slack, box.max.array() + slack};
     for (const std::uint32_t u : crossing)
       if (!is_beside(u, box)) left.push_back(u);
-    return left.empty() ? look(t, part) : Front();
+    return left.empty() ? look(t, part, scale) : Front();
   }
 
   [[nodiscard]] bool is_flat(std::uint32_t t) const { return meetings_[t] == Meeting::Flat; }
@@ -92,7 +93,7 @@ class Fronts {
       constexpr int kTries = 50;
       if (of_patch[patch] || tries[patch] >= kTries) continue;
       ++tries[patch];
-      of_patch[patch] = look(t, named(t).at);
+      of_patch[patch] = look(t, named(t).at, 0);
     }
     fronts_.resize(count);
     for (std::uint32_t t = 0; t < count; ++t)
@@ -106,7 +107,8 @@ class Fronts {
 
   /// The number at a point beside the middle of a triangle's part, where no other triangle is near.
   /// @param part  its corners but for rounding
-  [[nodiscard]] Front look(std::uint32_t t, const std::array<Vec3, 3>& part) const {
+  /// @param scale  as of_part
+  [[nodiscard]] Front look(std::uint32_t t, const std::array<Vec3, 3>& part, double scale) const {
     const auto [p, q, r] = named(t).at;
     const Vec3 normal = (q - p).cross(r - p);
     if (!(normal.norm() > 0) || !std::isfinite(normal.norm())) return {};
@@ -116,7 +118,7 @@ class Fronts {
     // which is in the box for sure: the point is in front of the triangle, or behind it.
     const Box3 round{at.array() - near_, at.array() + near_};
     const double rounding = 0x1p-46 * std::max({p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff(),
-                                                r.cwiseAbs().maxCoeff()});
+                                                r.cwiseAbs().maxCoeff(), scale});
     if (!(round.min.array() < middle.array() - rounding).all() ||
         !(middle.array() + rounding < round.max.array()).all())
       return {};
@@ -227,7 +229,8 @@ class Cones {
     for (std::size_t k = 0; k < 3; ++k)
       for (int i = 0; i < 3; ++i) at[k][i] = CGAL::to_double(corner[k][i]) + apex_[i];
     std::vector<std::uint32_t> left;
-    const Front front = fronts.of_part(t, at, crossing, left);
+    // Numbers relative to the apex are rounded: by its coordinates, however small the sums are.
+    const Front front = fronts.of_part(t, at, apex_.cwiseAbs().maxCoeff(), crossing, left);
     if (front == Front(0)) add(corner);
     if (front) return;
     if (depth == kCuts) {

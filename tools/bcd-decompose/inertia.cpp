@@ -78,11 +78,15 @@ std::vector<std::string> in_words(const robot::Robot& robot,
   }
   const double middle = (lower + upper) / 2;
   std::vector<std::string> out;
-  out.push_back("inertia of " + std::to_string(known) + (known == 1 ? " link" : " links") +
-                " by exact integrals over their shapes" +
-                (known == 0 ? ""
-                            : ": " + number_text(middle) + " kg, proved within " +
-                                  number_up(std::nextafter(upper - middle, HUGE_VAL)) + " kg"));
+  out.push_back(
+      "inertia of " + std::to_string(known) + (known == 1 ? " link" : " links") +
+      " by exact integrals over their shapes" +
+      (known == 0 ? ""
+                  : ": " + number_text(middle) + " kg, " +
+                        (lower == upper
+                             ? "exactly"
+                             : "proved within " +
+                                   number_up(std::nextafter(upper - middle, HUGE_VAL)) + " kg")));
   out.insert(out.end(), kept.begin(), kept.end());
   return out;
 }
