@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -24,13 +25,20 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kUnits{{{"meters", 
                                                                      {"centimeters", "cm"},
                                                                      {"inches", "in"}}};
 
-/// The unit that a mesh or scene of trimesh states; empty: none.
-void take_unit(const py::object& shape, MeshValue& mesh) {
-  if (!py::hasattr(shape, "units") || shape.attr("units").is_none()) return;
-  const std::string stated = py::str(shape.attr("units"));
+/// The unit that a mesh or scene of trimesh states, in words of files where it is one of those;
+/// empty: none.
+std::string unit_of(const py::object& shape) {
+  if (!py::hasattr(shape, "units") || shape.attr("units").is_none()) return {};
+  std::string stated = py::str(shape.attr("units"));
   for (const auto& [name, unit] : kUnits)
-    if (stated == name) mesh.unit = unit;
-  if (mesh.unit.empty())
+    if (stated == name) return unit;
+  return stated;
+}
+
+void take_unit(const std::string& stated, MeshValue& mesh) {
+  for (const auto& [name, unit] : kUnits)
+    if (stated == unit) mesh.unit = unit;
+  if (mesh.unit.empty() && !stated.empty())
     mesh.notes.push_back("trimesh states the unit '" + stated +
                          "', which is none of KABouM's: coordinates are taken as they are.");
 }
@@ -88,17 +96,35 @@ bool add_placed(const py::object& geometry, const py::object& matrix, const std:
   return moved;
 }
 
+/// @throws Error{InvalidInput} where two geometries are not in one unit: they would be joined as
+///   if they were
+void require_one_unit(const std::string& first, const std::string& first_unit,
+                      const std::string& name, const std::string& unit) {
+  if (unit == first_unit) return;
+  const auto in_words = [](const std::string& stated) {
+    return stated.empty() ? std::string("no unit") : "the unit '" + stated + "'";
+  };
+  refuse_geometry(name, "states " + in_words(unit) + ", '" + first + "' " + in_words(first_unit) +
+                            "; convert them to one, or set scene.units if they are in it");
+}
+
 MeshValue mesh_of_scene(const py::object& scene) {
   auto mesh = std::make_shared<geom::Mesh>();
+  std::optional<std::pair<std::string, std::string>> first;  // geometry, and its unit
   std::size_t moved = 0;
   for (const py::handle node : scene.attr("graph").attr("nodes_geometry")) {
     const py::tuple placed = scene.attr("graph").attr("get")(node);
     const std::string name = py::str(placed[1]);
-    if (add_placed(scene.attr("geometry")[placed[1]], placed[0], name, *mesh)) ++moved;
+    const py::object geometry = scene.attr("geometry")[placed[1]];
+    const std::string unit = unit_of(geometry);
+    if (!first) first.emplace(name, unit);
+    if (add_placed(geometry, placed[0], name, *mesh)) ++moved;
+    require_one_unit(first->first, first->second, name, unit);
   }
   if (mesh->triangles.empty())
     throw Error(ErrorCode::InvalidInput, "shape: the scene has no triangles");
   MeshValue out{std::move(mesh)};
+  take_unit(first->second, out);
   if (moved > 0)
     out.notes.push_back(
         "coordinates were moved to where the scene has them, and rounded: what is "
@@ -110,8 +136,9 @@ MeshValue from_trimesh(const py::object& shape) {
   const bool scene = py::hasattr(shape, "geometry") && py::hasattr(shape, "graph");
   if (!scene && !(py::hasattr(shape, "vertices") && py::hasattr(shape, "faces")))
     throw Error(ErrorCode::InvalidArgument, "shape must be a trimesh.Trimesh or a trimesh.Scene");
-  MeshValue out = scene ? mesh_of_scene(shape) : mesh_of(shape, "shape");
-  take_unit(shape, out);
+  if (scene) return mesh_of_scene(shape);
+  MeshValue out = mesh_of(shape, "shape");
+  take_unit(unit_of(shape), out);
   return out;
 }
 
@@ -134,6 +161,7 @@ py::object bodies_to_trimesh(const geom::ConvexSet& set, const py::module_& trim
                       "take `bodies` and `radii`");
     MeshValue core;
     core.mesh = std::make_shared<const geom::Mesh>(body.core);
+    core.unit = set.provenance.unit;
     out.append(trimesh_of(core, trimesh));
   }
   return out;
@@ -178,11 +206,11 @@ Mesh
 Raises
 ------
 Error
-    'invalid_input' where a scene has geometry without triangles, naming it, or none.)");
+    'invalid_input' where a scene has geometry without triangles or of another unit, naming it, or none.)");
   module.def("to_trimesh", &to_trimesh, py::arg("shape"),
              R"(A mesh as a trimesh.Trimesh, with the same vertices and faces in the same order.
 
-Of a set of convex bodies: a list with one for each.
+Of a set of convex bodies: a list with one for each. They have the unit of the mesh or the set.
 
 Parameters
 ----------

@@ -81,6 +81,29 @@ def test_units_go_along():
     assert kaboum.to_trimesh(mesh).units is None
 
 
+def test_bodies_keep_the_unit():
+    solid = trimesh.Trimesh(*cube(100.0), process=False)
+    solid.units = "mm"
+    bodies = kaboum.decompose(kaboum.from_trimesh(solid), epsilon="1mm")
+    assert [kaboum.from_trimesh(body).unit for body in kaboum.to_trimesh(bodies)] == ["mm"] * len(bodies)
+
+
+@pytest.mark.parametrize("other, refused", [("mm", True), (None, True), ("m", False)])
+def test_scenes_of_two_units_are_refused(other, refused):
+    scene = trimesh.Scene()
+    for name, unit in (("one", "meters"), ("two", other)):
+        solid = trimesh.Trimesh(*cube(), process=False)
+        solid.units = unit
+        scene.add_geometry(solid, geom_name=name, transform=np.eye(4))
+    if not refused:
+        assert kaboum.from_trimesh(scene).unit == "m"
+        return
+    with pytest.raises(kaboum.Error, match="'two' states .*unit.*, 'one' the unit 'm'"):
+        kaboum.from_trimesh(scene)
+    scene.units = "mm"
+    assert kaboum.from_trimesh(scene).unit == "mm"
+
+
 def test_a_scene_is_taken_as_it_stands():
     box = trimesh.Trimesh(*cube(), process=False)
     ring = trimesh.Trimesh(*torus(32, 16), process=False)
