@@ -86,8 +86,9 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + quads + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
       (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + word_of(r.body_kind) +
-      (r.nearest ? "nearest\n" : "") + KABOUM_VERSION + '\n' + std::string(cache_words::kSets) +
-      '\n' + std::string(cache_words::kContainers) + '\n' + std::string(cache_words::kDecisions);
+      (r.nearest ? "nearest\n" : "") + (r.regions.empty() ? "" : "regions 2\n") + KABOUM_VERSION +
+      '\n' + std::string(cache_words::kSets) + '\n' + std::string(cache_words::kContainers) + '\n' +
+      std::string(cache_words::kDecisions);
   return {kaboum::sha256(text), origin_of(r, sha256),
           r.wrap ? std::optional(clearance) : std::nullopt, r.wrap && r.wrap->where_needed,
           r.body_kind != SetRequest::BodyKind::Polytopes};

@@ -55,6 +55,8 @@ Json record_of(const SetCertificate& c) {
     j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
   if (c.max_aspect > 0) j["max_aspect"] = {{"wished", c.max_aspect}, {"thickened", c.thickened}};
   if (!c.undecided.empty()) j["undecided"] = c.undecided;
+  for (const SetCertificate::Region& one : c.regions)
+    j["regions"].push_back({{"name", one.name}, {"bound", one.epsilon}, {"reached", one.reached}});
   if (c.wrap) j["wrap"] = record_of(*c.wrap);
   return j;
 }
@@ -75,6 +77,12 @@ std::string to_json(const CertifiedSet& set) {
         {"solid", !c.undecided.empty()   ? "undecided"
                   : c.subject.holes == 0 ? "verified"
                                          : "verified, of the closed mesh"}};
+    j.erase("regions");  // a claim here
+    for (const SetCertificate::Region& one : c.regions)
+      j["cover"]["regions"].push_back({{"name", one.name},
+                                       {"answer", "verified"},
+                                       {"bound", one.epsilon},
+                                       {"reached", one.reached}});
   } else {
     j["inside_of"] = in_words(c.subject);
     j["inside"] = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
@@ -126,6 +134,10 @@ SetCertificate read_record(std::string_view text) {
       c.thickened = count_at(j.at("max_aspect"), "thickened");
     }
     if (j.contains("undecided")) j.at("undecided").get_to(c.undecided);
+    if (j.contains("regions"))
+      for (const Json& one : j.at("regions"))
+        c.regions.push_back({one.at("name").get<std::string>(), one.at("bound").get<double>(),
+                             one.at("reached").get<bool>()});
     if (j.contains("wrap")) c.wrap = wrap_of(j.at("wrap"));
     c.subject.wrapped = c.wrap.has_value();
     return c;

@@ -35,6 +35,15 @@ double rounding_of(const ConvexSet& set, const Region& region) {
   return kRegionRounding * largest;
 }
 
+/// The bodies that are not certainly apart from a region.
+ConvexSet bodies_near(const ConvexSet& set, const Region& region, double rounding) {
+  ConvexSet out;
+  for (const ConvexBody& body : set.bodies)
+    if (!(geom::distance_from(region, body.core.vertices) > body.radius + rounding))
+      out.bodies.push_back(body);
+  return out;
+}
+
 /// Planes round a region, or within one: half-spaces that have as much in common or more, or no
 /// more.
 std::vector<HalfSpace> sides_of(const Region& region, bool round) {
@@ -112,13 +121,10 @@ DistanceClaim verify_region_excess(const ConvexSet& set, const geom::Mesh& origi
                                    const BoundedRegion& region, bool to_solid,
                                    const InclusionOptions& limits) {
   const double rounding = rounding_of(set, region.region);
-  ConvexSet near;
-  for (const ConvexBody& body : set.bodies)
-    if (!(geom::distance_from(region.region, body.core.vertices) > body.radius + rounding))
-      near.bodies.push_back(body);
-  if (near.bodies.empty()) return answered(Answer::Verified, "");
-  if (!(geom::margin_of(near).value_or(0) >= region.epsilon)) {
-    DistanceClaim all = verify_excess(near, original, region.epsilon, to_solid, limits);
+  const ConvexSet bodies = bodies_near(set, region.region, rounding);
+  if (bodies.bodies.empty()) return answered(Answer::Verified, "");
+  if (!(geom::margin_of(bodies).value_or(0) >= region.epsilon)) {
+    DistanceClaim all = verify_excess(bodies, original, region.epsilon, to_solid, limits);
     if (all.answer == Answer::Verified) return all;
   }
   if (!to_solid) {
@@ -138,9 +144,13 @@ DistanceClaim verify_region_excess(const ConvexSet& set, const geom::Mesh& origi
     return verify_excess(parts, original, bound, to_solid, limits);
   };
   return decide_between(
-      near, answered(Answer::Undecided, "the bodies could not be bounded by polytopes"),
+      bodies, answered(Answer::Undecided, "the bodies could not be bounded by polytopes"),
       [&](const BodyBounds& bounds) { return of(bounds.outside, true); },
       [&](const BodyBounds& bounds) { return of(bounds.inside, false); });
+}
+
+bool may_reach(const ConvexSet& set, const Region& region) {
+  return !bodies_near(set, region, rounding_of(set, region)).bodies.empty();
 }
 
 }  // namespace kaboum::verify

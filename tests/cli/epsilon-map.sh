@@ -57,9 +57,27 @@ for text in '' '{' '{"regions": []}' '{"regions": [{"epsilon": 1}]}' '{"regions"
     '{"regions": [{"epsilon": -1, "box": [[0,0,0],[1,1,1]]}]}' '{"regions": [{"epsilon": 1, "box": [[2,0,0],[1,1,1]]}]}' \
     '{"regions": [{"epsilon": 1, "ball": {"center": [0,0,0], "radius": 0}}]}' \
     '{"regions": [{"epsilon": 1, "half_space": {"normal": [0,0,0], "offset": 0}}]}' \
-    '{"regions": [{"epsilon": 1, "box": [[0,0,0],[1,1,1]], "colour": 1}]}'; do
+    '{"regions": [{"epsilon": 1, "box": [[0,0,0],[1,1,1]], "colour": 1}]}' \
+    '{"regions": [{"epsilon": 1, "box": [[0,0,0],[1,1,1]]}], "regions": [{"epsilon": 1, "box": [[0,0,0],[1,1,1]]}]}'; do
   echo "$text" >bad.json
   expect 3 'bad.json' "$B" notched.off -o out.glb --epsilon 0.6 --epsilon-map bad.json
 done
+for text in '"epsilon": 1, "box": [[0,0,0],[1,1,1]], "box": [[9,9,9],[10,10,10]]' \
+    '"epsilon": 1, "ball": {"center": [0,0,0], "radius": 1, "radius": 2}' \
+    '"epsilon": 1e999, "box": [[0,0,0],[1,1,1]]' '"epsilon": 1, "box": [[0,0,-1e999],[1,1,1]]'; do
+  echo "{\"regions\": [{\"epsilon\": 1, \"ball\": {\"center\": [0,0,0], \"radius\": 1}}, {$text}]}" >bad.json
+  expect 3 'bad.json: region 2: .*(given twice|out of range)' "$B" notched.off -o out.glb --epsilon 0.6 --epsilon-map bad.json
+  expect 3 'bad.json: region 2: .*(given twice|out of range)' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map bad.json
+done
+# Regions that no body reaches say nothing: that is noted.
+echo '{"regions": [{"name": "far", "epsilon": 0.05, "box": [[100, 100, 100], [101, 101, 101]]}]}' >far.json
+expect 0 'no body reaches the region .far.' "$B" notched.off -o far.glb --epsilon 0.6 --effort fast --epsilon-map far.json --no-cache --report far_made.json
+json far_made.json "r['cover']['regions'] == [{'name': \"'far'\", 'answer': 'verified', 'bound': 0.05, 'reached': False}]"
+expect 0 'region .left.: verified' "$B" notched.off -o left.glb --epsilon 0.6 --effort fast --epsilon-map left.json --report left_made.json
+json left_made.json "r['cover']['regions'][0]['reached'] and r['cover']['regions'][0]['bound'] == 0.05"
+# The same from the cache.
+expect 0 'region .left.: verified' "$B" notched.off -o left.glb --epsilon 0.6 --effort fast --epsilon-map left.json --report left_kept.json
+json left_kept.json "r['cover']['regions'][0]['reached'] and r['cover']['regions'][0]['bound'] == 0.05"
+shows 0 'no body reaches' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map far.json
 expect 2 'epsilon-map' "$B" notched.off -o out.glb --max-bodies 3 --epsilon-map left.json
 finish

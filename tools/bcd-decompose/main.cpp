@@ -1,5 +1,6 @@
 // The program bcd-decompose: options, certify::certify_set or certify_robot, files.
 
+#include <kaboum/base/number_text.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/file_unit.h>
 #include <kaboum/page/set_page.h>
@@ -62,6 +63,10 @@ int decompose_mesh(const DecomposeOptions& o) {
   const certify::SetCertificate& certificate = made.found.set.certificate();
   log(o.common.quiet,
       page::summary_of(certificate) + (made.found.cached ? " (from the cache)" : ""));
+  for (const certify::SetCertificate::Region& one : certificate.regions)
+    log(o.common.quiet, one.reached ? "distance in the region " + one.name +
+                                          ": verified: nowhere more than " + number_up(one.epsilon)
+                                    : "note: no body reaches the region " + one.name);
   const std::string why = page::shortfall_of(certificate);
   if (!why.empty()) log(o.common.quiet, why);
   if (is_page(o.preview))

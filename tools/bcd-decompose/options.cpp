@@ -90,10 +90,12 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
 void describe(CLI::App& app, DecomposeOptions& o) {
   add_input(app, o);
   add_request_options(app, certify::set_options(), o.set, o.stated);
-  add_epsilon_map(app, o.epsilon_map,
-                  "Regions (boxes, half-spaces and balls in the coordinates of INPUT, a JSON file: "
-                  "docs/formats.md) with an epsilon each: no point of the bodies in one is farther "
-                  "than that from the solid, and elsewhere --epsilon counts; for one mesh");
+  add_epsilon_map(
+      app, o.epsilon_map,
+      "Regions (boxes, half-spaces and balls in the coordinates of the bodies, which are "
+      "those of INPUT after --scale; a JSON file: docs/formats.md) with an epsilon each: no point "
+      "of the bodies in one is farther "
+      "than that from the solid, and elsewhere --epsilon counts; for one mesh");
   add_require_closed(app, o.set.preparation);
   add_output(app, o);
   add_robot_options(app, o.robot, true);

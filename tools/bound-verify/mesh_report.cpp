@@ -3,6 +3,7 @@
 #include "mesh_report.h"
 
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/region_excess.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,6 +189,8 @@ std::vector<std::string> lines_of_distances(const MeshCase& run) {
     if (one.claim.answer == Answer::Refuted)
       text += "; at least " + number(one.claim.largest) + ", at " + point(one.claim.at) +
               ", claimed " + number(one.region.epsilon);
+    if (!verify::may_reach(run.approximation.set, one.region.region))
+      text += " (note: no body reaches it)";
     lines.push_back(std::move(text));
   }
   if (const auto& depth = run.verdict.depth)
@@ -337,6 +340,7 @@ Json json_of_claims(const MeshCase& run) {
     Json json = to_json(one.claim);
     json["name"] = one.region.name;
     json["bound"] = one.region.epsilon;
+    json["reached"] = verify::may_reach(run.approximation.set, one.region.region);
     claims["regions"].push_back(std::move(json));
   }
   if (v.exact_points) {

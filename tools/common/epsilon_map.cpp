@@ -3,12 +3,15 @@
 #include "epsilon_map.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 
 #include "cli.h"
 
@@ -109,6 +112,40 @@ class RegionReader {
   std::string what_;
 };
 
+/// Refuses members that are given twice, of which a parser would take the last one.
+/// @throws Error{InvalidInput} naming file and region
+json parse_map(std::string_view text, const std::string& file) {
+  using Event = json::parse_event_t;
+  constexpr int kRegionDepth = 2;  // brackets round the one that begins a region
+  std::size_t regions = 0;         // that have begun
+  std::vector<std::set<std::string>> members;
+  const auto fail = [&](const std::string& why) -> void {
+    const std::string place =
+        members.size() > 1 ? "region " + std::to_string(regions) + ": " : std::string();
+    throw Error(ErrorCode::InvalidInput, file + ": " + place + why);
+  };
+  if (is_nested_too_deep(text)) fail(describe_json_depth());
+  const auto look = [&](int depth, Event event, json& value) {
+    if (event == Event::object_start) {
+      members.emplace_back();
+      if (depth == kRegionDepth) ++regions;
+    }
+    if (event == Event::object_end) members.pop_back();
+    if (event == Event::key && !members.back().insert(value.get<std::string>()).second)
+      fail("'" + value.get<std::string>() + "' is given twice");
+    return true;
+  };
+  json out;
+  try {
+    out = json::parse(text, look);
+  } catch (const json::parse_error& error) {
+    fail(describe_json_damage(text, error.byte));
+  } catch (const json::exception&) {
+    fail("a number in it is out of range");
+  }
+  return out;
+}
+
 }  // namespace
 
 void add_epsilon_map(CLI::App& app, std::string& file, const std::string& text) {
@@ -117,12 +154,8 @@ void add_epsilon_map(CLI::App& app, std::string& file, const std::string& text) 
 
 std::vector<geom::RequestedRegion> read_epsilon_map(const std::string& file) {
   if (file.empty()) return {};
-  json all;
-  try {
-    all = json::parse(io::read_file(file));
-  } catch (const json::parse_error& error) {
-    throw Error(ErrorCode::InvalidInput, file + ": " + error.what());
-  }
+  const std::vector<char> bytes = io::read_file(file);
+  const json all = parse_map({bytes.data(), bytes.size()}, file);
   if (!all.is_object() || all.size() != 1 || !all.contains("regions") ||
       !all["regions"].is_array() || all["regions"].empty())
     throw Error(ErrorCode::InvalidInput, file + ": " + kMapForm);

@@ -23,4 +23,7 @@ DistanceClaim verify_region_excess(const geom::ConvexSet& set, const geom::Mesh&
                                    const geom::BoundedRegion& region, bool to_solid,
                                    const InclusionOptions& limits = {});
 
+/// False: no body of the set has a point in the region, for sure.
+bool may_reach(const geom::ConvexSet& set, const geom::Region& region);
+
 }  // namespace kaboum::verify
