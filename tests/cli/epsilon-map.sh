@@ -66,8 +66,8 @@ for text in '"epsilon": 1, "box": [[0,0,0],[1,1,1]], "box": [[9,9,9],[10,10,10]]
     '"epsilon": 1, "ball": {"center": [0,0,0], "radius": 1, "radius": 2}' \
     '"epsilon": 1e999, "box": [[0,0,0],[1,1,1]]' '"epsilon": 1, "box": [[0,0,-1e999],[1,1,1]]'; do
   echo "{\"regions\": [{\"epsilon\": 1, \"ball\": {\"center\": [0,0,0], \"radius\": 1}}, {$text}]}" >bad.json
-  expect 3 'bad.json: region 2: .*(given twice|out of range)' "$B" notched.off -o out.glb --epsilon 0.6 --epsilon-map bad.json
-  expect 3 'bad.json: region 2: .*(given twice|out of range)' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map bad.json
+  expect 3 'bad.json: region 2: .*\(given twice\|out of range\)' "$B" notched.off -o out.glb --epsilon 0.6 --epsilon-map bad.json
+  expect 3 'bad.json: region 2: .*\(given twice\|out of range\)' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map bad.json
 done
 # Regions that no body reaches say nothing: that is noted.
 echo '{"regions": [{"name": "far", "epsilon": 0.05, "box": [[100, 100, 100], [101, 101, 101]]}]}' >far.json
