@@ -700,6 +700,8 @@ CoverCandidate find_balls(const geom::SolidMesh& input, const BallOptions& optio
     throw Error(ErrorCode::InvalidArgument, "epsilon must be positive");
   if (options.max_bodies && *options.max_bodies == 0)
     throw Error(ErrorCode::InvalidArgument, "there must be a body at least");
+  if (options.max_bodies && !options.regions.empty())
+    throw Error(ErrorCode::InvalidArgument, "regions do not go with a limit on the bodies");
   const geom::SolidMesh closed = geom::close_holes(input);
   const geom::Box3 box = geom::bounding_box(closed.mesh());
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());

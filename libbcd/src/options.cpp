@@ -41,6 +41,8 @@ void require_sound(const SearchSettings& settings, const SearchRun& run) {
     if (!run.epsilon || !(one.epsilon > 0))
       throw Error(ErrorCode::InvalidArgument,
                   "regions need an epsilon above 0 each, and one for all else");
+  if (settings.max_bodies && !run.regions.empty())
+    throw Error(ErrorCode::InvalidArgument, "regions do not go with a limit on the bodies");
   if (settings.max_bodies && *settings.max_bodies == 0)
     throw Error(ErrorCode::InvalidArgument, "max_bodies must be at least 1");
   if (settings.max_vertices < 8)
@@ -56,6 +58,8 @@ void require_sound(const CoverOptions& options) {
   require_sound(options, options);
   if (options.improve_work && !(*options.improve_work >= 0))
     throw Error(ErrorCode::InvalidArgument, "improve_work must not be negative");
+  if (options.max_total_vertices && !options.regions.empty())
+    throw Error(ErrorCode::InvalidArgument, "regions do not go with a limit on all vertices");
   if (options.max_total_vertices && *options.max_total_vertices < 8)
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices must be at least 8");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))

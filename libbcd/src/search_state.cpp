@@ -2,6 +2,8 @@
 
 #include "search_state.h"
 
+#include <kaboum/base/error.h>
+
 #include <utility>
 
 #include "options.h"
@@ -14,6 +16,7 @@ SearchState::SearchState(const Mesh& closed, const CoverOptions& options, double
       solid_(closed, tuning_.grid, finest_epsilon(options).value_or(0), false, work),
       tree_(solid_, tuning_.search, options.safety) {
   if (!options.regions.empty()) {
+    ensure(options.epsilon.has_value(), "regions without an epsilon");
     solid_.weigh(options.regions, *options.epsilon);
     tree_.reestimate();
   }

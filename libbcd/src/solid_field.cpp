@@ -70,6 +70,7 @@ SolidField::SolidField(const SolidField& same, double work)
       box_(same.box_),
       diagonal_(same.diagonal_),
       parts_(same.parts_),
+      regions_(same.regions_),
       spacing_(same.spacing_),
       per_spacing_(same.per_spacing_),
       witness_area_(same.witness_area_),

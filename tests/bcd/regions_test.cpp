@@ -1,6 +1,7 @@
 /// Covers of all kinds that are nearer to the solid in a region: fewer bodies than where all is as
 /// near, and decided by the checker, which shares nothing with the searches.
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/bcd/balls.h>
 #include <kaboum/bcd/simple_bodies.h>
 #include <kaboum/geom/prepare.h>
@@ -97,6 +98,37 @@ TEST(Regions, NeedAnEpsilon) {
   options.max_bodies = 3;
   options.regions = {{"ball", {{}, {1, 0.8, 0.5}, 0.2}, 0.1}};
   EXPECT_ANY_THROW(find_cover(prepared.solid, options));
+}
+
+template <class Request>
+void expect_refused(const Request& request, const auto& find) {
+  try {
+    find(request);
+    ADD_FAILURE() << "regions that a search under a limit would lose";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_EQ(std::string(error.what()).find("regions do not go with a limit"), 0U);
+  }
+}
+
+TEST(Regions, AreRefusedWithLimits) {
+  const geom::SolidMesh solid = geom::prepare(notched_bar(), {}).solid;
+  const std::vector<BoundedRegion> regions{
+      {"left", geom::box_region({{-1, -1, -1}, {1.4, 2, 2}}), 0.05}};
+  auto cover = options_of<CoverOptions>(0.6, regions);
+  cover.max_total_vertices = 20;
+  const auto find = [&](const CoverOptions& o) { return find_cover(solid, o); };
+  expect_refused(cover, find);
+  cover.max_total_vertices.reset();
+  cover.max_bodies = 2;
+  expect_refused(cover, find);
+  auto balls = options_of<BallOptions>(0.6, regions);
+  balls.max_bodies = 2;
+  expect_refused(balls, [&](const BallOptions& o) { return find_balls(solid, o); });
+  auto boxes = options_of<SimpleBodyOptions>(0.6, regions);
+  boxes.kinds.boxes = true;
+  boxes.max_bodies = 2;
+  expect_refused(boxes, [&](const SimpleBodyOptions& o) { return find_simple_bodies(solid, o); });
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ struct SearchRun {
   /// Inwards: largest depth allowed of what is in no body. [length]
   std::optional<double> epsilon;
   /// Outwards, with epsilon: points of the bodies that lie in a region are no farther than the
-  /// region's own epsilon, where that is less.
+  /// region's own epsilon, where that is less. Not with a limit on the bodies, or on the vertices
+  /// of all.
   std::vector<geom::BoundedRegion> regions;
   /// Multiplies what is allowed for rounding (the overlap of pieces, the error of computed points);
   /// larger where an exact check of the result fails.
