@@ -17,7 +17,8 @@ namespace {
 /// some spacings of each body, which epsilon has to leave room for.
 constexpr double kSpacingOfEpsilon = 0.01, kSpacingWithEpsilon = 1e-4, kSpacingOfDiagonal = 1e-6;
 /// Least max_aspect: what is thickened in all directions has less, whatever rounding does.
-constexpr double kLeastAspect = 4;
+/// Robots' meshes ask for 1e-12 less than is asked of them, for what rounding of scales takes.
+constexpr double kLeastAspect = 4, kRoundedScale = 1 - 1e-11;
 /// Default of max_work, and what each triangle adds beyond so many. [s]
 constexpr double kBaseWork = 20, kWorkPerTriangle = 1e-3, kManyTriangles = 1e4;
 
@@ -64,7 +65,7 @@ void require_sound(const CoverOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "max_total_vertices must be at least 8");
   if (!(options.min_thickness >= 0) || !std::isfinite(options.min_thickness))
     throw Error(ErrorCode::InvalidArgument, "the least thickness must be finite and not negative");
-  if (options.max_aspect && !(*options.max_aspect >= kLeastAspect))
+  if (options.max_aspect && !(*options.max_aspect >= kLeastAspect * kRoundedScale))
     throw Error(ErrorCode::InvalidArgument,
                 "max_aspect must be at least 4, in proportions that scales leave as well");
   if (!(options.simplify_share() >= 0 && options.simplify_share() <= 1))

@@ -168,6 +168,7 @@ class MotionBatch {
         next.push_back({s.motion, middle, s.end});
       }
       stretches_ = std::move(next);
+      leave_long_motions();
       std::erase_if(stretches_,
                     [&](const Stretch& s) { return result_[s.motion] == Answer::Contact; });
     }
@@ -176,6 +177,16 @@ class MotionBatch {
 
  private:
   static constexpr double kFine = 0.004;  ///< of the robot's size: moves that are not halved
+  /// Stretches of a motion at a time; one with more is open, which bounds the memory.
+  static constexpr std::size_t kMostStretches = 1024;
+
+  void leave_long_motions() {
+    std::vector<std::size_t> counts(result_.size(), 0);
+    for (const Stretch& s : stretches_) ++counts[s.motion];
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      if (counts[i] > kMostStretches && result_[i] == Answer::Free) result_[i] = Answer::Open;
+    std::erase_if(stretches_, [&](const Stretch& s) { return counts[s.motion] > kMostStretches; });
+  }
 
   /// How far points move in half of a stretch, about.
   [[nodiscard]] double move_of(const Stretch& s) const {

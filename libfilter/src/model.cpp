@@ -48,9 +48,9 @@ void put(const Mat3& m, float* out) {
 }
 
 /// Bounds of a frame's pose in floats: its rotation's error (spectral), the translation's error,
-/// and the translation's length.
+/// the translation's length, and the sum of the lengths of all that it is made of.
 struct FrameBounds {
-  double rotation = 3 * kUnit, translation = 0, reach = 0;
+  double rotation = 3 * kUnit, translation = 0, reach = 0, lengths = 0;
 };
 
 /// A rotation that takes z to an axis.
@@ -69,6 +69,7 @@ Mat3 rotation_to(const Vec3& axis) {
 struct LinkPlace {
   std::uint32_t frame = 0;
   Transform pose;
+  double lengths = 0;  ///< of all fixed transforms that the pose is the product of, summed
 };
 
 /// The robot's joints, as far as they move, and where its links are.
@@ -78,19 +79,24 @@ struct Chain {
 };
 
 /// Bounds of the frame that a joint moves.
-FrameBounds bounds_of(const FrameBounds& parent, double length, bool turns, double slide) {
+/// @param length   of the fixed transform before it, at most
+/// @param lengths  of all that this one is the product of, summed
+FrameBounds bounds_of(const FrameBounds& parent, double length, double lengths, bool turns,
+                      double slide) {
   FrameBounds out;
   out.rotation = 1.001 * parent.rotation + 12.5 * kUnit;
   out.translation =
       parent.translation + (parent.rotation + 8.1 * kUnit) * length + 4.1 * kUnit * parent.reach;
   out.reach = parent.reach + 1.001 * length;
+  out.lengths = parent.lengths + 1.001 * lengths;
   if (turns) {
     out.rotation = 1.001 * out.rotation + 1.42 * kSineError + 4.1 * kUnit;
   } else {
     out.translation += (out.rotation + 3.1 * kUnit) * slide + 2.1 * kUnit * out.reach;
     out.reach += 1.001 * slide;
+    out.lengths += 1.001 * slide;
   }
-  out.translation += kDoubles * out.reach;
+  out.translation += kDoubles * (out.reach + out.lengths);
   return out;
 }
 
@@ -107,8 +113,9 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
   for (const robot::Joint& joint : robot.kinematics.joints) {
     const LinkPlace& parent = out.links[joint.parent];
     const Transform origin = parent.pose * joint.origin;
+    const double lengths = parent.lengths + joint.origin.translation.norm();
     if (joint.type == robot::JointType::Fixed) {
-      out.links.push_back({parent.frame, origin});
+      out.links.push_back({parent.frame, origin, lengths});
       continue;
     }
     Step step{.multiplier = joint.multiplier, .offset = joint.offset};
@@ -123,16 +130,16 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
             std::max(std::abs(model.low[joint.variable]), std::abs(model.high[joint.variable])) +
         std::abs(joint.offset);
     model.unusable = model.unusable || !(most <= kMostAngle);
-    step.length = rounded_up(origin.translation.norm() * kSums);
+    const double length = origin.translation.norm() + kDoubles * lengths;
+    step.length = rounded_up(length * kSums);
     step.slide = step.turns ? 0 : rounded_up(most * kSums);
     step.path = step.length + step.slide;
     if (parent.frame > 0) step.path += model.steps[parent.frame - 1].path;
     step.factor = rounded_up(std::abs(joint.multiplier) * kSums);
-    out.bounds.push_back(
-        bounds_of(out.bounds[parent.frame], origin.translation.norm(), step.turns, most));
+    out.bounds.push_back(bounds_of(out.bounds[parent.frame], length, lengths, step.turns, most));
     const auto frame = static_cast<std::uint32_t>(model.steps.size() + 1);
     model.steps.push_back(step);
-    out.links.push_back({frame, {align.transpose(), Vec3::Zero()}});
+    out.links.push_back({frame, {align.transpose(), Vec3::Zero()}, 0});
   }
   return out;
 }
@@ -140,16 +147,19 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
 /// A ball of a link in its frame, and how far from there it is computed to be.
 struct PlacedBall {
   Vec3 center = Vec3::Zero();
-  double error = 0;  ///< of its centre, and of what the vector code computes with it
-  double reach = 0;  ///< from the origin
+  double length = 0;  ///< of its centre, at most
+  double error = 0;   ///< of its centre, and of what the vector code computes with it
+  double reach = 0;   ///< from the origin
 };
 PlacedBall placed(const Chain& chain, const LinkPlace& link, const Vec3& center) {
   const FrameBounds& frame = chain.bounds[link.frame];
   PlacedBall out{link.pose * center};
-  const double length = out.center.norm() + center.norm() * kDoubles;
+  const double lengths = link.lengths + center.norm();
+  const double length = out.length = out.center.norm() + kDoubles * lengths;
   out.reach = frame.reach + 1.001 * length;
   out.error = frame.translation + (frame.rotation + 8.1 * kUnit) * length +
-              4.1 * kUnit * frame.reach + (10 * kUnit + kDoubles) * out.reach;
+              4.1 * kUnit * frame.reach + (10 * kUnit + kDoubles) * out.reach +
+              kDoubles * (frame.lengths + lengths);
   return out;
 }
 
@@ -157,7 +167,7 @@ FrameBall outer_ball(const Chain& chain, const LinkPlace& link, const Ball& ball
   const PlacedBall at = placed(chain, link, ball.center);
   FrameBall out;
   put(at.center, out.center);
-  out.length = rounded_up(at.center.norm() * kSums);
+  out.length = rounded_up(at.length * kSums);
   out.radius = rounded_up((ball.radius * (1 + 1e-8) + at.error + 2.5 * error) * kSums);
   return out;
 }
@@ -323,7 +333,7 @@ void add_corners(const world::Checker& checker, const world::RobotModel& robot, 
       Corner corner;
       put(at, corner.at);
       model.corners.push_back(corner);
-      reach = std::max(reach, at.norm());
+      reach = std::max(reach, at.norm() + kDoubles * (link.lengths + p.norm()));
     }
     shape.corners.end = size_of(model.corners);
     shape.reach = rounded_up(reach * (1 + 1e-6));
@@ -440,6 +450,9 @@ void add_witnesses(const world::Checker& checker, const world::WorldState& state
   double error = 0;
   for (const std::uint32_t s : shapes) {
     const FrameBounds& frame = chain.bounds[model.shapes[s].frame];
+    const auto& ball = arm.shapes[s].outer.ball();
+    error += kDoubles * (frame.lengths + chain.links[arm.shapes[s].link].lengths +
+                         ball.center.norm() + ball.radius);
     error += (2 * frame.rotation + 12 * kUnit) * model.shapes[s].reach + frame.translation +
              10 * kUnit * frame.reach + 2.5 * errors[s];
   }

@@ -13,6 +13,10 @@ namespace {
 
 using geom::kUp;
 
+/// What rounding may take from a distance: of the lengths that cancel on the way, which are none
+/// where one transform alone is between.
+double lost(double lengths, double distance) { return 0x1p-38 * std::max(0.0, lengths - distance); }
+
 }  // namespace
 
 Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points) {
@@ -21,8 +25,12 @@ Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points) {
   Reach out;
   for (const Vec3& p : points) {
     const Vec3 q = motion.after_ * p;
-    out.distance = std::max(out.distance, q.norm());
-    if (!stages.empty()) out.across = std::max(out.across, (stages.back().across * q).norm());
+    const double lengths = motion.after_lengths_ + p.norm(), distance = q.norm();
+    const double off =
+        motion.factors_ > 1 && motion.after_lengths_ > 0 ? lost(lengths, distance) : 0;
+    out.lengths = std::max(out.lengths, lengths);
+    out.distance = std::max(out.distance, distance + off);
+    if (!stages.empty()) out.across = std::max(out.across, (stages.back().across * q).norm() + off);
   }
   return out;
 }
@@ -31,7 +39,7 @@ MotionBounds::MotionBounds(const LinkMotion& motion, const Reach& reach) {
   const auto& stages = motion.stages_;
   // Largest distance from the origin of the moved frame of a stage, and across the last axis.
   double distance = reach.distance, across = reach.across;
-  double angles = 0;
+  double angles = 0, lengths = reach.lengths;
   for (std::size_t k = stages.size(); k-- > 0;) {
     const auto& stage = stages[k];
     if (stage.revolute) {
@@ -41,15 +49,19 @@ MotionBounds::MotionBounds(const LinkMotion& motion, const Reach& reach) {
       if (stage.delta != 0) terms_.push_back({true, across * kUp, std::abs(stage.delta) * kUp});
     } else {
       distance += stage.magnitude;
+      lengths += stage.magnitude;
       slide_ += std::abs(stage.delta);
       if (stage.delta != 0) terms_.push_back({false, 0, std::abs(stage.delta) * kUp});
     }
     const Vec3& to_origin = stage.before.translation;
-    if (k > 0) across = (stages[k - 1].across * to_origin).norm() + distance;
-    distance += to_origin.norm();
+    const double off = lost(stage.lengths, to_origin.norm());
+    if (k > 0) across = (stages[k - 1].across * to_origin).norm() + off + distance;
+    distance += to_origin.norm() + off;
+    lengths += stage.lengths;
   }
   std::reverse(terms_.begin(), terms_.end());
   extent_ = distance * kUp;
+  lengths_ = lengths * kUp;
   radius_ *= kUp;
   turn_ *= kUp;
   slide_ *= kUp;
@@ -83,7 +95,7 @@ double MotionBounds::coarse_second_derivative() const {
 }
 
 double MotionBounds::error(int n) const {
-  double scale = extent_;
+  double scale = std::max(lengths_, extent_);
   for (int i = 0; i < n; ++i) scale *= turn_;
   double slides = n * slide_;
   for (int i = 1; i < n; ++i) slides *= turn_;

@@ -16,13 +16,17 @@ LinkMotion::LinkMotion(const Robot& robot, std::uint32_t link, std::span<const d
   std::reverse(chain.begin(), chain.end());
   factors_ = chain.size() + 1;
   Transform fixed;
+  double lengths = 0;
   for (const std::uint32_t j : chain) {
     const robot::Joint& joint = robot.joints[j];
     fixed = fixed * joint.origin;
+    lengths += joint.origin.translation.norm();
     if (joint.type == robot::JointType::Fixed) continue;
     Stage stage;
     stage.before = fixed;
+    stage.lengths = lengths;
     fixed = {};
+    lengths = 0;
     stage.revolute = joint.type == robot::JointType::Revolute;
     stage.axis = joint.axis;
     const Vec3& a = joint.axis;
@@ -39,6 +43,7 @@ LinkMotion::LinkMotion(const Robot& robot, std::uint32_t link, std::span<const d
     stages_.push_back(stage);
   }
   after_ = fixed;
+  after_lengths_ = lengths;
 }
 
 Transform LinkMotion::at(double s) const {

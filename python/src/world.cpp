@@ -14,6 +14,7 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -106,6 +107,7 @@ robot::Path rows_of(const py::object& value, std::size_t variables, const char* 
   robot::Path out;
   const double* q = array.data();
   for (py::ssize_t i = 0; i < array.shape(0); ++i, q += variables) {
+    if (i % 65536 == 65535 && PyErr_CheckSignals() != 0) throw py::error_already_set();
     out.emplace_back(q, q + variables);
     if (!std::ranges::all_of(out.back(), [](double x) { return std::isfinite(x); }))
       throw Error(ErrorCode::InvalidArgument,
@@ -248,7 +250,7 @@ py::object contact_pairs(const WorldValue& in, const py::object& q,
 
 /// Below so many rows, making a batch checker takes longer than it saves.
 constexpr std::size_t kFewRows = 20000;
-constexpr std::size_t kRowsAtOnce = 1U << 16;
+constexpr std::size_t kFewRowsAtOnce = 1U << 12, kRowsAtOnce = 1U << 18;
 
 /// Null for few rows, where none was made before.
 std::shared_ptr<const filter::BatchChecker> batch_checker(const WorldValue& in, std::size_t robot,
@@ -280,12 +282,19 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
       return;
     }
     std::vector<double> values;
-    for (const std::vector<double>& row : rows) values.insert(values.end(), row.begin(), row.end());
-    for (std::size_t first = 0; first < rows.size(); first += kRowsAtOnce) {
+    std::size_t at_once = kFewRowsAtOnce;
+    for (std::size_t first = 0; first < rows.size();) {
       watch(std::to_string(first) + " of " + std::to_string(rows.size()) + " configurations");
-      const std::size_t count = std::min(kRowsAtOnce, rows.size() - first);
-      batch->decide({values.data() + first * variables, count * variables},
-                    {free.data() + first, count});
+      const std::size_t count = std::min(at_once, rows.size() - first);
+      values.clear();
+      for (std::size_t i = 0; i < count; ++i)
+        values.insert(values.end(), rows[first + i].begin(), rows[first + i].end());
+      const auto begin = std::chrono::steady_clock::now();
+      batch->decide(values, {free.data() + first, count});
+      first += count;
+      // Ctrl-C is seen between parts, so these take about a tenth of a second.
+      const bool quick = std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(50);
+      at_once = quick ? std::min(2 * at_once, kRowsAtOnce) : std::max(at_once / 2, kFewRowsAtOnce);
     }
   });
   py::array_t<bool> out = row_of<bool>(free.size());

@@ -107,7 +107,7 @@ TEST(Thicken, NoBodyIsLongerThanItsWidthAllows) {
       kaboum::test::box(Vec3(1, 1, 1e-3), 1), kaboum::test::box(Vec3(3, 0.01, 0.02), 1),
       test::prism({{0, 0}, {3, 0}, {3, 0.1}, {0.1, 0.1}, {0.1, 3}, {0, 3}}, 2)};
   for (const Mesh& shape : shapes)
-    for (const double aspect : {4.0, 10.0, 100.0, 1e4}) {
+    for (const double aspect : {4.0, 4 / (1 + 1e-12), 10.0, 100.0, 1e4}) {
       const geom::Prepared input = geom::prepare(shape);
       CoverOptions options = test::quick(input.solid.mesh(), 10);
       options.max_aspect = aspect;

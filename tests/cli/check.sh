@@ -38,28 +38,55 @@ shows 1 '^2 of 3 configurations are free, 1 are not' "$BIN/kaboum-check" near.js
 npy() {
   python3 - "$@" <<'END' || fail "array $*"
 import struct, sys
-values, shape = [0, 0, 1.57, 0, 0.5, 0], sys.argv[2]
-header = f"{{'descr': '{sys.argv[3]}', 'fortran_order': False, 'shape': {shape}, }}\n".encode()
-body = struct.pack("<6" + {"<f8": "d", "<f4": "f", "<i8": "q"}[sys.argv[3]], *(values if sys.argv[3][1] == "f" else [0] * 6))
-open(sys.argv[1], "wb").write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + body)
+name, shape, type = sys.argv[1:4]
+values = [float(x) for x in (sys.argv[4] if len(sys.argv) > 4 else "0 0 1.57 0 0.5 0").split()]
+order = len(sys.argv) > 5
+code = {"f8": "d", "f4": "f", "i8": "q", "i4": "i"}[type.strip("'<>")] if type.startswith("'") else "f"
+header = f"{{'descr': {type}, 'fortran_order': {order}, 'shape': {shape}, }}\n".encode()
+body = struct.pack(f"<{len(values)}{code}", *(values if code in "df" else [int(x) for x in values]))
+open(name, "wb").write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + body)
 END
 }
-npy rows.npy '(3, 2)' '<f8'
+npy rows.npy '(3, 2)' "'<f8'"
 shows 1 '^2 of 3 ' "$BIN/kaboum-check" near.json --batch rows.npy --verdicts free.npy --report batch.json
 [ "$(tail -c 3 free.npy | od -An -tu1 | tr -d ' \n')" = 101 ] || fail "verdicts of an array"
 [ $(($(wc -c <free.npy) % 64)) = 3 ] || fail "the header of an array is not aligned"
-grep -q '"in_contact": 1' batch.json || fail "no batch in the report"
-npy rows.npy '(3, 2)' '<f4'
+grep -q '"not_free": 1' batch.json || fail "no batch in the report"
+npy rows.npy '(3, 2)' "'<f4'"
 shows 1 '^2 of 3 ' "$BIN/kaboum-check" near.json --batch rows.npy
 shows 0 '^3 of 3 ' "$BIN/kaboum-check" free.json --batch rows.npy
-npy bad.npy '(4, 2)' '<f4'
+npy bad.npy '(4, 2)' "'<f4'"
 expect 3 'other than 4 rows' "$BIN/kaboum-check" near.json --batch bad.npy
-npy bad.npy '(6,)' '<f8'
+npy bad.npy '(6,)' "'<f8'"
 expect 3 'a row for each' "$BIN/kaboum-check" near.json --batch bad.npy
-npy bad.npy '(3, 2)' '<i8'
-expect 3 'float32 or float64' "$BIN/kaboum-check" near.json --batch bad.npy
-npy bad.npy '(2, 3)' '<f8'
-expect 3 'bad.npy' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(3, 2)' "'>f8'"
+expect 3 'float32, float64, int32 or int64' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(3,)' "[('<f4', '<f4'), ('b', '<f4')]"
+expect 3 'float32, float64, int32 or int64' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(2, 3)' "'<f8'"
+expect 3 'bad.npy: 3 columns, and 2 are expected: j1, j2, in this order' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(3, 2)' "'<f8'" '0 0 0 0 nan 0'
+expect 3 'bad.npy: row 3: a number that is not finite' "$BIN/kaboum-check" near.json --batch bad.npy
+npy bad.npy '(0, 2)' "'<f8'" ''
+expect 3 'bad.npy: no configurations: the array has no rows' "$BIN/kaboum-check" near.json --batch bad.npy
+cp bad.npy bad.npz
+expect 3 'numpy.save' "$BIN/kaboum-check" near.json --batch bad.npz
+# Whole numbers, and columns one after the other.
+npy whole.npy '(2, 2)' "'<i8'" '0 0 1 0'
+npy narrow.npy '(2, 2)' "'<i4'" '0 0 1 0'
+npy turned.npy '(3, 2)' "'<f8'" '0 1.57 0.5 0 0 0' fortran
+shows 1 '^2 of 3 ' "$BIN/kaboum-check" near.json --batch turned.npy --verdicts turned.txt
+cmp -s free.txt turned.txt || fail "verdicts of columns one after the other: $(cat turned.txt)"
+for file in whole.npy narrow.npy; do
+  shows 0 '^2 of 2 ' "$BIN/kaboum-check" near.json --batch "$file"
+done
+npy bad.npy '(2, 2)' "'<i8'" '0 0 1e17 0'
+expect 3 'row 2: a whole number beyond' "$BIN/kaboum-check" near.json --batch bad.npy
+# Verdicts alone on standard output; margins are said.
+"$BIN/kaboum-check" near.json --batch some.csv --verdicts - >verdicts.txt 2>said.txt
+cmp -s free.txt verdicts.txt || fail "more than verdicts: $(cat verdicts.txt)"
+grep -q '^2 of 3 configurations' said.txt || fail "no summary beside verdicts: $(cat said.txt)"
+shows 0 'are not, with margins kept: ' "$BIN/kaboum-check" free.json --batch rows.npy --margin 0.01
 expect 2 'needs --batch' "$BIN/kaboum-check" near.json --verdicts v.npy
 expect 2 'not for --batch' "$BIN/kaboum-check" near.json --batch rows.npy --distance
 printf 'j1,j2\n0,0\n3,0\n' >through.csv

@@ -44,6 +44,12 @@ cell["objects"][0]["pose"] = {"position": [9, 0, 0]}
 json.dump(cell, open("cell.json", "w"))'
 run pairs "$BIN/kaboum-scene" pairs cell.json
 run state "$BIN/kaboum-check" cell.json --distance
+run batch-check "$BIN/kaboum-check" cell.json --batch path.csv
+python3 -c 'import json
+cell = json.load(open("cell.json"))
+cell["objects"][0]["pose"] = {"position": [0, 0, 0]}
+json.dump(cell, open("met.json", "w"))'
+expect 1 '' "$BIN/kaboum-check" met.json --batch path.csv --report reports/batch-not-free.json
 run motion "$BIN/kaboum-check" cell.json --path path.csv
 run move "$BIN/kaboum-move" cell.json --from 0 --to 1 -o moved.csv --trajectory samples.csv
 expect 1 '' "$BIN/bound-verify" mesh --outer wide.off box.off --report reports/refuted.json

@@ -217,6 +217,52 @@ TEST(BatchChecker, AnswersAsTheCheckerDoes) {
   }
 }
 
+/// Fixed joints that go far out and come back leave rounding that is large against all that is
+/// left.
+TEST(BatchChecker, AnswersAsTheCheckerDoesBehindFixedJointsThatCancel) {
+  constexpr double kFar = 1e8;
+  robot::Robot robot;
+  robot.name = "arm";
+  for (const char* name : {"base", "l1", "l2", "l3"}) robot.links.emplace_back().name = name;
+  robot.variables.push_back({"j", -3.0, 3.0});
+  robot::Joint turn, out, back;
+  turn.name = "j";
+  turn.type = robot::JointType::Revolute;
+  turn.axis = Vec3(1, 2, -1.5).normalized();
+  out.name = "out";
+  out.parent = 1;
+  out.origin = {robot::rotation_from_rpy(0.3, 0.2, 0.7), {kFar, 0.7 * kFar, -0.3 * kFar}};
+  back.name = "back";
+  back.parent = 2;
+  const Eigen::Matrix3d turned = out.origin.linear.transpose();
+  back.origin = {turned, -(turned * out.origin.translation) + turned * Vec3(1e-3, 0, 0)};
+  robot.joints = {turn, out, back};
+  World world;
+  world::RobotModel arm;
+  arm.name = "arm";
+  arm.kinematics = robot;
+  arm.home = {0.0};
+  arm.shapes.push_back(shape(3, {ball({0, 0, 0}, 1e-4)}));
+  world.robots.push_back(arm);
+  world::Scratch scratch;
+  world::WorldState state = initial_state(world);
+  state.q[0][0] = 1;
+  const auto place = world::Checker(world).places(state, {{0, 0}}, scratch).front().place;
+  EXPECT_GT(place.error(), 1e-16 * kFar);
+  add_object(world, "stone", {Eigen::Matrix3d::Identity(), place.pose().translation},
+             {ball({0, 0, 0}, 1e-4)});
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  std::vector<double> rows;
+  for (double q = 0.7; q < 1.3; q += 1e-4) rows.push_back(q);
+  std::vector<Answer> answers(rows.size());
+  batch.filter(rows, answers);
+  EXPECT_EQ(wrong_answers(answers, by_checker(checker, rows)), (std::array<std::size_t, 2>{0, 0}));
+  // With the error of what is left alone, contacts would be missed.
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
+  EXPECT_GT(model.outer[0].radius, 1e-4 + 2.5 * place.error());
+}
+
 TEST(BatchChecker, DecidesManyByFloats) {
   const World world = cell(false);
   const world::Checker checker(world);

@@ -84,6 +84,34 @@ TEST(Motion, BoundsAreTightForOneAxis) {
   EXPECT_FALSE(LinkMotion(robot, 1, to, to).moves());
 }
 
+/// Rounding is relative to what cancels, not to what is left of it.
+TEST(Motion, FixedJointsThatGoFarAndComeBackAreInTheError) {
+  constexpr double kFar = 1e9;
+  Robot robot;
+  robot.links.resize(4);
+  robot.variables.push_back({"a", {}, {}});
+  Joint turn, out, back;
+  turn.type = JointType::Revolute;
+  turn.axis = Vec3(1, 2, -1.5).normalized();
+  out.parent = 1;
+  out.origin = {robot::rotation_from_rpy(0.3, 0.2, 0.7), {kFar, 0.7 * kFar, -0.3 * kFar}};
+  back.parent = 2;
+  const Mat3 turned = out.origin.linear.transpose();
+  back.origin = {turned, -(turned * out.origin.translation) + turned * Vec3::UnitX()};
+  robot.joints = {turn, out, back};
+  const std::vector<double> from{0.2}, to{1.4};
+  const std::vector<Vec3> points{{0.1, 0, 0}};
+  for (const std::uint32_t link : {3U, 2U}) {
+    const LinkMotion motion(robot, link, from, to);
+    const MotionBounds bounds(motion, points);
+    EXPECT_GT(bounds.error(0), 1e-16 * kFar);
+    for (const double s : {0.0, 0.4, 1.0}) {
+      const Transform exact = reference_pose(robot, link, between(from, to, s));
+      EXPECT_LE((motion.at(s) * points[0] - exact * points[0]).norm(), bounds.error(0));
+    }
+  }
+}
+
 TEST(Motion, TurnsThenSlides) {
   // A slide carried by a turn: |x''| is at most ρ q̇² + 2 q̇ ḋ, and nears it when far out.
   TestRobot r = prismatic_chain();

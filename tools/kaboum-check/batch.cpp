@@ -8,7 +8,10 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace kaboum::tools {
 namespace {
@@ -19,22 +22,78 @@ bool is_npy(const std::string& file) { return file.ends_with(".npy"); }
   throw Error(ErrorCode::InvalidInput, file + ": " + what);
 }
 
+/// How an array is stored.
+struct Layout {
+  std::string_view type;  ///< of its values, as NumPy writes it
+  bool by_column = false;
+  std::size_t rows = 0, columns = 0;
+
+  [[nodiscard]] std::size_t index(std::size_t row, std::size_t column) const {
+    return by_column ? column * rows + row : row * columns + column;
+  }
+};
+
+std::string in_row(std::size_t row, const char* what) {
+  return "row " + std::to_string(row + 1) + ": " + what;
+}
+
 template <typename Number>
-std::vector<std::vector<double>> rows_of(std::string_view data, std::size_t rows,
-                                         std::size_t columns) {
-  std::vector<std::vector<double>> out(rows, std::vector<double>(columns));
-  const char* at = data.data();
-  for (std::vector<double>& row : out)
-    for (double& value : row) {
+std::vector<std::vector<double>> rows_of(const std::string& file, std::string_view data,
+                                         const Layout& layout) {
+  if (data.size() / sizeof(Number) / layout.columns < layout.rows ||
+      data.size() != layout.rows * layout.columns * sizeof(Number))
+    refuse(file, "the array has other than " + std::to_string(layout.rows) + " rows of " +
+                     std::to_string(layout.columns) + " values");
+  std::vector<std::vector<double>> out(layout.rows, std::vector<double>(layout.columns));
+  for (std::size_t r = 0; r < layout.rows; ++r)
+    for (std::size_t c = 0; c < layout.columns; ++c) {
       Number number;
-      std::memcpy(&number, at, sizeof number);
-      at += sizeof number;
-      value = number;
+      std::memcpy(&number, data.data() + layout.index(r, c) * sizeof number, sizeof number);
+      const auto value = static_cast<double>(number);
+      if constexpr (std::is_integral_v<Number>) {
+        constexpr double kExact = 0x1p53;  // so far, doubles are all whole numbers
+        if (std::abs(value) > kExact) refuse(file, in_row(r, "a whole number beyond 2^53"));
+      }
+      if (!std::isfinite(value)) refuse(file, in_row(r, "a number that is not finite"));
+      out[r][c] = value;
     }
   return out;
 }
 
-/// An array of NumPy: two-dimensional, row by row, of little-endian floats.
+/// What the array's header says after a key; empty: nothing.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  if (at == std::string_view::npos) return {};
+  const std::string_view rest = header.substr(at + key.size());
+  const std::size_t begin = rest.find_first_not_of(": ");
+  return begin == std::string_view::npos ? std::string_view() : rest.substr(begin);
+}
+
+Layout parse_header(const std::string& file, std::string_view header) {
+  Layout out;
+  const std::string_view type = value_of(header, "'descr'");
+  // In quotation marks; those of records are lists, of names and types.
+  if (type.starts_with('\'')) out.type = type.substr(1, type.find('\'', 1) - 1);
+  const std::string_view order = value_of(header, "'fortran_order'");
+  out.by_column = order.starts_with("True");
+  if (!out.by_column && !order.starts_with("False"))
+    refuse(file, "the array's header does not say in which order values are");
+  const std::string_view shape = value_of(header, "'shape'");
+  if (!shape.starts_with('(')) refuse(file, "the array's header has no shape");
+  const char *at = shape.data() + 1, *end = shape.data() + shape.size();
+  const auto first = std::from_chars(at, end, out.rows);
+  at = first.ptr;
+  while (at != end && (*at == ',' || *at == ' ')) ++at;
+  const auto second = std::from_chars(at, end, out.columns);
+  if (first.ec != std::errc() || second.ec != std::errc() || second.ptr == end ||
+      *second.ptr != ')')
+    refuse(file, "an array with a row for each configuration is expected");
+  if (out.rows == 0) refuse(file, "no configurations: the array has no rows");
+  if (out.columns == 0) refuse(file, "the array has no columns");
+  return out;
+}
+
+/// An array of NumPy: two-dimensional, of little-endian numbers. docs/formats.md.
 std::vector<std::vector<double>> read_npy(const std::string& file) {
   static_assert(std::endian::native == std::endian::little);
   const std::vector<char> bytes = io::read_file(file);
@@ -47,29 +106,31 @@ std::vector<std::vector<double>> read_npy(const std::string& file) {
   std::size_t length = byte(8) + 256 * byte(9);
   if (begin == 12) length += 65536 * (byte(10) + 256 * byte(11));
   if (begin + length > text.size()) refuse(file, "the file ends in the array's header");
-  const std::string_view header = text.substr(begin, length), data = text.substr(begin + length);
-  const bool singles = header.find("'<f4'") != std::string_view::npos;
-  if (!singles && header.find("'<f8'") == std::string_view::npos)
-    refuse(file, "an array of float32 or float64 is expected, little-endian");
-  if (header.find("'fortran_order': False") == std::string_view::npos)
-    refuse(file, "an array that is stored row by row is expected");
-  const std::size_t shape = header.find("'shape': (");
-  if (shape == std::string_view::npos) refuse(file, "the array's header has no shape");
-  std::size_t rows = 0, columns = 0;
-  const char *at = header.data() + shape + 10, *end = header.data() + header.size();
-  const auto first = std::from_chars(at, end, rows);
-  at = first.ptr;
-  while (at != end && (*at == ',' || *at == ' ')) ++at;
-  const auto second = std::from_chars(at, end, columns);
-  if (first.ec != std::errc() || second.ec != std::errc() || second.ptr == end ||
-      *second.ptr != ')')
-    refuse(file, "an array with a row for each configuration is expected");
-  const std::size_t size = singles ? 4 : 8;
-  if (columns == 0 || rows == 0 || data.size() / size / columns < rows ||
-      data.size() != rows * columns * size)
-    refuse(file, "the array has other than " + std::to_string(rows) + " rows of " +
-                     std::to_string(columns) + " values");
-  return singles ? rows_of<float>(data, rows, columns) : rows_of<double>(data, rows, columns);
+  const std::string_view data = text.substr(begin + length);
+  const Layout layout = parse_header(file, text.substr(begin, length));
+  if (layout.type == "<f4") return rows_of<float>(file, data, layout);
+  if (layout.type == "<f8") return rows_of<double>(file, data, layout);
+  if (layout.type == "<i4") return rows_of<std::int32_t>(file, data, layout);
+  if (layout.type == "<i8") return rows_of<std::int64_t>(file, data, layout);
+  refuse(file,
+         "an array of float32, float64, int32 or int64 is expected, little-endian: "
+         "array.astype('<f8')");
+}
+
+/// @throws Error{InvalidInput} where the rows have not a value for each joint that moves
+void require_columns(const std::string& file, std::size_t columns, const robot::Robot& robot,
+                     const robot::FixedJoints& fixed) {
+  std::string names;
+  std::size_t expected = 0;
+  for (const robot::Variable& v : robot.variables) {
+    if (fixed.contains(v.name)) continue;
+    names += expected == 0 ? "" : ", ";
+    names += v.name;
+    ++expected;
+  }
+  if (columns != expected)
+    refuse(file, std::to_string(columns) + " columns, and " + std::to_string(expected) +
+                     " are expected: " + names + ", in this order");
 }
 
 /// A byte for each configuration: an array of uint8, or lines of 0 and 1.
@@ -111,9 +172,12 @@ void require_batch_meaning(const CheckOptions& o) {
 
 robot::Path read_batch(const std::string& file, const robot::Robot& robot,
                        const robot::PathOptions& options, std::vector<std::string>& notes) {
+  if (file.ends_with(".npz"))
+    refuse(file, "an archive of arrays; save one array as .npy, with numpy.save");
   if (!is_npy(file)) return read_path(file, robot, options, notes);
   robot::NamedPath named;
   named.waypoints = read_npy(file);
+  require_columns(file, named.waypoints.front().size(), robot, options.fixed);
   robot::Path out = robot::arrange(named, robot, file, false, options.fixed);
   if (options.degrees) out = robot::from_degrees(std::move(out), robot);
   if (options.check_limits) robot::require_within_limits(out, robot, file);
@@ -121,8 +185,8 @@ robot::Path read_batch(const std::string& file, const robot::Robot& robot,
 }
 
 int check_batch(const CheckOptions& o, const world::SceneFile& scene, std::size_t robot,
-                const robot::Path& rows, const std::function<void(const std::string&)>& say,
-                Json& report) {
+                const robot::Path& rows, const std::string& kept,
+                const std::function<void(const std::string&)>& say, Json& report) {
   const world::Checker checker(scene.world);
   const filter::BatchChecker batch(checker, initial_state(scene.world), robot, {});
   std::vector<double> values;
@@ -134,13 +198,19 @@ int check_batch(const CheckOptions& o, const world::SceneFile& scene, std::size_
     const std::string text = text_of(free, is_npy(o.verdicts));
     io::write_file(o.verdicts, std::vector<char>(text.begin(), text.end()));
   }
-  say(std::to_string(counts.free) + " of " + std::to_string(rows.size()) +
-      " configurations are free, " + std::to_string(counts.contact) + " are not; " +
-      std::to_string(counts.exactly) + " needed exact predicates");
+  const std::string summary = std::to_string(counts.free) + " of " + std::to_string(rows.size()) +
+                              " configurations are free, " + std::to_string(counts.contact) +
+                              " are not" + kept + "; " + std::to_string(counts.exactly) +
+                              " needed exact predicates";
+  // Standard output is the verdicts' where they are written there.
+  if (o.verdicts == "-")
+    log(o.common.quiet, summary);
+  else
+    say(summary);
   report["batch"] = {{"file", o.batch},
                      {"configurations", rows.size()},
                      {"free", counts.free},
-                     {"in_contact", counts.contact},
+                     {"not_free", counts.contact},
                      {"exactly", counts.exactly}};
   report["answer"] = counts.contact == 0 ? "free" : "not free";
   return counts.contact == 0 ? kDone : kNo;

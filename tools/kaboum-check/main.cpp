@@ -311,11 +311,11 @@ int check(const tools::CheckOptions& o) {
   const auto tell = [&](const std::string& line) { say(o, line); };
   const bool own = o.engine.library == engines::Library::Own;
   if (!own) report["engine"] = tools::engine_json(o);
-  const int code = !o.batch.empty() ? tools::check_batch(o, scene, *robot, values, tell, report)
-                   : own            ? paths.empty() ? check_states(o, scene, robot, values, report)
-                                                    : check_paths(o, scene, paths, report)
-                              : paths.empty()
-                       ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
+  const int code =
+      !o.batch.empty() ? tools::check_batch(o, scene, *robot, values, kept_apart(o), tell, report)
+      : own            ? paths.empty() ? check_states(o, scene, robot, values, report)
+                                       : check_paths(o, scene, paths, report)
+                 : paths.empty() ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
                        : tools::check_paths_by_engine(o, scene, paths, tell, report);
   if (!notes.empty()) report["notes"] = notes;
   if (!o.margin.margins.empty()) report["margins"] = words_of(o.margin);

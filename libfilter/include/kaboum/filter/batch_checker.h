@@ -55,14 +55,15 @@ class BatchChecker {
   BatchChecker& operator=(const BatchChecker&) = delete;
 
   /// Decides rows of values, one for each variable of the robot, one row after the other.
-  /// @param free  for every row 1: free, for certain; 0: in contact, as Checker::is_free has it
+  /// @param free  for every row 1: free, for certain; 0: in contact or within epsilon, as
+  ///   Checker::is_free has it. A contact that the robot has no part in makes all rows 0.
   /// @param progress  called now and then; what it throws ends the work
   /// @throws Error{InvalidArgument} where sizes do not fit, or a value is not finite
   BatchCounts decide(std::span<const double> rows, std::span<std::uint8_t> free,
                      const std::function<void()>& progress = {}) const;
 
   /// Decides straight motions in joint space, at every instant: of each from a row of `from` to the
-  /// same row of `to`.
+  /// same row of `to`. As in check_motion, contacts that the robot has no part in do not count.
   /// @param free  for every motion 1: free at every instant, for certain; 0: at some instant sets
   ///   meet, or are nearer than the resolution, or check_motion leaves it undecided
   /// @param options  of world::check_motion, which decides the stretches that are open

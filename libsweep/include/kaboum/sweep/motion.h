@@ -38,6 +38,7 @@ class LinkMotion {
   friend Reach reach_of(const LinkMotion& motion, std::span<const Vec3> points);
   struct Stage {
     Transform before;  // from the joint's frame to the moved frame before it
+    double lengths;    // of the fixed transforms that `before` is the product of, summed
     bool revolute;
     Vec3 axis;
     Mat3 cross, across;  // [axis]×, and the projection across the axis
@@ -47,6 +48,7 @@ class LinkMotion {
   };
   std::vector<Stage> stages_;
   Transform after_;
+  double after_lengths_ = 0;
   bool moves_ = false;
   std::size_t factors_ = 1;  // transforms that rounding enters by
 };
@@ -55,6 +57,9 @@ class LinkMotion {
 struct Reach {
   double distance = 0;  ///< from the origin of the frame that the last joint moves [length]
   double across = 0;    ///< from that joint's axis [length]
+  /// Of the fixed transforms from that frame on, and to the point, summed: what rounding is
+  /// relative to, however near the point is in the end. [length]
+  double lengths = 0;
 };
 
 /// The same for all motions of the link.
@@ -94,7 +99,7 @@ class MotionBounds {
     double delta;   // |change|
   };
   std::vector<Term> terms_;  // of joints that move, from the root on
-  double radius_ = 0, extent_ = 0, turn_ = 0, slide_ = 0, relative_error_ = 0;
+  double radius_ = 0, extent_ = 0, lengths_ = 0, turn_ = 0, slide_ = 0, relative_error_ = 0;
 };
 
 }  // namespace kaboum::sweep
