@@ -19,8 +19,9 @@ std::optional<double> density_of(const std::string& option) {
   char* end = nullptr;
   const double value = std::strtod(option.c_str(), &end);
   if (option.empty() || *end != '\0' || !(value > 0) || !std::isfinite(value))
-    throw Error(ErrorCode::InvalidArgument,
-                "--inertia: '" + option + "' is neither the word mass nor a density above 0 (kg/m^3)");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--inertia: '" + option + "' is neither the word mass nor a density above 0 (kg/m^3)");
   return value;
 }
 
