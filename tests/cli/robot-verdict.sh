@@ -171,7 +171,7 @@ for geometry in collision visual; do
   made 0 'every triangle of 9 links is inside' bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --geometry $geometry
   made 0 'every triangle of 9 links is inside' bmesh-decimate "$R/odd.urdf" -o out --epsilon 0.05 --geometry $geometry
 done
-made 0 'A wrap takes the place of the mesh' bcd-decompose "$R/odd.urdf" -o "it's out" --epsilon 0.05 --effort fast
+made 0 'A wrap takes the place of the mesh' bcd-decompose "$R/odd.urdf" -o "it's out" --epsilon 0.05 --effort fast --verbose
 made 0 'every triangle' bcd-decompose "$R/odd.urdf" -o out --epsilon 0.05 --effort fast --prepare wrap
 made 0 'every triangle' bmesh-decimate "$R/odd.urdf" -o out --epsilon 0.05 --prepare wrap
 made 0 'every triangle' bcd-decompose "$R/one-sheet.urdf" -o out --effort fast

@@ -7,6 +7,8 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot_folder/urdf_text.h>
 
+#include <algorithm>
+
 #include "common/cli.h"
 #include "urdf_output.h"
 
@@ -60,11 +62,14 @@ void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
                               : "; so it is for " + counted(more, "more mesh", "more meshes")));
   }
   std::size_t shown = warnings.size();
-  for (const std::string& text : lines)
-    if (geom::is_warning(text)) {
-      log(quiet, text);
-      ++shown;
-    }
+  for (const std::string& text : lines) {
+    const bool above = std::ranges::any_of(warnings, [&text](const auto& warning) {
+      return text.find(warning.second) != std::string::npos;
+    });
+    if (above || !geom::is_warning(text)) continue;
+    log(quiet, text);
+    ++shown;
+  }
   if (lines.size() > shown)
     log(quiet,
         counted(lines.size() - shown, "note", "notes") +
