@@ -61,7 +61,7 @@ npy bad.npy '(6,)' "'<f8'"
 expect 3 'a row for each' "$BIN/kaboum-check" near.json --batch bad.npy
 npy bad.npy '(3, 2)' "'>f8'"
 expect 3 'float32, float64, int32 or int64' "$BIN/kaboum-check" near.json --batch bad.npy
-npy bad.npy '(3,)' "[('<f4', '<f4'), ('b', '<f4')]"
+npy bad.npy '(3, 2)' "[('<f4', '<f4'), ('b', '<f4')]"
 expect 3 'float32, float64, int32 or int64' "$BIN/kaboum-check" near.json --batch bad.npy
 npy bad.npy '(2, 3)' "'<f8'"
 expect 3 'bad.npy: 3 columns, and 2 are expected: j1, j2, in this order' "$BIN/kaboum-check" near.json --batch bad.npy
