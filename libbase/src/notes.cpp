@@ -14,9 +14,10 @@ void Notes::add(const std::string& file, const std::string& text) {
   if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
 }
 
-std::vector<std::string> Notes::lines() const {
+std::vector<std::string> Notes::lines(const std::function<bool(std::string_view)>& wanted) const {
   std::vector<std::string> out;
   for (const auto& [text, files] : notes_) {
+    if (wanted && !wanted(text)) continue;
     std::string line = files.front();
     if (files.size() == 2) line += " and " + files.back();
     if (files.size() > 2) line += " and " + std::to_string(files.size() - 1) + " more meshes";

@@ -309,7 +309,7 @@ class Measure {
 
 namespace {
 
-/// Of bodies that have no weight.
+/// Distances of bodies from the solid, where no region weighs them.
 std::vector<Excess> measure_alike(const std::vector<Mesh>& bodies, const SolidField& solid,
                                   const ExcessOptions& options, double floor, double ceiling) {
   std::vector<Measure> measures;

@@ -153,8 +153,8 @@ double room(const ParallelBody& body, const AxesBox& box, int k, bool high, doub
 
 namespace {
 
-/// How far a face may be moved so that the box stays apart from a region; negative where it is not.
-/// [length]
+/// The largest shift of a face outwards that keeps the box apart from a region; negative where it
+/// is not apart. [length]
 double room_apart(const geom::Region& region, const AxesBox& box, int k, bool high) {
   const std::vector<Vec3> corners = box.corners();
   const double slack = kApartSlack * (box.high - box.low).maxCoeff();

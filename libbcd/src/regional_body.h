@@ -38,7 +38,7 @@ class RegionalBody {
     geom::Region region;
     std::unique_ptr<ParallelBody> body;
   };
-  /// What is in a region is in the body of it, besides.
+  /// The bodies of the regions: a point in a region has to be in that region's body as well.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
  private:
@@ -46,7 +46,8 @@ class RegionalBody {
   std::vector<Part> parts_;
 };
 
-/// Of sets that are to be apart from a region: this share of the distance is left. [1]
+/// Share of a distance, or of a size, that is slack where something is to be apart from a region.
+/// [1]
 inline constexpr double kApartSlack = 1e-5;
 
 }  // namespace kaboum::bcd

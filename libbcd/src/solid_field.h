@@ -96,7 +96,7 @@ class SolidField {
   /// Distance to the surface, rounded, if it is below `limit`.
   [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
 
-  /// What depends on the mesh and the grid alone: the values of the grid, too.
+  /// Search trees of the mesh and values of its grid, which searches of the same mesh share.
   struct Parts {
     explicit Parts(const Mesh& mesh);
     geom::DistanceQuery surface;

@@ -26,8 +26,10 @@ namespace fs = std::filesystem;
 constexpr std::string_view kEnclosureEntry = "KABOUM-MESH 2";
 
 constexpr const char* kSpareNote =
-    "float32 is too coarse for the mesh round it, which is written with the digits of doubles, in "
-    "another format than the others; it encloses as long as its reader does not round to float32";
+    "WARNING: float32 is too coarse for the mesh round it, which is written with the digits of "
+    "doubles, in another format than the others; it encloses as long as its reader does not round "
+    "to "
+    "float32";
 
 constexpr double kShareOfWrap = 0.6;  ///< of epsilon, for a wrap
 

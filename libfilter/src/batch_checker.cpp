@@ -82,46 +82,81 @@ void BatchChecker::filter(std::span<const double> rows, std::span<Answer> answer
                       answers.data());
 }
 
-BatchCounts BatchChecker::decide(std::span<const double> rows, std::span<std::uint8_t> free,
-                                 const std::function<void()>& progress) const {
-  constexpr std::size_t kPart = 1024;
-  const std::size_t variables = impl_->model.variables;
-  if (rows.size() != free.size() * variables)
+namespace {
+
+/// @throws Error{InvalidArgument} unless these are so many rows of finite values
+void require_rows(std::span<const double> rows, std::size_t count, std::size_t variables) {
+  if (rows.size() != count * variables)
     throw Error(ErrorCode::InvalidArgument,
                 "rows of " + std::to_string(variables) + " values are expected");
   if (!std::ranges::all_of(rows, [](double x) { return std::isfinite(x); }))
     throw Error(ErrorCode::InvalidArgument, "a value that is not finite");
+}
+
+/// Decides `free` part by part, by threads.
+/// @param make_worker  makes what a thread works with: `filter(first, answers)` answers for as many
+///   as there is room for, `is_free(i)` decides what that leaves open
+template <class MakeWorker>
+BatchCounts decide_by_parts(std::span<std::uint8_t> free, std::size_t part_size,
+                            const std::function<void()>& progress, const MakeWorker& make_worker) {
+  using Answer = BatchChecker::Answer;
   BatchCounts out;
   std::mutex mutex;
-  parallel_ranges((free.size() + kPart - 1) / kPart, {}, [&](std::size_t begin, std::size_t end) {
-    world::Scratch scratch;
-    world::WorldState state = impl_->state;
-    std::vector<Answer> answers;
-    BatchCounts counts;
-    for (std::size_t part = begin; part < end; ++part) {
-      const std::size_t first = part * kPart, count = std::min(kPart, free.size() - first);
-      answers.resize(count);
-      filter(rows.subspan(first * variables, count * variables), answers);
-      for (std::size_t i = 0; i < count; ++i) {
-        bool is_free = answers[i] == Answer::Free;
-        if (answers[i] == Answer::Open) {
-          const auto row = rows.subspan((first + i) * variables, variables);
-          state.q[impl_->robot].assign(row.begin(), row.end());
-          is_free = impl_->checker->is_free(state, scratch);
-          ++counts.exactly;
-        }
-        ++(is_free ? counts.free : counts.contact);
-        free[first + i] = is_free ? 1 : 0;
-      }
-      if (progress) {
-        const std::scoped_lock lock(mutex);
-        progress();
-      }
-    }
-    const std::scoped_lock lock(mutex);
-    out += counts;
-  });
+  parallel_ranges((free.size() + part_size - 1) / part_size, {},
+                  [&](std::size_t begin, std::size_t end) {
+                    auto worker = make_worker();
+                    std::vector<Answer> answers;
+                    BatchCounts counts;
+                    for (std::size_t part = begin; part < end; ++part) {
+                      const std::size_t first = part * part_size;
+                      answers.resize(std::min(part_size, free.size() - first));
+                      worker.filter(first, answers);
+                      for (std::size_t i = 0; i < answers.size(); ++i) {
+                        bool is_free = answers[i] == Answer::Free;
+                        if (answers[i] == Answer::Open) {
+                          is_free = worker.is_free(first + i);
+                          ++counts.exactly;
+                        }
+                        ++(is_free ? counts.free : counts.contact);
+                        free[first + i] = is_free ? 1 : 0;
+                      }
+                      if (progress) {
+                        const std::scoped_lock lock(mutex);
+                        progress();
+                      }
+                    }
+                    const std::scoped_lock lock(mutex);
+                    out += counts;
+                  });
   return out;
+}
+
+}  // namespace
+
+BatchCounts BatchChecker::decide(std::span<const double> rows, std::span<std::uint8_t> free,
+                                 const std::function<void()>& progress) const {
+  constexpr std::size_t kPart = 1024;
+  struct Worker {
+    const BatchChecker& checker;
+    std::span<const double> rows;
+    world::WorldState state;
+    world::Scratch scratch;
+
+    void filter(std::size_t first, std::span<Answer> answers) const {
+      const std::size_t n = checker.variables();
+      checker.filter(rows.subspan(first * n, answers.size() * n), answers);
+    }
+    bool is_free(std::size_t i) {
+      const std::size_t n = checker.variables();
+      const auto row = rows.subspan(i * n, n);
+      state.q[checker.impl_->robot].assign(row.begin(), row.end());
+      return checker.impl_->checker->is_free(state, scratch);
+    }
+  };
+  require_rows(rows, free.size(), variables());
+  return decide_by_parts(free, kPart, progress, [&] {
+    return Worker{*this, rows, impl_->state, {}};
+  });
 }
 
 namespace {
@@ -240,57 +275,45 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
                                          const world::MotionOptions& options,
                                          const std::function<void()>& progress) const {
   constexpr std::size_t kPart = 64;
-  const detail::Model& model = impl_->model;
-  const std::size_t n = model.variables;
-  if (from.size() != free.size() * n || to.size() != from.size())
-    throw Error(ErrorCode::InvalidArgument,
-                "rows of " + std::to_string(n) + " values are expected");
-  const auto is_finite = [](double x) { return std::isfinite(x); };
-  if (!std::ranges::all_of(from, is_finite) || !std::ranges::all_of(to, is_finite))
-    throw Error(ErrorCode::InvalidArgument, "a value that is not finite");
-  BatchCounts out;
-  std::mutex mutex;
-  parallel_ranges((free.size() + kPart - 1) / kPart, {}, [&](std::size_t begin, std::size_t end) {
+  struct Worker {
+    const Impl& impl;
+    std::span<const double> from, to;
+    world::MotionOptions options;
     world::Scratch scratch;
-    world::MotionOptions exact = options;
-    exact.where = false;
-    exact.scratch = &scratch;
-    exact.progress = {};
-    BatchCounts counts;
-    for (std::size_t part = begin; part < end; ++part) {
-      const std::size_t first = part * kPart, count = std::min(kPart, free.size() - first);
-      const auto row = [&](std::span<const double> of, std::size_t i) {
-        return of.subspan((first + i) * n, n);
-      };
-      bool usable = !model.unusable && !model.always_contact && n > 0;
-      for (std::size_t i = 0; usable && i < count; ++i)
-        usable = is_within(model, row(from, i)) && is_within(model, row(to, i));
-      std::vector<Answer> answers(count, Answer::Open);
-      if (usable)
-        answers = MotionBatch(model, impl_->instructions, from.data() + first * n,
-                              to.data() + first * n, count)
-                      .run();
-      for (std::size_t i = 0; i < count; ++i) {
-        bool is_free = answers[i] == Answer::Free;
-        if (answers[i] == Answer::Open) {
-          const auto a = row(from, i), b = row(to, i);
-          is_free = check_motion(*impl_->checker, impl_->state, impl_->robot,
-                                 {{a.begin(), a.end()}, {b.begin(), b.end()}}, exact)
-                        .outcome == world::MotionAnswer::Outcome::Free;
-          ++counts.exactly;
-        }
-        ++(is_free ? counts.free : counts.contact);
-        free[first + i] = is_free ? 1 : 0;
-      }
-      if (progress) {
-        const std::scoped_lock lock(mutex);
-        progress();
-      }
+
+    [[nodiscard]] std::span<const double> row(std::span<const double> of, std::size_t i) const {
+      return of.subspan(i * impl.model.variables, impl.model.variables);
     }
-    const std::scoped_lock lock(mutex);
-    out += counts;
+    void filter(std::size_t first, std::span<Answer> answers) const {
+      const detail::Model& model = impl.model;
+      const std::size_t n = model.variables;
+      bool usable = !model.unusable && !model.always_contact && n > 0;
+      for (std::size_t i = first; usable && i < first + answers.size(); ++i)
+        usable = is_within(model, row(from, i)) && is_within(model, row(to, i));
+      if (usable)
+        std::ranges::copy(MotionBatch(model, impl.instructions, from.data() + first * n,
+                                      to.data() + first * n, answers.size())
+                              .run(),
+                          answers.begin());
+      else
+        std::ranges::fill(answers, Answer::Open);
+    }
+    bool is_free(std::size_t i) {
+      options.scratch = &scratch;
+      const auto a = row(from, i), b = row(to, i);
+      return check_motion(*impl.checker, impl.state, impl.robot,
+                          {{a.begin(), a.end()}, {b.begin(), b.end()}}, options)
+                 .outcome == world::MotionAnswer::Outcome::Free;
+    }
+  };
+  require_rows(from, free.size(), variables());
+  require_rows(to, free.size(), variables());
+  world::MotionOptions exact = options;
+  exact.where = false;
+  exact.progress = {};
+  return decide_by_parts(free, kPart, progress, [&] {
+    return Worker{*impl_, from, to, exact, {}};
   });
-  return out;
 }
 
 }  // namespace kaboum::filter

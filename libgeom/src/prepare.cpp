@@ -485,11 +485,6 @@ class Preparation {
 
 }  // namespace
 
-bool is_warning(std::string_view note) {
-  return note.find("NOT enclosed") != std::string_view::npos ||
-         note.find("WARNING: ") != std::string_view::npos;
-}
-
 Prepared prepare(const Mesh& input, const PrepareOptions& options) {
   return Preparation(input, options).run();
 }

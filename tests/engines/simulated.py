@@ -23,17 +23,11 @@ except ImportError:
     print("simulated.py: skipped: no MuJoCo here; scripts/setup --engines", file=sys.stderr)
     sys.exit(77)
 
+from checks import check, exit_code, failures  # noqa: E402
+
 SECONDS = 5
 POSES = 1e-9       # how far engines' kinematics may be apart [m, -]
 VERTICES = 2e-6    # float32 coordinates of parts below 1 m; engines drop vertices that are no corners [m]
-failures = []
-sys.stdout.reconfigure(line_buffering=True)
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what)
 
 
 # --- robots ---
@@ -490,8 +484,7 @@ def main():
                 print(f"gripper: {engine} {'holds' if len(failures) == before else 'does NOT hold'} the box")
             except ImportError as error:
                 print(f"skipped: no {engine}: {error}")
-    print("failed" if failures else "passed", f"({len(failures)} failures)")
-    return 1 if failures else 0
+    return exit_code()
 
 
 if __name__ == "__main__":

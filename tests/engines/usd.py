@@ -23,15 +23,7 @@ except ImportError:
     print("usd.py: skipped: no OpenUSD here; scripts/setup --engines", file=sys.stderr)
     sys.exit(77)
 
-failures = []
-sys.stdout.reconfigure(line_buffering=True)
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what)
-
+from checks import check, exit_code  # noqa: E402
 
 BOX = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 
@@ -203,8 +195,7 @@ def main():
         read = json.loads(subprocess.run([program, str(place / "out/robot.urdf")], capture_output=True, text=True, check=True).stdout)[str(place / "out/robot.urdf")]
         print(f"{len(bodies)} links, {check_bodies(stage, place / 'out', names, read)} bodies")
         check_joints(stage, names)
-    print("failed" if failures else "passed", f"({len(failures)} failures)")
-    return 1 if failures else 0
+    return exit_code()
 
 
 if __name__ == "__main__":

@@ -77,11 +77,10 @@ struct Run {
   certify::CertifiedRobot made = {};
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
   std::vector<certify::LinkVerdict> verdicts = {};
-  Notes notes = {};                                                ///< on meshes
-  Notes written = {};                                              ///< on what was written
-  std::vector<std::pair<std::string, std::string>> warnings = {};  ///< on meshes
-  std::size_t cached = 0;                                          ///< meshes
-  std::optional<scene::RobotPairs> pairs = {};                     ///< with --srdf
+  Notes notes = {};                             ///< on meshes
+  Notes written = {};                           ///< on what was written
+  std::size_t cached = 0;                       ///< meshes
+  std::optional<scene::RobotPairs> pairs = {};  ///< with --srdf
   std::vector<certify::LinkInertia> inertia = {};
 
   [[nodiscard]] const certify::BodiesCertificate& bodies() const {
@@ -100,7 +99,7 @@ struct Run {
 };
 
 /// What is said of a mesh that is done: with --verbose a line, else what helps where it is not as
-/// asked for, and warnings.
+/// asked for.
 void take_note(Run& run, const certify::CertifiedLinkMesh& mesh, Notes& shortfalls) {
   const std::string file = mesh.mesh.file.string(), name = mesh.mesh.file.filename().string();
   const bool quiet = run.o.common.quiet, verbose = run.o.robot.verbose;
@@ -113,9 +112,6 @@ void take_note(Run& run, const certify::CertifiedLinkMesh& mesh, Notes& shortfal
                    (mesh.made.found.cached ? " (from the cache)" : ""));
   const std::string why = page::shortfall_of(certificate);
   if (!why.empty() && certificate.undecided.empty()) shortfalls.add(name, why);
-  const double diagonal = certificate.wrap ? certificate.wrap->diagonal : certificate.diagonal;
-  if (std::string text = certify::warning_of(mesh.epsilon, diagonal); !text.empty())
-    run.warnings.emplace_back(name, std::move(text));
 }
 
 /// What a budget for the whole robot allows: one epsilon, or of spheres one for each link.
@@ -378,7 +374,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                           ", on the mean of links " + number_up(mean_distance(bodies)) +
                           "; bound-verify robot " + o.input +
                           (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
-  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
+  say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
                  {{spheres ? "spheres" : "bodies", bodies.artefact().size()},
@@ -508,7 +504,7 @@ int decompose_robot(const DecomposeOptions& o) {
   log(o.common.quiet, "from the files alone: " + check_of(run, output).command);
   say(output, o.robot, o.common.quiet);
   for (const std::string& text : run.written.lines()) log(o.common.quiet, text);
-  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
+  say_notes(o.robot, o.common.quiet, run.notes);
   if (run.pairs) log(o.common.quiet, pairs_in_words(*run.pairs));
   if (!o.inertia.empty())
     for (const std::string& line : in_words(run.robot.robot, run.inertia))

@@ -52,9 +52,8 @@ struct Run {
   certify::LinkEnclosuresRequest request = {};
   certify::LinkEnclosures made = {};
   std::vector<certify::LinkVerdict> verdicts = {};
-  Notes notes = {};                                                ///< on meshes
-  Notes written = {};                                              ///< on what was written
-  std::vector<std::pair<std::string, std::string>> warnings = {};  ///< on meshes
+  Notes notes = {};    ///< on meshes
+  Notes written = {};  ///< on what was written
 
   [[nodiscard]] int code() const { return exit_code(outcome_of(verdicts)); }
 };
@@ -116,11 +115,7 @@ void say_meshes(Run& run) {
     if (const std::string why = shortfall(c); !why.empty())
       shortfalls.add(mesh.mesh.file.filename().string(), why);
     for (const std::string& text : mesh.made.read_notes) run.notes.add(file, text);
-    for (const std::string& text : c.notes) {
-      run.notes.add(file, text);
-      if (text.starts_with("WARNING") || text.starts_with("float32 is too coarse"))
-        run.warnings.emplace_back(mesh.mesh.file.filename().string(), text);
-    }
+    for (const std::string& text : c.notes) run.notes.add(file, text);
   }
   for (const std::string& line : table_of(lines_of(run), "meshes", "m")) log(quiet, line);
   for (const std::string& line : shortfalls.lines()) log(quiet, line);
@@ -283,7 +278,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   log(o.common.quiet, "from the files alone: " + check_of(run, output).command);
   say(output, o.robot, o.common.quiet);
   for (const std::string& text : run.written.lines()) log(o.common.quiet, text);
-  say_notes(o.robot, o.common.quiet, run.notes, run.warnings);
+  say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.robot.html.empty()) write_page(run, output);
   if (!o.common.report.empty())
     write_report(o.common, "bmesh-decimate", decimated_report(run, output));

@@ -3,6 +3,7 @@
 #include "surfaces.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/notes.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/robot/exact_shapes.h>
@@ -115,7 +116,7 @@ void add_mesh(const Mesh& exact, Made& out) {
   if (!found->solid.closed() || report.guessed || report.hollow) {
     std::string what = "which solid a mesh means is not certain";
     for (const std::string& note : report.notes)
-      if (note.starts_with("WARNING: ")) what += ": " + note.substr(9);
+      if (note.starts_with(kWarning)) what += ": " + note.substr(kWarning.size());
     out.unsure.push_back(what);
   }
   Mesh solid = found->solid.mesh();

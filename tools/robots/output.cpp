@@ -3,11 +3,9 @@
 #include "output.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/geom/prepare.h>
+#include <kaboum/certify/large_epsilon.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/robot_folder/urdf_text.h>
-
-#include <algorithm>
 
 #include "common/cli.h"
 #include "urdf_output.h"
@@ -47,35 +45,6 @@ robot_folder::FileNote note_in(Notes& notes) {
   return [&notes](const std::string& file, const std::string& text) { notes.add(file, text); };
 }
 
-void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
-               const std::vector<std::pair<std::string, std::string>>& warnings) {
-  const std::vector<std::string> lines = notes.lines();
-  if (options.verbose) {
-    for (const std::string& text : lines) log(quiet, text);
-    return;
-  }
-  if (!warnings.empty()) {
-    const auto& [file, text] = warnings.front();
-    const std::size_t more = warnings.size() - 1;
-    log(quiet, file + ": " + text +
-                   (more == 0 ? std::string()
-                              : "; so it is for " + counted(more, "more mesh", "more meshes")));
-  }
-  std::size_t shown = warnings.size();
-  for (const std::string& text : lines) {
-    const bool above = std::ranges::any_of(warnings, [&text](const auto& warning) {
-      return text.find(warning.second) != std::string::npos;
-    });
-    if (above || !geom::is_warning(text)) continue;
-    log(quiet, text);
-    ++shown;
-  }
-  if (lines.size() > shown)
-    log(quiet,
-        counted(lines.size() - shown, "note", "notes") +
-            " on how meshes are read and prepared: --verbose prints them, reports have them");
-}
-
 namespace {
 
 /// The first lines and, of too many, how many there are.
@@ -89,6 +58,27 @@ void log_some(const std::vector<std::string>& lines, bool all, bool quiet) {
 }
 
 }  // namespace
+
+void say_notes(const RobotOptions& options, bool quiet, const Notes& notes) {
+  const std::vector<std::string> lines = notes.lines();
+  if (options.verbose) {
+    for (const std::string& text : lines) log(quiet, text);
+    return;
+  }
+  const auto is_of_epsilon = [](std::string_view text) {
+    return text.starts_with(certify::kLargeEpsilonWarning);
+  };
+  const std::vector<std::string> of_epsilon = notes.lines(is_of_epsilon);
+  const std::vector<std::string> others = notes.lines(
+      [&](std::string_view text) { return text.starts_with(kWarning) && !is_of_epsilon(text); });
+  for (const std::string& text : others) log(quiet, text);
+  log_some(of_epsilon, false, quiet);
+  const std::size_t left = lines.size() - others.size() - of_epsilon.size();
+  if (left > 0)
+    log(quiet,
+        counted(left, "note", "notes") +
+            " on how meshes are read and prepared: --verbose prints them, reports have them");
+}
 
 void say(const robot_folder::RobotWriter& writer, const RobotOptions& options, bool quiet) {
   const robot_folder::FolderOptions& o = writer.options();

@@ -23,11 +23,9 @@ robot_folder::FolderOptions folder_options(const RobotOptions& options);
 /// Notes on files, for later.
 robot_folder::FileNote note_in(Notes& notes);
 
-/// Notes on meshes, for the terminal: those of what is not enclosed, warnings, and how many others
-/// there are; with --verbose all.
-/// @param warnings  of meshes, by their files
-void say_notes(const RobotOptions& options, bool quiet, const Notes& notes,
-               const std::vector<std::pair<std::string, std::string>>& warnings);
+/// Notes on meshes, for the terminal: warnings, of a large epsilon the first ones, and how many
+/// others there are; with --verbose all.
+void say_notes(const RobotOptions& options, bool quiet, const Notes& notes);
 
 /// Says what a user should know of the folder.
 void say(const robot_folder::RobotWriter& writer, const RobotOptions& options, bool quiet);

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kaboum::geom {
@@ -75,10 +74,6 @@ struct PreparationReport {
   bool guessed = false;
   std::vector<std::string> notes;  ///< the same in words, for who made the file
 };
-
-/// Whether a note says that something is not enclosed, or that the solid is a guess: users have to
-/// see it even where other notes are only counted.
-bool is_warning(std::string_view note);
 
 /// A mesh whose solid is defined, and how it came from the input.
 struct Prepared {
