@@ -57,9 +57,11 @@ END
 done
 expect 2 'for robots' "$D" m/t.off -o x.glb --verbose
 # A wrong unit is seen, once.
+echo '<robot name="a"><link name="l"><collision><geometry><mesh filename="m/bracket.obj"/></geometry></collision></link></robot>' >arm0.urdf
 expect 0 'WARNING: epsilon is 4, ' "$D" many.urdf -o out --epsilon 4 --effort fast --links "$(
   for i in 1 2 5 6; do printf 'a_link_with_a_name_that_is_so_long_that_no_table_has_a_place_for_it_%s,' $i; done | sed 's/,$//')"
 [ "$(grep -c 'WARNING: epsilon' err.txt)" = 2 ] || fail "warnings: $(cat err.txt)"
+expect 0 'm/bracket.obj: WARNING: epsilon is 4, ' "$S" arm0.urdf -o large --epsilon 4
 
 # Ctrl-C: what is done is kept, nothing is in the folder, the same command goes on and makes the same bytes.
 mkdir parts
