@@ -23,10 +23,10 @@ class Step:
 
 
 class Calls:
-    """Runs programs; a result is kept while the programs, inputs and arguments stay the same."""
+    """Runs programs; a result is kept while the programs, inputs and arguments stay the same, also that there is none."""
 
     def __init__(self, context, folder):
-        self.programs, self.limit = context.runner.programs, context.runner.limit
+        self.programs, self.limit, self.retry = context.runner.programs, context.runner.limit, context.runner.retry
         self.folder = context.folder / folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self.failures, self.spent, self.called = context.runner.failures, context.runner.spent, context.runner.called
@@ -37,10 +37,15 @@ class Calls:
         so, results are missing, never those of an earlier call."""
         key = hashlib.sha256(json.dumps(
             [sha256(program), [str(a) for a in arguments], [hash_of(p) for p in inputs], limit]).encode()).hexdigest()
-        record = self.folder / f"{name}.json"
+        record, seconds = self.folder / f"{name}.json", limit or self.limit
         assert record.name not in results, f"{name}: its result would overwrite its record"
         try:
             kept = json.loads(record.read_text())
+            if kept["key"] == key and "failure" in kept and kept["limit"] >= seconds and not self.retry:
+                self._spend(kept)
+                self.called[1] += 1
+                self.failures[Step(name)] = kept["failure"]
+                return None
             if kept["key"] == key and kept["files"] == self._hashes(results):
                 self._spend(kept)
                 self.called[1] += 1
@@ -56,24 +61,24 @@ class Calls:
                            PATH=f"{self.programs}{os.pathsep}{os.environ.get('PATH', '')}")
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
         start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        seconds = limit or self.limit
         self.called[0] += 1
         done = subprocess.run([program, *map(str, arguments)], cwd=self.folder, env=environment, capture_output=True,
                               text=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5)))
         print(f" {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)
         user = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        made = {"key": key, "code": done.returncode, "user_seconds": user, "wall_seconds": time.monotonic() - start}
+        self._spend(made)
         if done.returncode not in codes:
-            self.failures[Step(name)] = (
-                f"stopped (CPU limit {seconds} s, or out of memory)"
-                if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else
-                (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1])
             for partial in results:
                 (self.folder / partial).unlink(missing_ok=True)
+            why = (f"stopped (CPU limit {seconds} s, or out of memory)"
+                   if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else
+                   (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1])
+            self.failures[Step(name)] = why
+            write_json(record, {**made, "limit": seconds, "failure": why})
             return None
-        made = {"key": key, "code": done.returncode, "user_seconds": user, "wall_seconds": time.monotonic() - start, "files": self._hashes(results)}
-        write_json(record, made)
-        self._spend(made)
+        write_json(record, {**made, "files": self._hashes(results)})
         return done.returncode
 
     def _spend(self, made):

@@ -19,7 +19,7 @@ def arguments(argv):
         prog="reproduce-thesis",
         description="Runs the thesis's evaluation of bounding meshes on public models (in $KABOUM_MESHES; without it "
         "on the project's own) and writes the thesis's figures beside ours: index.html, report.md, CSV and SVG. "
-        "What has been run already is not run again.",
+        "What has been run already is not run again, also what gave no result (but with --retry).",
         epilog="Exit codes: 0 done, with --compare: the same; 1 some runs gave no result (the report lists them), with --compare: "
         "something differs; 2 usage; 3 a model or a program is missing.")
     parser.add_argument("--quick", action="store_true", help="few models, costs and vertex counts")
@@ -29,6 +29,7 @@ def arguments(argv):
                         help="decimations at a time, one thread each [2; 1 on one core]")
     parser.add_argument("--models", metavar="NAME,...", help="only these models")
     parser.add_argument("--limit", type=int, default=900, metavar="SECONDS", help="CPU time of a program [900]")
+    parser.add_argument("--retry", action="store_true", help="run again what gave no result before")
     parser.add_argument("--programs", type=pathlib.Path, metavar="DIR", default=ROOT / "build/release/bin",
                         help="folder of the built programs [build/release/bin]")
     parser.add_argument("--sections", metavar="NAME,...", help="only these: " + ", ".join(report.SECTIONS))
@@ -99,7 +100,7 @@ def main(argv):
     others = {name: program.resolve() for name, program in others.items() if program}
     if options.peers:
         others["python"] = peers.environment(out)
-    runner = Runner(options.programs.resolve(), out / "runs", options.jobs, options.limit)
+    runner = Runner(options.programs.resolve(), out / "runs", options.jobs, options.limit, options.retry)
     results = report.make(chosen, runner, out, options.quick, sections, others)
     if options.keep:
         keep.keep(results, report.SECTIONS)

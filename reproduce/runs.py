@@ -18,7 +18,7 @@ import time
 THESIS_COSTS = ("planes", "planes-adapted", "planes-diagonal", "triangles")
 OURS = "distance"
 FILES = ("result.ply", "decimate.json", "distance.json")  # of a run
-RECORD = "run.json"  # written last: what the run depends on, and the hashes of its files
+RECORD = "run.json"  # written last: what the run depends on, and the hashes of its files, or why it has no result
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,8 +73,9 @@ def write_json(path, value):
 class Runner:
     """Runs each Run once; results stay in `folder` between calls of the script."""
 
-    def __init__(self, programs, folder, jobs=1, limit=600):
-        self.programs, self.folder, self.jobs, self.limit = pathlib.Path(programs), folder, jobs, limit
+    def __init__(self, programs, folder, jobs=1, limit=600, retry=False):
+        """@param retry  runs that gave no result before are made again"""
+        self.programs, self.folder, self.jobs, self.limit, self.retry = pathlib.Path(programs), folder, jobs, limit, retry
         self.results, self.failures = {}, {}
         self.spent = [0, 0]  # user and wall seconds of the calls of a section (calls.py), those that were kept among them
         self.executed = 0
@@ -121,21 +122,31 @@ class Runner:
                                 for name in ("bmesh-decimate", "hausdorff-eval")]}
         key = hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
         folder = self.folder / f"{run.title()}-{key[:12]}"
+        if (why := _why_none(folder, key, self.limit)) and not self.retry:
+            raise Failure(why)
         kept = _is_complete(folder, key)
         if not kept:
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True)
-            code = self._call("bmesh-decimate", run.model.path, "-o", folder / "result.ply", *run.options(),
-                              "--report", folder / "decimate.json")
-            if not (folder / "decimate.json").exists():
-                raise Failure(f"bmesh-decimate gave no result (exit code {code})")
-            original = self._original(run.model, folder / "decimate.json")
-            # 7: an interval stayed wider than wished; it holds all the same.
-            self._call("hausdorff-eval", original, folder / "result.ply", "--report", folder / "distance.json",
-                       valid=(0, 7))
+            try:
+                self._make(run, folder)
+            except Failure as failure:
+                write_json(folder / RECORD, {"key": key, "depends": depends, "limit": self.limit, "failure": str(failure)})
+                raise
             write_json(folder / RECORD, {"key": key, "depends": depends,
                                          "files": {name: hash_of(folder / name) for name in FILES}})
         return _row(run, folder), kept
+
+    def _make(self, run, folder):
+        """Decimates and measures. @raises Failure"""
+        code = self._call("bmesh-decimate", run.model.path, "-o", folder / "result.ply", *run.options(),
+                          "--report", folder / "decimate.json")
+        if not (folder / "decimate.json").exists():
+            raise Failure(f"bmesh-decimate gave no result (exit code {code})")
+        original = self._original(run.model, folder / "decimate.json")
+        # 7: an interval stayed wider than wished; it holds all the same.
+        self._call("hausdorff-eval", original, folder / "result.ply", "--report", folder / "distance.json",
+                   valid=(0, 7))
 
     def _original(self, model, report):
         """The mesh to measure against: what was simplified, which is the file without walls between touching
@@ -165,6 +176,15 @@ class Runner:
             lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
             raise Failure(lines[-1])
         return done.returncode
+
+
+def _why_none(folder, key, limit):
+    """Why a run of the same key gave no result, if it was given as much time."""
+    try:
+        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        return record["failure"] if record["key"] == key and record["limit"] >= limit else ""
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
 
 
 def _is_complete(folder, key):

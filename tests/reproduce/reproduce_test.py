@@ -99,8 +99,8 @@ class Runs(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def execute(self, run):
-        runner = Runner(PROGRAMS, self.folder)
+    def execute(self, run, **options):
+        runner = Runner(PROGRAMS, self.folder, **options)
         with contextlib.redirect_stderr(io.StringIO()):
             runner.run_all([run, run])
         return runner
@@ -127,12 +127,14 @@ class Runs(unittest.TestCase):
         other = self.execute(Run(BRACKET, "outer", "planes", vertices=301))
         self.assertEqual(other.executed, 1)
 
-    def test_a_failed_run_says_why_and_is_tried_again(self):
+    def test_a_failed_run_says_why_and_is_kept(self):
         path = self.folder / "bad.obj"
         path.write_text("v 0 0 0\nf 1 2 3\n")
         run = Run(models.Model("bad", "bad", path), "outer", "planes", vertices=10)
-        for _ in range(2):
-            runner = self.execute(run)
+        for calls, options in ((1, {}), (0, {}), (0, {"limit": 100}), (1, {"limit": 1000}), (1, {"retry": True}), (0, {})):
+            with mock.patch.object(Runner, "_call", autospec=True, side_effect=Runner._call) as called:
+                runner = self.execute(run, **options)
+            self.assertEqual(called.call_count, calls, options)
             self.assertEqual(runner.results, {})
             self.assertIn("bad.obj", runner.failures[run])
         path.write_bytes(BRACKET.path.read_bytes())
@@ -296,9 +298,12 @@ class Report(unittest.TestCase):
             runner = Runner(PROGRAMS, folder)
             call = sweeps.Calls(report.Context([], runner, folder, True), "sweeps")
             program = PROGRAMS / "bmesh-decimate"
-            for _ in range(2):
-                with contextlib.redirect_stderr(io.StringIO()):
-                    self.assertIsNone(call("bad", program, ["--wrong"], [], []))
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                for limit in (None, None, 1000, None, 10):
+                    self.assertIsNone(call("bad", program, ["--wrong"], [], [], limit=limit))
+                call.retry = True
+                self.assertIsNone(call("bad", program, ["--wrong"], [], []))
+            self.assertEqual(said.getvalue().count("bad"), 5)  # kept once
             self.assertEqual(len(runner.failures), 1)
             with contextlib.redirect_stderr(io.StringIO()) as said:
                 for _ in range(2):
