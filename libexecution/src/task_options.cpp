@@ -117,6 +117,58 @@ const std::vector<Option<PlanRunRequest>>& run_options() {
   return options;
 }
 
+const std::vector<Option<DriverOptions>>& driver_options() {
+  using R = DriverOptions;
+  static const std::vector<Option<R>> options{
+      option<R>(
+          {.name = "robot",
+           .text = "A command whose program moves the robots and senses, told by JSON lines "
+                   "(docs/planning/drivers.md)",
+           .values = "COMMAND"},
+          [](auto& r) -> auto& { return r.command; }),
+      option<R>(
+          {.name = "journal",
+           .text = "Write every message to and from the robot's program into this file",
+           .values = "FILE"},
+          [](auto& r) -> auto& { return r.journal; }),
+      option<R>(
+          {.name = "replay-journal",
+           .text = "Repeat the run of a journal instead of moving a robot: what it was told has to "
+                   "be the same",
+           .values = "FILE"},
+          [](auto& r) -> auto& { return r.replayed; }),
+      option<R>(
+          {.name = "robot-timeout",
+           .text =
+               "Longest time for an answer of the robot's program, beside 1.5 times that of the "
+               "motion",
+           .values = "SECONDS",
+           .low = 1e-3,
+           .high = 1e6},
+          [](auto& r) -> auto& { return r.most_seconds; }),
+      option<R>(
+          {.name = "robot-rate",
+           .text = "Points per second of the trajectories that the robot's program is told",
+           .values = "HZ",
+           .low = 1,
+           .high = 1e5},
+          [](auto& r) -> auto& { return r.rate; }),
+      option<R>(
+          {.name = "robot-tracking",
+           .text = "How far a joint may be from where it was told to be; beyond, all stops",
+           .low = 1e-9,
+           .high = 1e3},
+          [](auto& r) -> auto& { return r.tracking; }),
+      option<R>(
+          {.name = "robot-retries",
+           .text = "How often the robot's program is told again what has failed and changed "
+                   "nothing",
+           .low = 0,
+           .high = 1000},
+          [](auto& r) -> auto& { return r.retries; })};
+  return options;
+}
+
 const std::vector<Option<PlanPageOptions>>& page_options() {
   static const std::vector<Option<PlanPageOptions>> options{option<PlanPageOptions>(
       option_named(robot::shape_options(), "package-path"),

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "line_channel.h"
+#include <kaboum/external/line_channel.h>
 
 namespace kaboum::external {
 

@@ -1,6 +1,6 @@
 // A child process with a socket as its standard input and output.
 
-#include "line_channel.h"
+#include <kaboum/external/line_channel.h>
 
 #include <fcntl.h>
 #include <kaboum/base/error.h>
@@ -120,6 +120,19 @@ LineSocket::ReadOutcome LineSocket::read_line(std::string& line, double& seconds
       return ReadOutcome::End;
     }
   }
+}
+
+std::optional<std::string> LineSocket::take_line() {
+  while (buffer_.find('\n') == std::string::npos) {
+    char part[4096];
+    const ssize_t got = recv(socket_, part, sizeof part, MSG_DONTWAIT);
+    if (got <= 0) return std::nullopt;
+    buffer_.append(part, static_cast<std::size_t>(got));
+  }
+  const std::size_t at = buffer_.find('\n');
+  std::string line = buffer_.substr(0, at);
+  buffer_.erase(0, at + 1);
+  return line;
 }
 
 bool LineSocket::write_line(std::string line, double& seconds) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "line_channel.h"
+#include <kaboum/external/line_channel.h>
 
 namespace kaboum::external {
 

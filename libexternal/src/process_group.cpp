@@ -1,7 +1,7 @@
 // Processes that end with the planner. A signal for the parent's death (prctl) would be one for the
 // death of the thread that started the child, and does not reach what the child starts.
 
-#include "process_group.h"
+#include <kaboum/external/process_group.h>
 
 #include <fcntl.h>
 #include <sys/wait.h>

@@ -127,6 +127,7 @@ TEST(OptionTables, AreSound) {
   check("plans", plan::solve_options());
   check("planning tasks", execution::task_options());
   check("executions", execution::run_options());
+  check("robot drivers", execution::driver_options());
   check("pages of plans", execution::page_options());
   check("pictures", picture::panel_options());
 }

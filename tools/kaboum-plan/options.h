@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/execution/plan_page.h>
+#include <kaboum/execution/robot_driver.h>
 #include <kaboum/execution/run_plan.h>
 #include <kaboum/plan/solve_options.h>
 
@@ -21,13 +22,15 @@ struct PlanOptions {
   execution::TaskFiles task;
   plan::SearchRequest search;       ///< of solve
   execution::PlanRunRequest run;    ///< of run
+  execution::DriverOptions driver;  ///< of run
   execution::PlanPageOptions page;  ///< of show
   std::set<std::string> stated;     ///< names of options of these that were stated
   std::string plan, output = "-", output_format;
   bool tree = false, explain = false, no_cache = false;
   std::string outcomes = "all", trajectories;  ///< of run
-  std::string assume;                          ///< of solve: a file
-  std::string html;                            ///< of show
+  bool stated_outcomes = false;
+  std::string assume;  ///< of solve: a file
+  std::string html;    ///< of show
   CommonOptions common;
 };
 

@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/execution/drive_plan.h>
 #include <kaboum/execution/task_options.h>
 
 #include <CLI/CLI.hpp>
@@ -77,21 +78,59 @@ Json report_json(const execution::SimulationReport& r, const plan::RunSummary& s
           {"problems", r.problems}};
 }
 
+Json driver_json(const execution::DriveReport& r) {
+  return {{"end", r.stopped  ? execution::name_of(*r.stopped)
+                  : r.good() ? "goal"
+                             : "no plan"},
+          {"reason", r.reason},
+          {"actions", r.actions},
+          {"messages", r.messages},
+          {"most_tracking", r.most_tracking},
+          {"wall_seconds", r.seconds},
+          {"wall_seconds_waited", r.waited},
+          {"wall_seconds_between", r.between}};
+}
+
+void require_driver_meaning(const PlanOptions& o) {
+  const bool drives = !o.driver.command.empty() || !o.driver.replayed.empty();
+  if (!o.driver.command.empty() && !o.driver.replayed.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--robot moves a robot, --replay-journal repeats a run without: give one of them");
+  if (!o.driver.replayed.empty() && o.driver.replayed == o.driver.journal)
+    throw Error(ErrorCode::InvalidArgument,
+                "--journal would overwrite what --replay-journal reads");
+  if (drives && o.stated_outcomes)
+    throw Error(ErrorCode::InvalidArgument, "--outcomes: the robot senses them");
+  if (drives && !o.trajectories.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--trajectories: the robot is told them; --journal has them");
+  for (const char* name :
+       {"journal", "robot-timeout", "robot-rate", "robot-tracking", "robot-retries"})
+    if (!drives && o.stated.contains(name))
+      throw Error(ErrorCode::InvalidArgument,
+                  "--" + std::string(name) + " is of a robot's program; give --robot COMMAND");
+}
+
 }  // namespace
 
 CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
   CLI::App* r = app.add_subcommand(
-      "run", "Carry out a plan in simulation, and judge every sample by exact meshes");
+      "run",
+      "Carry out a plan in simulation, or by a robot's program, and judge every sample by exact "
+      "meshes");
   add_inputs(*r, o);
   add_problem(*r, o);
   add_scene(*r, o);
   r->add_option("--plan", o.plan, "The plan to carry out, or -")->required()->type_name("FILE");
   r->add_option("--outcomes", o.outcomes,
-                "How sensing turns out: all: every branch; seed:N: one, at random; a JSON file "
+                "Without a robot: how sensing turns out: all: every branch; seed:N: one, at "
+                "random; a JSON file "
                 "{\"isSpillable(o1)\": true, ...}: as it says")
       ->capture_default_str()
-      ->type_name("all|seed:N|FILE");
+      ->type_name("all|seed:N|FILE")
+      ->each([&o](const std::string&) { o.stated_outcomes = true; });
   add_request_options(*r, execution::run_options(), o.run, o.stated);
+  add_request_options(*r, execution::driver_options(), o.driver, o.stated);
   r->add_option("--trajectories", o.trajectories,
                 "Write each motion's samples into this folder, as CSV")
       ->type_name("DIR");
@@ -100,6 +139,8 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
 }
 
 int run_plan(const PlanOptions& o) {
+  require_driver_meaning(o);
+  const bool drives = !o.driver.command.empty() || !o.driver.replayed.empty();
   execution::PlanRunRequest request = o.run;
   request.replan.run = outcomes_of(o.outcomes);
   request.replan.solve.algorithm = plan::Algorithm::Greedy;
@@ -109,11 +150,16 @@ int run_plan(const PlanOptions& o) {
     throw Error(ErrorCode::InvalidArgument, "--scene is required: a plan is carried out in it");
   const plan::Model model = task.load();
   const plan::Plan plan = read_plan_file(model, o);
-  const execution::PlanRunReport done = [&] {
+  execution::DriveReport drive;
+  {
     Progress progress(o.common.quiet);
     request.simulation.progress = [&](const std::string& stage) { progress.show(stage); };
-    return execution::run_plan(task, model, plan, request);
-  }();
+    if (drives)
+      drive = execution::drive_plan(task, model, plan, request, o.driver);
+    else
+      drive.run = execution::run_plan(task, model, plan, request);
+  }
+  const execution::PlanRunReport& done = drive.run;
   for (const std::string& note : done.notes) log(o.common.quiet, note);
   const plan::RunSummary& summary = done.plans.run;
   const std::vector<plan::Replan>& replans = done.plans.replans;
@@ -121,16 +167,22 @@ int run_plan(const PlanOptions& o) {
   Json report = report_json(r, summary);
   report["command"] = "run";
   report["scene"] = task.files().scene;
-  report["outcomes"] = o.outcomes;
+  if (drives)
+    report["driver"] = driver_json(drive);
+  else
+    report["outcomes"] = o.outcomes;
   report["rate"] = o.run.simulation.rate;
   report["triangles"] = done.triangles;
   report["notes"] = done.notes;
   report["replans"] = replans_json(replans);
-  const bool good = done.good();
+  const bool good = drive.good();
   report["verdict"] = good ? "good" : "not good";
   if (!plan.not_certified.empty()) report["not_certified"] = plan.not_certified;
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
+  if (drive.stopped)
+    std::cerr << "kaboum-plan: stopped after " << drive.actions
+              << (drive.actions == 1 ? " action: " : " actions: ") << drive.reason << '\n';
   if (!o.common.quiet || !good)
     std::cout << (good ? "good: " : "not good: ") << summary.branches
               << (summary.branches == 1 ? " branch, " : " branches, ") << r.motions << " motions, "
@@ -141,7 +193,7 @@ int run_plan(const PlanOptions& o) {
                                         (replans.size() == 1 ? " time" : " times"))
               << '\n';
   const int missing = say_missing(replans);
-  return r.good() ? missing : kNo;
+  return r.good() && !drive.stopped ? missing : kNo;
 }
 
 }  // namespace kaboum::tools

@@ -24,11 +24,13 @@ namespace {
 
 class Checker {
  public:
-  Checker(const Model& model, const Plan& plan, std::uint64_t limit, const CheckProgress& progress)
+  Checker(const Model& model, const Plan& plan, std::uint64_t limit, const CheckProgress& progress,
+          MissingCases missing)
       : model_(model),
         plan_(plan),
         limit_(limit),
         progress_(progress),
+        missing_(missing),
         evaluator_(model, plan),
         live_(model, plan, evaluator_),
         transitions_(model, evaluator_, Transitions::Disjunctions::LeftOut,
@@ -308,13 +310,15 @@ class Checker {
         visit(c.next, std::move(k), v, prefix + "[" + case_text(model_, branch, value) + "]");
         return;
       }
-    violate(v, prefix + "the plan has no case for " + case_text(model_, branch, value));
+    if (missing_ == MissingCases::Refused)
+      violate(v, prefix + "the plan has no case for " + case_text(model_, branch, value));
   }
 
   const Model& model_;
   const Plan& plan_;
   std::uint64_t limit_;
   const CheckProgress& progress_;
+  MissingCases missing_;
   QueryEvaluator evaluator_;
   LiveFacts live_;
   Transitions transitions_;
@@ -334,9 +338,9 @@ class Checker {
 }  // namespace
 
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit,
-                  const CheckProgress& progress) {
+                  const CheckProgress& progress, MissingCases missing) {
   measure(model, plan);  // refuses cycles
-  Checker checker(model, plan, limit, progress);
+  Checker checker(model, plan, limit, progress, missing);
   CheckResult by_databases = checker.run();
   if (by_databases.valid || !checker.kept_less() || !WorldReplay::takes(model)) return by_databases;
   if (const auto by_worlds = WorldReplay(model, plan, limit, progress).run()) return *by_worlds;

@@ -63,6 +63,9 @@ class Run {
     if (options_.outcomes == RunOptions::Outcomes::All) {
       for (const RuntimeKnowledge& k : first) add(carry_out(plan_.root, k, 0));
     } else {
+      if (options_.outcomes == RunOptions::Outcomes::Asked && first.size() != 1)
+        throw Error(ErrorCode::InvalidInput,
+                    "the problem begins in one of several states, and nobody can be asked which");
       carry_out(plan_.root, choose(first, nullptr), 0);
       summary_.branches = 1;
     }
@@ -89,14 +92,17 @@ class Run {
                                                " states: choose outcomes by a seed or a file");
     const Plan::Node& n = plan_.nodes[node];
     std::vector<RuntimeKnowledge> after{k};
+    std::vector<Fact> sensed;
     if (n.acts) {
       std::vector<Index> slots = bind(model_.actions[n.action.schema], n.action);
       std::size_t used = 0;
       bind_calls(model_.actions[n.action.schema].precondition, n, slots, used);
       if (used != n.calls.size()) missing(n);
-      after = transitions_.after(model_.actions[n.action.schema], slots, k);
+      after = transitions_.after(model_.actions[n.action.schema], slots, k, &sensed);
     }
-    if (options_.outcomes != RunOptions::Outcomes::All && !after.empty())
+    if (options_.outcomes == RunOptions::Outcomes::Asked)
+      ask(after, sensed, node, k);
+    else if (options_.outcomes != RunOptions::Outcomes::All && !after.empty())
       after = {choose(after, &n)};
     for (const RuntimeKnowledge& then : after) {
       const auto [next, outcome] =
@@ -194,6 +200,40 @@ class Run {
                       (node != nullptr && node->acts ? " after " + action_text(model_, node->action)
                                                      : std::string(" at the start")));
     return all[fitting[random_.index(fitting.size())]];
+  }
+
+  /// Leaves one of several states: what was sensed is asked for. A fact that is known by then,
+  /// from before or from what another one has turned out to be, is not.
+  void ask(std::vector<RuntimeKnowledge>& all, const std::vector<Fact>& sensed, Index node,
+           const RuntimeKnowledge& before) const {
+    const NamedKnowledge names(model_, evaluator_, before);
+    for (const Fact& f : sensed) {
+      const auto value = [&](const RuntimeKnowledge& k) -> std::string {
+        if (f[0] == 1) return evaluator_.name(*k.value(f));
+        return k.knows(f, true) ? "true" : "false";
+      };
+      SensedFact question{node, names, fact_text(f), {}};
+      for (const RuntimeKnowledge& k : all)
+        if (std::ranges::find(question.values, value(k)) == question.values.end())
+          question.values.push_back(value(k));
+      if (question.values.size() < 2) continue;
+      const std::string said = options_.sense(question);
+      std::erase_if(all, [&](const RuntimeKnowledge& k) { return value(k) != said; });
+      if (!all.empty()) continue;
+      std::string values;
+      for (const std::string& v : question.values) values += (values.empty() ? "" : ", ") + v;
+      throw Error(ErrorCode::InvalidInput, question.fact + " was sensed to be '" + said +
+                                               "', and by what is known it is one of " + values);
+    }
+    if (all.size() > 1) all.erase(all.begin() + 1, all.end());
+  }
+
+  /// "isSpillable(o1)".
+  [[nodiscard]] std::string fact_text(const Fact& f) const {
+    const KnownFacts::Term term = named(f);
+    std::string out = term.front();
+    for (std::size_t i = 1; i < term.size(); ++i) out += (i > 1 ? ", " : "(") + term[i];
+    return term.size() > 1 ? out + ")" : out;
   }
 
   /// Whether what is known is as given.

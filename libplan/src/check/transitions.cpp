@@ -308,7 +308,8 @@ void Transitions::may_become(RuntimeKnowledge& k, const Fact& f, const Update::L
 }
 
 std::vector<RuntimeKnowledge> Transitions::after(const Action& action, std::vector<Index>& slots,
-                                                 const RuntimeKnowledge& before) const {
+                                                 const RuntimeKnowledge& before,
+                                                 std::vector<Fact>* sensed) const {
   Happening happening;
   fire(action.effects, slots, before, false, happening);
   const std::vector<GroundUpdate>& fired = happening.updates;
@@ -318,12 +319,14 @@ std::vector<RuntimeKnowledge> Transitions::after(const Action& action, std::vect
   });
   RuntimeKnowledge k = before;
   if (happening.tied) k.keep_less();
-  std::vector<Fact> sensed;
+  std::vector<Fact> all;
   for (const GroundUpdate& g : fired)
     if (!g.update->add) delete_from(k, g);
   for (const GroundUpdate& g : fired)
-    if (g.update->add && !add_to(k, g, before, sensed)) return {};
-  return split(std::move(k), sensed);
+    if (g.update->add && !add_to(k, g, before, all)) return {};
+  std::vector<RuntimeKnowledge> out = split(std::move(k), all);
+  if (sensed != nullptr) *sensed = std::move(all);
+  return out;
 }
 
 }  // namespace kaboum::plan

@@ -34,9 +34,10 @@ class Transitions {
   [[nodiscard]] std::vector<RuntimeKnowledge> initial_states() const;
 
   /// One for each way that what the action senses may turn out; none if what it observes
-  /// contradicts what is known.
+  /// contradicts what is known. @param sensed  if not null, gets what it senses
   [[nodiscard]] std::vector<RuntimeKnowledge> after(const Action& action, std::vector<Index>& slots,
-                                                    const RuntimeKnowledge& before) const;
+                                                    const RuntimeKnowledge& before,
+                                                    std::vector<Fact>* sensed = nullptr) const;
 
   /// One for each outcome of what a state leaves open.
   [[nodiscard]] std::vector<RuntimeKnowledge> look_at(RuntimeKnowledge k, const Fact& f) const;

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/option.h>
 #include <kaboum/execution/plan_page.h>
+#include <kaboum/execution/robot_driver.h>
 #include <kaboum/execution/run_plan.h>
 
 namespace kaboum::execution {
@@ -17,6 +18,9 @@ const std::vector<Option<TaskFiles>>& task_engine_options();
 
 /// The options of carrying out a plan.
 const std::vector<Option<PlanRunRequest>>& run_options();
+
+/// The options of a robot driver that carries a plan out.
+const std::vector<Option<DriverOptions>>& driver_options();
 
 /// The options of a page that plays a plan.
 const std::vector<Option<PlanPageOptions>>& page_options();

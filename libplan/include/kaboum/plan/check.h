@@ -21,6 +21,10 @@ constexpr std::uint64_t kMostStates = 2'000'000;  ///< that `check` replays by d
 /// Is told of each state that is replayed, how many there were; what it throws ends the work.
 using CheckProgress = std::function<void(std::uint64_t states)>;
 
+/// Whether an outcome of sensing that a plan has no case for is a violation, or whoever carries the
+/// plan out stops there and plans again.
+enum class MissingCases : std::uint8_t { Refused, PlannedAgain };
+
 /// Replays a plan for every way the sensing may turn out: each precondition must hold, each branch
 /// be on something known by then and have a case for its value, and each end meet the goal.
 ///
@@ -32,6 +36,6 @@ using CheckProgress = std::function<void(std::uint64_t states)>;
 ///
 /// @throws Error{InvalidInput} if the graph has a cycle; Error{LimitReached} beyond `limit` pairs.
 CheckResult check(const Model& model, const Plan& plan, std::uint64_t limit = kMostStates,
-                  const CheckProgress& progress = {});
+                  const CheckProgress& progress = {}, MissingCases missing = MissingCases::Refused);
 
 }  // namespace kaboum::plan

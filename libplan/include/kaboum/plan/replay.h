@@ -40,16 +40,28 @@ struct Unplanned {
   std::uint64_t actions = 0;  ///< done so far
 };
 
+/// A fact that an action senses, and whose value a run has to be told.
+struct SensedFact {
+  Index node = 0;  ///< whose action it is
+  const KnownState& before;
+  std::string fact;                 ///< "isSpillable(o1)", "place(o2)"
+  std::vector<std::string> values;  ///< that are possible: "true" and "false", or names
+};
+
 struct RunOptions {
   enum class Outcomes {
     All,     ///< every way that sensing may turn out
     Random,  ///< one run
-    Given    ///< one run; sensed values as `given` has them, at random where it has none
+    Given,   ///< one run; sensed values as `given` has them, at random where it has none
+    Asked    ///< one run; sensed values as `sense` says
   };
   Outcomes outcomes = Outcomes::All;
   std::uint64_t seed = 1;
   /// By atom or term, "isSpillable(o1)": "true", "false", or the value's name.
   std::map<std::string, std::string> given = {};
+  /// Says which of the values it is. Asked before the step of its node is told of, once for each
+  /// fact that is not known then; a value that is none of them is an error.
+  std::function<std::string(const SensedFact&)> sense = {};
   std::uint64_t most_states = 1'000'000;
   /// Called for what the plan has no branch for; the way through the plan ends there. None: that is
   /// an error.
@@ -70,7 +82,8 @@ struct RunSummary {
 /// hold).
 ///
 /// @throws Error{InvalidInput} for graphs with cycles, plans that do not say what their calls
-///   returned, and outcomes that no case of the plan is for (unless `unplanned` is told of them);
+///   returned, outcomes that no case of the plan is for (unless `unplanned` is told of them) or
+///   that contradict what is known;
 ///   Error{LimitReached} beyond `most_states`; what `step` throws.
 RunSummary run(const Model& model, const Plan& plan, const RunOptions& options,
                const std::function<void(const RunStep&)>& step);

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <functional>
-#include <string>
+#include <kaboum/external/process_group.h>
 
-#include "process_group.h"
+#include <functional>
+#include <optional>
+#include <string>
 
 namespace kaboum::external {
 
@@ -18,6 +19,8 @@ class LineSocket {
   enum class ReadOutcome { Line, End, Late, TooLong };
   /// @param seconds  that are left; less afterwards by what it took.
   ReadOutcome read_line(std::string& line, double& seconds);
+  /// A line that is there already; nothing is waited for.
+  std::optional<std::string> take_line();
   /// false: the other side takes no more, or not in this time.
   bool write_line(std::string line, double& seconds);
   /// The other side reads the end.

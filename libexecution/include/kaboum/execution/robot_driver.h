@@ -1,0 +1,90 @@
+#pragma once
+
+#include <kaboum/judge/cell.h>
+#include <kaboum/motion/trajectory.h>
+#include <kaboum/world/world.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kaboum::execution {
+
+/// Who moves the robots of a plan, and what is expected of it.
+struct DriverOptions {
+  std::string command = {};  ///< of the shell: a program that speaks the driver's protocol
+  /// A run that is repeated from its journal instead: what it was told has to be the same, and what
+  /// it answered is taken from there. Empty: the command.
+  std::string replayed = {};
+  /// Every message is written into this file as it comes; empty: none.
+  std::string journal = {};
+  double most_seconds = 10;  ///< for an answer, beside the time of what it is asked to do. > 0 [s]
+  double rate = 100;         ///< points of a trajectory that are sent. > 0 [1/s]
+  /// How far each joint may be from where it is told to be when a driver says that it is done. > 0
+  /// [rad, length]
+  double tracking = 0.01;
+  std::size_t retries = 1;  ///< of what has failed without a change of the world
+};
+
+/// Why a driver is not told anything more: the robots are to stand still then.
+class DriverStop : public std::runtime_error {
+ public:
+  enum class Kind : std::uint8_t {
+    Failed,      ///< it says that it could not do something
+    Ended,       ///< its program ended
+    Late,        ///< it did not answer in time; its program was ended
+    Nonsense,    ///< it answered what is no answer, or what nobody asked
+    Elsewhere,   ///< a robot is not where it was told to go
+    Uncertified  ///< what it would be told next is not certified
+  };
+  DriverStop(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
+  [[nodiscard]] Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+const char* name_of(DriverStop::Kind kind);
+
+/// A robot driver: another program that moves robots, real or simulated ones, and senses. It is
+/// told one thing at a time by a line of JSON, and answers by one (docs/planning/drivers.md).
+///
+/// All functions throw DriverStop; nothing is told any more after that. A driver that is not told
+/// that the plan has ended is told to stop.
+class RobotDriver {
+ public:
+  /// Starts it, and reads its first line. @param world  outlives it
+  /// @throws Error{InvalidInput} for a command that cannot be started, a journal that cannot be
+  ///   read; Error{OutputFailed} for the journal; Error{InvalidArgument} for options that are not
+  ///   above 0
+  RobotDriver(const world::World& world, const DriverOptions& options);
+  ~RobotDriver();
+  RobotDriver(const RobotDriver&) = delete;
+  RobotDriver& operator=(const RobotDriver&) = delete;
+
+  /// Says where everything is. A robot that says that it is elsewhere stops all.
+  void begin(const judge::CellState& state);
+  /// Says which action is carried out from here on: "grasp(arm, o1)".
+  void act(const std::string& action);
+  /// @pre the trajectory begins where the robot is. A motion that has failed is told again if the
+  ///   driver says that the robot is where it began.
+  void move(std::size_t robot, const motion::Trajectory& trajectory);
+  void take(std::size_t object, std::size_t robot, std::uint32_t link);
+  void release(std::size_t object, std::size_t robot);
+  /// @return one of the values, or whatever else was sensed
+  std::string sense(const std::string& fact, const std::vector<std::string>& values);
+  /// Says that the plan has come to its end.
+  void finish();
+
+  [[nodiscard]] std::uint64_t messages() const;
+  [[nodiscard]] double waited() const;         ///< for answers [s]
+  [[nodiscard]] double between() const;        ///< from answers to what it was told next [s]
+  [[nodiscard]] double most_tracking() const;  ///< largest deviation that was said [rad, length]
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace kaboum::execution

@@ -1,0 +1,234 @@
+// Plans carried out by a robot driver: told step by step, sensed on the way, planned again.
+
+#include <kaboum/base/error.h>
+#include <kaboum/execution/drive_plan.h>
+#include <kaboum/plan/check.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <set>
+
+#include "motion_part.h"
+#include "simulation_state.h"
+
+namespace kaboum::execution {
+namespace {
+
+using Kind = DriverStop::Kind;
+
+/// The plans of a run, as they are told to a driver.
+class Drive {
+ public:
+  Drive(const world::World& world, const judge::Cell& cell, const PlanRunRequest& request,
+        const DriverOptions& options, DriveReport& report)
+      : world_(world),
+        cell_(cell),
+        request_(request),
+        driver_(world, options),
+        rate_(options.rate),
+        report_(report) {}
+
+  /// @throws DriverStop for a plan that does not hold
+  std::function<void(const plan::RunStep&)> take_up(const plan::Model& model,
+                                                    const plan::Plan& plan) {
+    const auto missing =
+        request_.replan.most > 0 ? plan::MissingCases::PlannedAgain : plan::MissingCases::Refused;
+    if (const plan::CheckResult checked = plan::check(model, plan, plan::kMostStates, {}, missing);
+        !checked.valid)
+      throw DriverStop(Kind::Uncertified, "the plan does not hold: " + checked.violation);
+    done_.emplace_back(model, plan);
+    model_ = &done_.back().model;
+    plan_ = &done_.back().plan;
+    told_.reset();
+    return [this](const plan::RunStep& step) {
+      tell(step.node, step.before);
+      settle(step.after);
+      done_.back().nodes.insert(step.node);
+    };
+  }
+
+  std::string sense(const plan::SensedFact& what) {
+    tell(what.node, what.before);
+    const std::string said = driver_.sense(what.fact, what.values);
+    if (std::ranges::find(what.values, said) == what.values.end()) {
+      std::string values;
+      for (const std::string& v : what.values) values += (values.empty() ? "" : ", ") + v;
+      throw DriverStop(Kind::Nonsense, what.fact + " was sensed to be '" + said +
+                                           "'; by what is known it is one of " + values);
+    }
+    done_.back().sensed.push_back(said);
+    return said;
+  }
+
+  void finish() { driver_.finish(); }
+
+  /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
+  void close() {
+    for (const Done& done : done_) {
+      Simulation simulation(world_, cell_, done.model, done.plan, request_.simulation);
+      std::size_t next = 0;
+      plan::RunOptions again;
+      again.outcomes = plan::RunOptions::Outcomes::Asked;
+      // Where it stopped, nothing was sensed any more: what follows is not among the nodes.
+      again.sense = [&](const plan::SensedFact& what) {
+        return next < done.sensed.size() ? done.sensed[next++] : what.values.front();
+      };
+      again.unplanned = [](const plan::Unplanned&) {};
+      plan::run(done.model, done.plan, again, [&](const plan::RunStep& step) {
+        if (done.nodes.contains(step.node)) simulation.carry_out(step);
+      });
+      report_.run.simulation += simulation.report();
+    }
+    report_.messages = driver_.messages();
+    report_.waited = driver_.waited();
+    report_.between = driver_.between();
+    report_.most_tracking = driver_.most_tracking();
+  }
+
+ private:
+  [[nodiscard]] StatedState known_state(const plan::KnownState& known) const {
+    auto state = state_of(world_, *model_, known);
+    if (!state)
+      throw Error(ErrorCode::InvalidInput,
+                  "a configuration or pose is not known when the plan is carried out: no robot can "
+                  "be told");
+    return std::move(*state);
+  }
+
+  /// Tells the motions of a node, once.
+  void tell(plan::Index node, const plan::KnownState& before) {
+    if (told_ == node) return;
+    told_ = node;
+    const judge::CellState state = known_state(before).state;
+    if (!begun_) {
+      begun_ = true;
+      q_ = state.q;
+      driver_.begin(state);
+      for (std::size_t o = 0; o < state.objects.size(); ++o)
+        if (const auto& hold = state.objects[o].hold) held_[o] = {hold->robot, hold->link};
+    }
+    const plan::Plan::Node& n = plan_->nodes[node];
+    if (!n.acts) return;
+    const std::string action = action_text(*model_, n.action);
+    if (request_.simulation.progress) request_.simulation.progress(action);
+    ++report_.actions;
+    driver_.act(action);
+    for (const plan::Plan::Call& call : n.calls)
+      for (const MotionPart& part :
+           parts_of(call.payload, world_, "node " + std::to_string(node) + ", " + action))
+        move(part, action);
+  }
+
+  void move(const MotionPart& part, const std::string& action) {
+    if (part.path.empty() || part.path.front() != q_[part.robot])
+      throw DriverStop(Kind::Uncertified, action + ": a path of " + world_.robots[part.robot].name +
+                                              " does not begin where it is");
+    for (auto held = held_.begin(); held != held_.end();) {
+      const auto [object, by] = *held++;
+      if (by.robot != part.robot) continue;
+      const auto wanted = part.holds.find(object);
+      if (wanted == part.holds.end() || wanted->second != by.link) release(object);
+    }
+    for (const auto& [object, link] : part.holds)
+      if (!held_.contains(object)) take(object, {part.robot, link});
+    SimulationOptions options = request_.simulation;
+    options.rate = rate_;
+    driver_.move(part.robot, trajectory_of(part, world_, options));
+    q_[part.robot] = part.path.back();
+  }
+
+  /// Takes and lets go what the state after a node says.
+  void settle(const plan::KnownState& after) {
+    const judge::CellState state = known_state(after).state;
+    for (std::size_t o = 0; o < state.objects.size(); ++o) {
+      const auto& hold = state.objects[o].hold;
+      const auto held = held_.find(o);
+      if (held != held_.end() &&
+          (!hold || hold->robot != held->second.robot || hold->link != held->second.link))
+        release(o);
+    }
+    for (std::size_t o = 0; o < state.objects.size(); ++o)
+      if (const auto& hold = state.objects[o].hold; hold && !held_.contains(o))
+        take(o, {hold->robot, hold->link});
+  }
+
+  struct Holder {
+    std::size_t robot;
+    std::uint32_t link;
+  };
+  void take(std::size_t object, Holder by) {
+    driver_.take(object, by.robot, by.link);
+    held_[object] = by;
+  }
+  void release(std::size_t object) {
+    const auto held = held_.find(object);
+    driver_.release(object, held->second.robot);
+    held_.erase(held);
+  }
+
+  const world::World& world_;
+  const judge::Cell& cell_;
+  const PlanRunRequest& request_;
+  RobotDriver driver_;
+  double rate_;
+  DriveReport& report_;
+  const plan::Model* model_ = nullptr;
+  const plan::Plan* plan_ = nullptr;
+  std::optional<plan::Index> told_;  ///< the node whose motions were told last
+  bool begun_ = false;
+  std::vector<std::vector<double>> q_;
+  std::map<std::size_t, Holder> held_;
+  /// A plan as far as it was carried out.
+  struct Done {
+    Done(const plan::Model& m, const plan::Plan& p) : model(m), plan(p) {}
+    plan::Model model;
+    plan::Plan plan;
+    std::set<plan::Index> nodes = {};
+    std::vector<std::string> sensed = {};  ///< in their order
+  };
+  std::deque<Done> done_;
+};
+
+}  // namespace
+
+DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const plan::Plan& plan,
+                       const PlanRunRequest& request, const DriverOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  if (task.scene() == nullptr)
+    throw Error(ErrorCode::InvalidArgument, "a plan is carried out in a scene; there is none");
+  if (!plan.not_certified.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "contacts of the plan are " + plan.not_certified +
+                    ": no robot is moved by it; plan it with own predicates");
+  const world::World& world = task.scene()->world;
+  DriveReport out;
+  out.run.plans.run.branches = 1;
+  const judge::Cell cell = exact_cell(world, task.files().scene, request.packages, out.run.notes);
+  out.run.triangles = cell.triangles();
+  const auto start = Clock::now();
+  std::optional<Drive> drive;
+  plan::ReplanOptions replan = request.replan;
+  replan.run.outcomes = plan::RunOptions::Outcomes::Asked;
+  replan.run.sense = [&](const plan::SensedFact& what) { return drive->sense(what); };
+  const plan::StepsOf steps = [&](const plan::Model& m, const plan::Plan& p) {
+    return drive->take_up(m, p);
+  };
+  try {
+    drive.emplace(world, cell, request, options, out);
+    if (replan.most == 0)
+      out.run.plans.run = plan::run(model, plan, replan.run, steps(model, plan));
+    else
+      out.run.plans = plan::run_and_replan(task.texts(), model, plan, replan, steps);
+    if (out.run.plans.complete()) drive->finish();
+  } catch (const DriverStop& stop) {
+    out.stopped = stop.kind();
+    out.reason = stop.what();
+  }
+  out.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (drive) drive->close();
+  return out;
+}
+
+}  // namespace kaboum::execution

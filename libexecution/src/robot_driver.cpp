@@ -1,0 +1,468 @@
+// A robot driver: lines of JSON with a program, or with the journal of a run.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
+#include <kaboum/execution/robot_driver.h>
+#include <kaboum/external/line_channel.h>
+#include <kaboum/io/mesh_io.h>
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+namespace kaboum::execution {
+namespace {
+
+using nlohmann::json;
+using Kind = DriverStop::Kind;
+using external::LineSocket;
+
+constexpr std::size_t kExcerpt = 200;  // characters of a line in a message
+constexpr double kLastWords = 0.2;     // for telling a driver to stop [s]
+constexpr double kSlower = 1.5;        // a motion may take so many times as long as it is
+
+std::string excerpt(const std::string& line) {
+  return line.size() <= kExcerpt ? "'" + line + "'" : "'" + line.substr(0, kExcerpt) + "…'";
+}
+
+std::string dump(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+/// A line of a driver, or why there is none.
+struct Heard {
+  std::string line;
+  std::optional<Kind> none;
+  std::string why;
+};
+
+/// The other side of a driver's lines.
+class Side {
+ public:
+  Side() = default;
+  virtual ~Side() = default;
+  Side(const Side&) = delete;
+  Side& operator=(const Side&) = delete;
+  /// What comes first: the driver's own line, before it is told anything.
+  virtual Heard hear(double seconds) = 0;
+  /// nullopt: it was told. Else why not.
+  virtual std::optional<Heard> tell(const std::string& line) = 0;
+  /// A line that is there already.
+  virtual std::optional<std::string> unasked() = 0;
+  virtual void end(bool finished) = 0;
+};
+
+class Program final : public Side {
+ public:
+  explicit Program(const std::string& command) : channel_(command) {}
+
+  Heard hear(double seconds) override {
+    const double most = seconds;
+    Heard out;
+    switch (channel_.lines().read_line(out.line, seconds)) {
+      case LineSocket::ReadOutcome::Line:
+        return out;
+      case LineSocket::ReadOutcome::End:
+        return {"", Kind::Ended, channel_.end() + " without an answer"};
+      case LineSocket::ReadOutcome::Late:
+        channel_.end();
+        return {"", Kind::Late, "no answer within " + dump(most) + " s; it was ended"};
+      case LineSocket::ReadOutcome::TooLong:
+        break;
+    }
+    channel_.end();
+    return {"", Kind::Nonsense, "it answered with a line of more than 16 MiB"};
+  }
+
+  std::optional<Heard> tell(const std::string& line) override {
+    double seconds = 10;
+    if (channel_.lines().write_line(line, seconds)) return std::nullopt;
+    return Heard{"", Kind::Ended, channel_.end() + ", or reads nothing"};
+  }
+
+  std::optional<std::string> unasked() override { return channel_.lines().take_line(); }
+
+  void end(bool finished) override {
+    double seconds = kLastWords;
+    if (!finished) channel_.lines().write_line(R"({"do":"stop"})", seconds);
+    channel_.end();
+  }
+
+ private:
+  external::LineChannel channel_;
+};
+
+/// What a journal says.
+class Replayed final : public Side {
+ public:
+  explicit Replayed(std::string file) : file_(std::move(file)) {
+    const std::vector<char> bytes = io::read_file(file_);
+    std::string line;
+    std::size_t number = 0;
+    for (const char c : bytes) {
+      if (c != '\n') {
+        line += c;
+        continue;
+      }
+      add(line, ++number);
+      line.clear();
+    }
+    // A last line without its end was cut when the run was killed.
+    if (number == 0) fail(1, "is empty");
+  }
+
+  Heard hear(double /*seconds*/) override {
+    if (entries_.empty()) return {"", Kind::Ended, "the journal ends here"};
+    const json entry = std::move(entries_.front());
+    entries_.pop_front();
+    if (entry.contains("heard")) return {entry["heard"].get<std::string>(), {}, {}};
+    if (entry.contains("none")) {
+      for (const Kind kind : {Kind::Ended, Kind::Late, Kind::Nonsense})
+        if (entry["none"] == name_of(kind)) return {"", kind, entry.value("why", "")};
+    }
+    throw Error(ErrorCode::InvalidInput, file_ + ": the run that is repeated is told less: " +
+                                             excerpt(dump(entry)) + " would be next");
+  }
+
+  std::optional<Heard> tell(const std::string& line) override {
+    if (entries_.empty()) return Heard{"", Kind::Ended, "the journal ends here"};
+    const json entry = std::move(entries_.front());
+    entries_.pop_front();
+    if (entry.contains("told") && entry["told"] == line) return std::nullopt;
+    throw Error(ErrorCode::InvalidInput,
+                file_ + ": the run that is repeated is told something else: " + excerpt(line) +
+                    ", in the journal " +
+                    (entry.contains("told") ? excerpt(entry["told"].get<std::string>())
+                                            : excerpt(dump(entry))));
+  }
+
+  std::optional<std::string> unasked() override {
+    if (entries_.empty() || !entries_.front().contains("unasked")) return std::nullopt;
+    const json entry = std::move(entries_.front());
+    entries_.pop_front();
+    return entry["unasked"].get<std::string>();
+  }
+
+  void end(bool /*finished*/) override {}
+
+ private:
+  [[noreturn]] void fail(std::size_t number, const std::string& what) const {
+    throw Error(ErrorCode::InvalidInput, file_ + ", line " + std::to_string(number) + ": " + what +
+                                             "; a journal is what a run wrote («journal»)");
+  }
+
+  void add(const std::string& line, std::size_t number) {
+    if (is_nested_too_deep(line)) fail(number, "has " + describe_json_depth());
+    json entry = json::parse(line, nullptr, false);
+    if (!entry.is_object()) fail(number, "is no JSON object");
+    if (number == 1) {
+      if (!entry.contains("kaboum_journal") || entry["kaboum_journal"] != 1)
+        fail(number, R"(is not {"kaboum_journal": 1, ...})");
+      return;
+    }
+    for (const char* key : {"told", "heard", "unasked", "none", "why"})
+      if (entry.contains(key) && !entry[key].is_string())
+        fail(number, "'" + std::string(key) + "' is no text");
+    for (const char* key : {"told", "heard", "unasked", "none"})
+      if (entry.contains(key)) {
+        entries_.push_back(std::move(entry));
+        return;
+      }
+  }
+
+  std::string file_;
+  std::deque<json> entries_;
+};
+
+/// A number per joint. @throws DriverStop
+std::vector<double> numbers(const json& list, std::size_t count, const std::string& line) {
+  std::vector<double> out;
+  if (list.is_array())
+    for (const json& x : list)
+      if (x.is_number() && std::isfinite(x.get<double>())) out.push_back(x.get<double>());
+  if (!list.is_array() || out.size() != list.size() || out.size() != count)
+    throw DriverStop(Kind::Nonsense, "'q' is a list of " + std::to_string(count) +
+                                         " numbers, not as in " + excerpt(line));
+  return out;
+}
+
+}  // namespace
+
+const char* name_of(DriverStop::Kind kind) {
+  switch (kind) {
+    case Kind::Failed:
+      return "failed";
+    case Kind::Ended:
+      return "ended";
+    case Kind::Late:
+      return "late";
+    case Kind::Nonsense:
+      return "nonsense";
+    case Kind::Elsewhere:
+      return "elsewhere";
+    case Kind::Uncertified:
+      break;
+  }
+  return "uncertified";
+}
+
+struct RobotDriver::Data {
+  using Clock = std::chrono::steady_clock;
+
+  Data(const world::World& w, const DriverOptions& o) : world(w), options(o) {
+    if (!(o.most_seconds > 0) || !(o.rate > 0) || !(o.tracking > 0))
+      throw Error(ErrorCode::InvalidArgument, "a driver's times, rates and widths are above 0");
+    if (o.replayed.empty())
+      side = std::make_unique<Program>(o.command);
+    else
+      side = std::make_unique<Replayed>(o.replayed);
+    if (!o.journal.empty()) {
+      journal.open(o.journal);
+      if (!journal) throw Error(ErrorCode::OutputFailed, o.journal + ": cannot be written");
+      note({{"kaboum_journal", 1}, {"driver", o.command}});
+    }
+  }
+
+  /// A line of the journal: there at once, whatever happens next.
+  void note(json entry) {
+    if (!journal.is_open()) return;
+    entry["t"] = std::chrono::duration<double>(Clock::now() - start).count();
+    journal << dump(entry) << std::endl;  // NOLINT(performance-avoid-endl)
+    if (!journal) throw Error(ErrorCode::OutputFailed, options.journal + ": cannot be written");
+  }
+
+  [[noreturn]] void stop(Kind kind, const std::string& why) {
+    over = true;
+    note({{"stopped", name_of(kind)}, {"why", why}});
+    throw DriverStop(kind, "the driver, " + doing + ": " + why);
+  }
+
+  /// The next line as an object. @param seconds  that it may take
+  json hear(double seconds) {
+    const auto before = Clock::now();
+    const Heard heard = side->hear(seconds);
+    answered = Clock::now();
+    waited += std::chrono::duration<double>(*answered - before).count();
+    if (heard.none) {
+      note({{"none", name_of(*heard.none)}, {"why", heard.why}});
+      stop(*heard.none, heard.why);
+    }
+    note({{"heard", heard.line}});
+    if (is_nested_too_deep(heard.line))
+      stop(Kind::Nonsense,
+           "it answered " + excerpt(heard.line) + ", with " + describe_json_depth());
+    json out = json::parse(heard.line, nullptr, false);
+    if (!out.is_object())
+      stop(Kind::Nonsense, "it answered " + excerpt(heard.line) + ", which is no JSON object");
+    line = heard.line;
+    return out;
+  }
+
+  /// Tells it something, and reads what it answers: "done", "failed" or "sensed".
+  json ask(json message, double seconds) {
+    if (over) throw DriverStop(Kind::Ended, "the driver is told nothing any more");
+    if (const auto more = side->unasked()) {
+      note({{"unasked", *more}});
+      stop(Kind::Nonsense, "it said what nobody asked: " + excerpt(*more));
+    }
+    message["id"] = ++messages;
+    const std::string text = dump(message);
+    note({{"told", text}});
+    if (answered && messages > 1)
+      between += std::chrono::duration<double>(Clock::now() - *answered).count();
+    if (const auto refused = side->tell(text)) {
+      note({{"none", name_of(*refused->none)}, {"why", refused->why}});
+      stop(*refused->none, refused->why);
+    }
+    json answer = hear(seconds);
+    if (!answer.contains("id") || answer["id"] != messages)
+      stop(Kind::Nonsense, "an answer has the 'id' of what was asked, " + std::to_string(messages) +
+                               ", not as in " + excerpt(line));
+    int kinds = 0;
+    for (const char* kind : {"done", "failed", "sensed"}) kinds += answer.contains(kind) ? 1 : 0;
+    if (kinds != 1)
+      stop(Kind::Nonsense,
+           R"(an answer has one of "done", "failed" and "sensed", not )" + excerpt(line));
+    if (answer.contains("done") && answer["done"] != true)
+      stop(Kind::Nonsense, "'done' is true, not as in " + excerpt(line));
+    for (const char* text_of : {"failed", "sensed"})
+      if (answer.contains(text_of) && !answer[text_of].is_string())
+        stop(Kind::Nonsense,
+             "'" + std::string(text_of) + "' is a text, not as in " + excerpt(line));
+    return answer;
+  }
+
+  /// How far a robot is from a configuration at most, if the answer says where it is.
+  std::optional<double> off(const json& answer, const std::vector<double>& q) {
+    if (!answer.contains("q")) return std::nullopt;
+    std::vector<double> is;
+    try {
+      is = numbers(answer["q"], q.size(), line);
+    } catch (const DriverStop& e) {
+      stop(e.kind(), e.what());
+    }
+    double most = 0;
+    for (std::size_t j = 0; j < q.size(); ++j) most = std::max(most, std::abs(is[j] - q[j]));
+    return most;
+  }
+
+  void require_near(const json& answer, std::size_t robot, const std::vector<double>& q) {
+    const auto distance = off(answer, q);
+    if (!distance) return;
+    most_tracking = std::max(most_tracking, *distance);
+    if (*distance > options.tracking)
+      stop(Kind::Elsewhere, world.robots[robot].name + " is " + dump(*distance) +
+                                " away from where it was told to be, in one of its joints; " +
+                                dump(options.tracking) + " is allowed");
+  }
+
+  /// What changes nothing in the world if it fails is told again.
+  json ask_again(const json& message, double seconds, const char* kind) {
+    for (std::size_t tried = 0;; ++tried) {
+      json answer = ask(message, seconds);
+      if (answer.contains(kind)) return answer;
+      if (!answer.contains("failed"))
+        stop(Kind::Nonsense,
+             "it was asked for '" + std::string(kind) + "' or 'failed', not for " + excerpt(line));
+      if (tried >= options.retries)
+        stop(Kind::Failed, "it says that it failed: " + answer["failed"].get<std::string>());
+    }
+  }
+
+  const world::World& world;
+  DriverOptions options;
+  std::unique_ptr<Side> side;
+  std::ofstream journal;
+  Clock::time_point start = Clock::now();
+  std::optional<Clock::time_point> answered;
+  std::string doing = "when it was started", line;
+  std::uint64_t messages = 0;
+  double waited = 0, between = 0, most_tracking = 0;
+  bool over = false, finished = false;
+};
+
+RobotDriver::RobotDriver(const world::World& world, const DriverOptions& options)
+    : data_(std::make_unique<Data>(world, options)) {
+  const json first = data_->hear(options.most_seconds);
+  if (!first.contains("kaboum_driver") || first["kaboum_driver"] != 1)
+    data_->stop(Kind::Nonsense,
+                R"(its first line is {"kaboum_driver": 1}, not )" + excerpt(data_->line));
+}
+
+RobotDriver::~RobotDriver() { data_->side->end(data_->finished); }
+
+void RobotDriver::begin(const judge::CellState& state) {
+  data_->doing = "at the start";
+  const world::World& world = data_->world;
+  json robots = json::object(), objects = json::object();
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    json joints = json::array();
+    for (const robot::Variable& v : world.robots[r].kinematics.variables) joints.push_back(v.name);
+    robots[world.robots[r].name] = {{"joint_names", std::move(joints)}, {"q", state.q[r]}};
+  }
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    const judge::CellState::Place& place = state.objects[o];
+    json& entry = objects[world.objects[o].name];
+    if (place.away) {
+      entry = {{"away", true}};
+    } else if (place.hold) {
+      entry = {{"held_by", world.robots[place.hold->robot].name}};
+    } else {
+      json rows = json::array();
+      for (int i = 0; i < 3; ++i)
+        rows.push_back({place.pose.linear(i, 0), place.pose.linear(i, 1), place.pose.linear(i, 2),
+                        place.pose.translation[i]});
+      entry = {{"pose", std::move(rows)}};
+    }
+  }
+  const json answer = data_->ask_again({{"do", "begin"}, {"robots", robots}, {"objects", objects}},
+                                       data_->options.most_seconds, "done");
+  if (!answer.contains("q")) return;
+  if (!answer["q"].is_object())
+    data_->stop(Kind::Nonsense,
+                R"('q' is {ROBOT: [NUMBER, ...], ...} here, not )" + excerpt(data_->line));
+  for (std::size_t r = 0; r < world.robots.size(); ++r)
+    if (const std::string& name = world.robots[r].name; answer["q"].contains(name))
+      data_->require_near({{"q", answer["q"][name]}}, r, state.q[r]);
+}
+
+void RobotDriver::act(const std::string& action) {
+  data_->doing = "at " + action;
+  data_->ask_again({{"do", "act"}, {"action", action}}, data_->options.most_seconds, "done");
+}
+
+void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory) {
+  const world::RobotModel& model = data_->world.robots[robot];
+  json names = json::array(), points = json::array();
+  for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
+  for (std::size_t k = 0; k < trajectory.samples(); ++k) {
+    const double time = static_cast<double>(k) / trajectory.rate();
+    const motion::Instant now = trajectory.at(time);
+    points.push_back({{"time_from_start", time},
+                      {"positions", trajectory.sample(k)},
+                      {"velocities", now.velocity},
+                      {"accelerations", now.acceleration}});
+  }
+  const json message = {{"do", "move"},
+                        {"robot", model.name},
+                        {"trajectory", {{"joint_names", names}, {"points", std::move(points)}}}};
+  const std::vector<double> from = trajectory.sample(0),
+                            to = trajectory.sample(trajectory.samples() - 1);
+  for (std::size_t tried = 0;; ++tried) {
+    const json answer =
+        data_->ask(message, data_->options.most_seconds + kSlower * trajectory.duration());
+    if (answer.contains("done")) {
+      data_->require_near(answer, robot, to);
+      return;
+    }
+    if (!answer.contains("failed"))
+      data_->stop(Kind::Nonsense, "a motion is 'done' or 'failed', not " + excerpt(data_->line));
+    const std::string why = "it says that it failed: " + answer["failed"].get<std::string>();
+    const auto off = data_->off(answer, from);
+    if (!off) data_->stop(Kind::Failed, why + "; where " + model.name + " is, it does not say");
+    if (*off > data_->options.tracking)
+      data_->stop(Kind::Failed, why + "; " + model.name + " is not where the motion began");
+    if (tried >= data_->options.retries) data_->stop(Kind::Failed, why);
+  }
+}
+
+void RobotDriver::take(std::size_t object, std::size_t robot, std::uint32_t link) {
+  const world::RobotModel& model = data_->world.robots[robot];
+  data_->ask_again({{"do", "take"},
+                    {"robot", model.name},
+                    {"object", data_->world.objects[object].name},
+                    {"link", model.kinematics.links[link].name}},
+                   data_->options.most_seconds, "done");
+}
+
+void RobotDriver::release(std::size_t object, std::size_t robot) {
+  data_->ask_again({{"do", "release"},
+                    {"robot", data_->world.robots[robot].name},
+                    {"object", data_->world.objects[object].name}},
+                   data_->options.most_seconds, "done");
+}
+
+std::string RobotDriver::sense(const std::string& fact, const std::vector<std::string>& values) {
+  return data_
+      ->ask_again({{"do", "sense"}, {"fact", fact}, {"values", values}},
+                  data_->options.most_seconds, "sensed")["sensed"]
+      .get<std::string>();
+}
+
+void RobotDriver::finish() {
+  data_->doing = "at the end";
+  data_->ask_again({{"do", "finish"}}, data_->options.most_seconds, "done");
+  data_->finished = data_->over = true;
+  data_->note({{"finished", true}});
+}
+
+std::uint64_t RobotDriver::messages() const { return data_->messages; }
+double RobotDriver::waited() const { return data_->waited; }
+double RobotDriver::between() const { return data_->between; }
+double RobotDriver::most_tracking() const { return data_->most_tracking; }
+
+}  // namespace kaboum::execution

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""kaboum-plan run --robot: a driver that behaves, ones that do not, journals repeated, plans made again.
+
+usage: drive.py BIN
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+TOOLS = pathlib.Path(sys.argv[1]).absolute()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DRIVER = f"{sys.executable} {ROOT / 'examples/drivers/driver.py'}"
+RUNS = int(os.environ.get("KABOUM_TEST_DRIVERS", "25"))  # with faults at random
+
+
+def fail(what):
+    raise SystemExit(f"drive.py: {what}")
+
+
+def run(folder, robot, *more):
+    command = [TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet",
+               "--report", "report.json", "--journal", "journal.jsonl", *(["--robot", robot] if robot else []), *more]
+    (folder / "report.json").unlink(missing_ok=True)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    if done.returncode < 0:
+        fail(f"{robot}: signal {-done.returncode}")
+    report = folder / "report.json"
+    return done, json.loads(report.read_text()) if report.exists() else None
+
+
+def journal(folder, name="journal.jsonl"):
+    return [json.loads(line) for line in (folder / name).read_text().splitlines()]
+
+
+def judge(folder, finished):
+    """What the robot was told, by rules of this test: motions join, points are joined by straight lines in time, one message at a time,
+    nothing after a stop; what is held is taken once and let go by who holds it."""
+    at, held, waiting, stopped, finish = {}, {}, False, False, False
+    for entry in journal(folder)[1:]:
+        if "told" in entry:
+            if waiting or stopped or finish:
+                fail(f"told out of turn: {entry}")
+            waiting, message = True, json.loads(entry["told"])
+            if message["do"] == "begin":
+                at = {name: robot["q"] for name, robot in message["robots"].items()}
+                held = {name: o["held_by"] for name, o in message["objects"].items() if "held_by" in o}
+            elif message["do"] == "move":
+                points = message["trajectory"]["points"]
+                if points[0]["positions"] != at[message["robot"]]:
+                    fail("a motion does not begin where the robot is")
+                times = [p["time_from_start"] for p in points]
+                if times != sorted(set(times)) or times[0] != 0:
+                    fail("times do not grow")
+                for p in (points[0], points[-1]):
+                    if any(abs(v) > 1e-9 for v in p["velocities"]):
+                        fail("a motion does not begin and end at rest")
+            elif message["do"] == "take":
+                if message["object"] in held:
+                    fail("taken twice")
+            elif message["do"] == "release" and held.get(message["object"]) != message["robot"]:
+                fail("let go by another one")
+            finish = message["do"] == "finish"
+        elif "heard" in entry:
+            if not waiting and at:
+                fail(f"heard out of turn: {entry}")
+            waiting = False
+            answer = json.loads(entry["heard"]) if entry["heard"].startswith("{") and entry["heard"].endswith("}") else {}
+            if at and isinstance(answer, dict) and answer.get("done") is True and answer.get("id") == message["id"]:
+                if message["do"] == "move":
+                    at[message["robot"]] = message["trajectory"]["points"][-1]["positions"]
+                elif message["do"] == "take":
+                    held[message["object"]] = message["robot"]
+                elif message["do"] == "release":
+                    del held[message["object"]]
+        elif "stopped" in entry:
+            stopped, waiting = True, False
+    if finish != finished and not (finish and stopped):
+        fail("the end of the plan is said though it was not reached" if finish else "the end of the plan is not said")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        environment = dict(os.environ, KABOUM_BIN=str(TOOLS), KABOUM_CACHE=str(folder / "cache"))
+        scenario = folder / "fs"
+        made = subprocess.run([ROOT / "examples/scenarios/force-sensing/run", "2", "--out", scenario], env=environment, capture_output=True, text=True)
+        if made.returncode != 0:
+            fail(f"no plan: {made.stderr[-500:]}")
+        (scenario / "domain.kpl").write_text((ROOT / "examples/scenarios/force-sensing/domain.kpl").read_text())
+
+        # Every outcome of sensing, with a driver that behaves.
+        for seed in range(1, 5):
+            done, report = run(scenario, f"{DRIVER} --seed {seed}")
+            if done.returncode != 0 or report["driver"]["end"] != "goal" or report["verdict"] != "good":
+                fail(f"seed {seed}: exit code {done.returncode}: {done.stderr}")
+            if report["collisions"] + report["limit_violations"] + report["jumps"] or report["samples"] < 1000:
+                fail(f"seed {seed}: {report}")
+            judge(scenario, True)
+        sensed = {json.loads(e["told"])["fact"] for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "sense"}
+        if len(sensed) != 2:
+            fail(f"sensed: {sensed}")
+
+        # A journal is repeated: the same messages; and not with another plan's rate, nor when it is damaged.
+        (scenario / "kept.jsonl").write_text((scenario / "journal.jsonl").read_text())
+        done, again = run(scenario, None, "--replay-journal", "kept.jsonl")
+        if done.returncode != 0 or again["driver"]["messages"] != report["driver"]["messages"]:
+            fail(f"repeated: exit code {done.returncode}: {done.stderr}")
+        told = [[e["told"] for e in journal(scenario, n) if "told" in e] for n in ("kept.jsonl", "journal.jsonl")]
+        if told[0] != told[1]:
+            fail("a repeated run is told something else")
+        done, _ = run(scenario, None, "--replay-journal", "kept.jsonl", "--robot-rate", "50")
+        if done.returncode != 3 or "something else" not in done.stderr:
+            fail(f"another rate: exit code {done.returncode}: {done.stderr}")
+        lines = (scenario / "kept.jsonl").read_text().splitlines()
+        for damaged, code in (("", 3), ("{", 3), ("\n".join(["{}", *lines[1:]]), 3), ("\n".join([*lines[:2], "[]", *lines[2:]]), 3),
+                              ("\n".join(lines[:len(lines) // 2]) + "\n", 1)):
+            (scenario / "damaged.jsonl").write_text(damaged)
+            done, _ = run(scenario, None, "--replay-journal", "damaged.jsonl")
+            if done.returncode != code or "damaged.jsonl" not in done.stderr and code == 3:
+                fail(f"damaged journal: exit code {done.returncode}: {done.stderr}")
+
+        # Drivers that do not behave, one by one.
+        ready = 'echo \'{"kaboum_driver": 1}\''
+        for robot, end, word in (
+                ("exit 3", "ended", "exit code 3"), ("sleep 100", "late", "no answer within"), ("echo hello; cat", "nonsense", "no JSON"),
+                ("echo '{}'; cat", "nonsense", "first line"), (f"{ready}; cat", "nonsense", "one of"), (f"{ready}; read x; sleep 100", "late", "no answer"),
+                (f"{ready}; echo '{{\"id\": 1, \"done\": true}}'; sleep 100", "nonsense", "nobody asked"),
+                (f"{ready}; read x; echo '{{\"id\": 1, \"sensed\": \"a\"}}'; sleep 100", "nonsense", "'done' or 'failed'"),
+                (f"{ready}; read x; echo '{{\"id\": 1, \"done\": true, \"q\": {{\"arm\": [9, 9, 9, 9, 9, 9]}}}}'; sleep 100", "elsewhere", "away"),
+                (f"{ready}; read x; head -c 20000000 /dev/zero | tr '\\0' a; sleep 100", "nonsense", "16 MiB"),
+                (f"{DRIVER} --sense 'isSpillable(o1)=perhaps'", None, "one of")):
+            done, report = run(scenario, robot, "--robot-timeout", "1.5")
+            if done.returncode not in (1,) or (end and report["driver"]["end"] != end) or word not in done.stderr:
+                fail(f"{robot}: exit code {done.returncode}, {report and report['driver']}: {done.stderr}")
+            if report["verdict"] == "good":
+                fail(f"{robot}: good")
+
+        # Faults at random: each run ends stopped or at the goal.
+        ends = {}
+        for seed in range(1, RUNS + 1):
+            done, report = run(scenario, f"{DRIVER} --seed {seed} --faults 0.03 --late 30", "--robot-timeout", "1")
+            if done.returncode not in (0, 1) or report is None:
+                fail(f"faults, seed {seed}: exit code {done.returncode}: {done.stderr}")
+            end = report["driver"]["end"]
+            if (done.returncode == 0) != (end == "goal") or (report["verdict"] == "good") != (end == "goal"):
+                fail(f"faults, seed {seed}: {end}, exit code {done.returncode}")
+            if report["collisions"] + report["limit_violations"] + report["jumps"]:
+                fail(f"faults, seed {seed}: {report['problems']}")
+            judge(scenario, end == "goal")
+            ends[end] = ends.get(end, 0) + 1
+        if len(ends) < 3:
+            fail(f"ends: {ends}")
+
+        # A plan without one of its branches: it is planned again from what is known then, and not with --replan 0.
+        plan = json.loads((scenario / "plan.json").read_text())
+        whole = json.dumps(plan)
+        branch = next(n["branch"] for n in plan["nodes"] if n.get("branch", {}).get("arguments") == ["o1"])
+        branch["cases"] = [c for c in branch["cases"] if c["value"] is False]
+        (scenario / "plan.json").write_text(json.dumps(plan))
+        spillable = f"{DRIVER} --sense 'isSpillable(o1)=true' --sense 'isSpillable(o2)=false'"
+        done, report = run(scenario, spillable)
+        if done.returncode != 0 or [r["outcome"] for r in report["replans"]] != ["isSpillable(o1)"] or report["driver"]["end"] != "goal":
+            fail(f"planned again: exit code {done.returncode}: {report and report['replans']}: {done.stderr}")
+        judge(scenario, True)
+        done, report = run(scenario, spillable, "--replan", "0")
+        if done.returncode != 1 or report["driver"]["end"] != "uncertified" or report["driver"]["messages"] or "no case" not in done.stderr:
+            fail(f"a plan with gaps and nobody to plan again: exit code {done.returncode}: {report and report['driver']}: {done.stderr}")
+
+        # A plan with a motion that nobody certified is not told.
+        damaged = json.loads(whole)
+        call = next(c for n in damaged["nodes"] for c in n.get("calls", []) if c.get("payload", "").startswith('[{'))
+        motions = json.loads(call["payload"])
+        motions[0]["path"][1][0] += 0.2
+        call["payload"] = json.dumps(motions)
+        (scenario / "plan.json").write_text(json.dumps(damaged))
+        done, report = run(scenario, DRIVER)
+        if done.returncode != 1 or report["driver"]["end"] != "uncertified" or report["driver"]["messages"]:
+            fail(f"an uncertified motion: exit code {done.returncode}: {report and report['driver']}: {done.stderr}")
+        print(f"ends with faults at random: {dict(sorted(ends.items()))}")
+
+
+if __name__ == "__main__":
+    main()
