@@ -51,7 +51,7 @@ class Drive {
 
   std::string sense(const plan::SensedFact& what) {
     tell(what.node, what.before);
-    const std::string said = driver_.sense(what.fact, what.values);
+    std::string said = driver_.sense(what.fact, what.values);
     if (std::ranges::find(what.values, said) == what.values.end()) {
       std::string values;
       for (const std::string& v : what.values) values += (values.empty() ? "" : ", ") + v;

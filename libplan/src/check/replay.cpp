@@ -232,7 +232,7 @@ class Run {
   [[nodiscard]] std::string fact_text(const Fact& f) const {
     const KnownFacts::Term term = named(f);
     std::string out = term.front();
-    for (std::size_t i = 1; i < term.size(); ++i) out += (i > 1 ? ", " : "(") + term[i];
+    for (std::size_t i = 1; i < term.size(); ++i) out.append(i > 1 ? ", " : "(").append(term[i]);
     return term.size() > 1 ? out + ")" : out;
   }
 
