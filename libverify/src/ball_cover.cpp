@@ -2,9 +2,12 @@
 #include <kaboum/verify/ball_cover.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
+#include <utility>
 
 #include "cell_sample.h"
 #include "nearest.h"
@@ -198,12 +201,13 @@ Ball common_ball(const Ball& ball, const Vec3& b, double h, double lambda) {
 class SignedDistance {
  public:
   explicit SignedDistance(const geom::Mesh& mesh)
-      : meshes_(geom::Mesh{}, mesh), nearest_(meshes_, kOutside) {}
+      : meshes_(geom::Mesh{}, mesh),
+        nearest_(meshes_, kOutside),
+        largest_(meshes_.largest_coordinate()) {}
 
   [[nodiscard]] std::pair<double, double> operator()(const Vec3& q) const {
     const Vec3 p = q * meshes_.scale();
-    const double slack =
-        4 * rounding_of_distances(std::max(meshes_.largest_coordinate(), largest_of(p)));
+    const double slack = 4 * rounding_of_distances(std::max(largest_, largest_of(p)));
     const double far = nearest_.distance(p);
     const double above = meshes_.length_outside(far + slack);
     const double below =
@@ -231,6 +235,7 @@ class SignedDistance {
  private:
   MeshPair meshes_;
   NearestTriangle nearest_;
+  double largest_;  ///< coordinate of the meshes
 };
 
 // --- how much is outside ----------------------------------------------------------------------
@@ -239,8 +244,55 @@ class SignedDistance {
 struct OpenPart {
   Corners corner;
   double area;
-  double upper;  ///< bound of its points' distances from the union
+  double upper;  ///< bound of its points' distances from the union, negative in one ball
+  double lower;  ///< the same from below
 };
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Signed area of what the triangle of the origin and an edge has in common with a disc about the
+/// origin.
+double area_in_disc(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double square) {
+  const auto sector = [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+    return 0.5 * square * std::atan2(cross(p, q), p.dot(q));
+  };
+  const Eigen::Vector2d d = b - a;
+  const double length = d.squaredNorm(), half = a.dot(d),
+               root = half * half - length * (a.squaredNorm() - square);
+  if (!(root > 0) || !(length > 0)) return sector(a, b);
+  const double first = (-half - std::sqrt(root)) / length,
+               last = (-half + std::sqrt(root)) / length;
+  if (first >= 1 || last <= 0) return sector(a, b);
+  const Eigen::Vector2d p = a + std::max(first, 0.0) * d, q = a + std::min(last, 1.0) * d;
+  return 0.5 * cross(p, q) + (first > 0 ? sector(a, p) : 0) + (last < 1 ? sector(q, b) : 0);
+}
+
+/// Area of what a triangle has in common with a ball, and what that errs by. The error of the plane
+/// moves the disc by no more than 10^-10 of the radius, since slivers are left out.
+/// @return nullopt for slivers
+std::optional<std::pair<double, double>> area_in_ball(const Corners& c, double area,
+                                                      const Ball& ball) {
+  constexpr double kSliver = 1e-4, kTiny = 1e-6, kError = 1e-9;
+  double longest = 0, far = largest_of(ball.center) + ball.radius;
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest = std::max(longest, (c[(k + 1) % 3] - c[k]).norm());
+    far = std::max(far, largest_of(c[k]));
+  }
+  if (!(2 * area > kSliver * longest * longest) || !(longest > kTiny * far)) return std::nullopt;
+  const Vec3 u = (c[1] - c[0]).normalized();
+  const Vec3 n = u.cross(c[2] - c[0]).normalized(), v = n.cross(u);
+  const double height = n.dot(ball.center - c[0]),
+               square = ball.radius * ball.radius - height * height;
+  const double error = std::min(area, kError * far * far);
+  if (!(square > 0)) return std::pair(0.0, error);
+  std::array<Eigen::Vector2d, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = {u.dot(c[k] - ball.center), v.dot(c[k] - ball.center)};
+  double out = 0;
+  for (std::size_t k = 0; k < 3; ++k) out += area_in_disc(p[k], p[(k + 1) % 3], square);
+  return std::pair(std::clamp(out, 0.0, area), error);
+}
 
 class OutsideSearch {
  public:
@@ -276,11 +328,9 @@ class OutsideSearch {
       take(c, height(middle_of(c)) > slack_ ? out.outside : out.held);
     };
     const auto look = [&](const OpenPart& part) {
-      if (in_one_ball(part.corner)) return take(part.corner, out.held);
-      const Vec3 middle = middle_of(part.corner);
-      const double reach = reach_of(part.corner, middle);
-      if (height(middle) - reach > slack_) return take(part.corner, out.outside);
-      if (reach > size) return open.push(part);
+      if (part.upper + slack_ <= 0) return take(part.corner, out.held);
+      if (part.lower > slack_) return take(part.corner, out.outside);
+      if (reach_of(part.corner, middle_of(part.corner)) > size) return open.push(part);
       by_middle(part.corner);
     };
     for (const OpenPart& part : parts_) look(part);
@@ -309,15 +359,20 @@ class OutsideSearch {
     for (const Vec3& p : c) out = std::max(out, (p - middle).norm());
     return out;
   }
+  /// The distance from one ball is a convex function: no larger than at the farthest corner.
   [[nodiscard]] OpenPart part_of(const Corners& c) const {
     const Vec3 middle = middle_of(c);
-    return {c, 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm(), height(middle) + reach_of(c, middle)};
-  }
-  [[nodiscard]] bool in_one_ball(const Corners& c) const {
-    return std::ranges::any_of(balls_, [&](const Ball& b) {
-      return std::ranges::all_of(
-          c, [&](const Vec3& p) { return (p - b.center).norm() + slack_ <= b.radius; });
-    });
+    const double reach = reach_of(c, middle);
+    double of_middle = std::numeric_limits<double>::infinity(), upper = of_middle;
+    for (const Ball& b : balls_) {
+      of_middle = std::min(of_middle, (middle - b.center).norm() - b.radius);
+      const double square =
+          std::max({(c[0] - b.center).squaredNorm(), (c[1] - b.center).squaredNorm(),
+                    (c[2] - b.center).squaredNorm()});
+      upper = std::min(upper, std::sqrt(square) - b.radius);
+    }
+    return {c, 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm(), std::min(upper, of_middle + reach),
+            of_middle - reach};
   }
   template <class Take>
   void halve(const OpenPart& part, const Take& take) const {
@@ -333,6 +388,19 @@ class OutsideSearch {
       one[k] = half;
       take(part_of(one));
     }
+  }
+
+  /// The ball that a part may meet, where there is one only.
+  [[nodiscard]] const Ball* only_ball_near(const Corners& c) const {
+    const Vec3 middle = middle_of(c);
+    const double reach = reach_of(c, middle) + slack_;
+    const Ball* out = nullptr;
+    for (const Ball& b : balls_) {
+      if ((middle - b.center).norm() - b.radius > reach) continue;
+      if (out != nullptr) return nullptr;
+      out = &b;
+    }
+    return out;
   }
 
   void measure_depth() {
@@ -353,7 +421,6 @@ class OutsideSearch {
            ++seen < kMostParts) {
       const OpenPart part = open.top();
       open.pop();
-      if (in_one_ball(part.corner)) continue;
       halve(part, look);
     }
     if (!open.empty()) out_.depth_upper = std::max(0.0, open.top().upper + slack_);
@@ -364,13 +431,19 @@ class OutsideSearch {
     if (!(out_.area > 0)) return;
     const auto less = [](const OpenPart& a, const OpenPart& b) { return a.area < b.area; };
     std::priority_queue<OpenPart, std::vector<OpenPart>, decltype(less)> open(less);
-    double outside = 0, unknown = 0;
+    double outside = 0, unknown = 0, error = 0;
     const auto look = [&](const OpenPart& part) {
-      if (in_one_ball(part.corner)) return;
-      const Vec3 middle = middle_of(part.corner);
-      if (height(middle) - reach_of(part.corner, middle) > slack_) {
+      if (part.upper + slack_ <= 0) return;
+      if (part.lower > slack_) {
         outside += part.area;
         return;
+      }
+      if (const Ball* ball = only_ball_near(part.corner)) {
+        if (const auto inside = area_in_ball(part.corner, part.area, *ball)) {
+          outside += part.area - inside->first;
+          error += inside->second;
+          return;
+        }
       }
       unknown += part.area;
       open.push(part);
@@ -384,9 +457,10 @@ class OutsideSearch {
       halve(part, look);
     }
     // Sums and areas are rounded.
-    out_.share_lower = std::clamp(outside / out_.area - 1e-9, 0.0, 1.0);
-    out_.share_upper = std::clamp((outside + std::max(unknown, 0.0)) / out_.area + 1e-9, 0.0, 1.0);
-    if (open.empty() && outside == 0) out_.share_upper = 0;
+    out_.share_lower = std::clamp((outside - error) / out_.area - 1e-9, 0.0, 1.0);
+    out_.share_upper =
+        std::clamp((outside + error + std::max(unknown, 0.0)) / out_.area + 1e-9, 0.0, 1.0);
+    if (open.empty() && outside == 0 && error == 0) out_.share_upper = 0;
   }
 
   const std::vector<Ball>& balls_;

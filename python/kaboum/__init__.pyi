@@ -876,6 +876,7 @@ def verify_spheres(
     robot: _Robot,
     spheres: _Path,
     *,
+    epsilon: _Length | None = None,
     # options of shapes
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",

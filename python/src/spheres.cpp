@@ -163,24 +163,37 @@ py::dict dict_of(const verify::LinkSpheresVerdict& link) {
     out["missed"] = py::make_tuple(p.x(), p.y(), p.z());
     out["depth"] = link.missed->depth;
   }
+  if (link.distance) out["distance"] = verify::name_of(link.distance->answer);
   return out;
 }
 
+/// In metres; none: nothing is asked of distances.
+std::optional<double> reach_of(const py::object& epsilon) {
+  if (epsilon.is_none()) return std::nullopt;
+  const Length out = epsilon_of(epsilon);
+  if (out.percent)
+    throw Error(ErrorCode::InvalidArgument,
+                "epsilon: a percentage has no meaning for spheres that hold several meshes: state "
+                "a length");
+  return out.in("m").value;
+}
+
 Verdict verify_spheres(const py::object& robot, const py::object& spheres,
-                       const py::kwargs& given) {
+                       const py::object& epsilon, const py::kwargs& given) {
   robot::ShapeChoice shapes;
   const RunKeywords running =
       take_keywords("verify_spheres", robot::shape_options(), given, shapes, Runs::Threads);
   const RobotValue value = robot_of(robot, "robot");
   robot::require_links(*value.file, shapes.links);
   const std::string file = file_of(spheres, "spheres");
+  const std::optional<double> reach = reach_of(epsilon);
   Watch watch(running.progress);
   verify::SpheresVerdict found;
   run(running.threads, [&] {
     const robot::SphereFile read = robot::read_spheres(file);
     found = verify::decide_spheres(
         *value.file, read, file, shapes,
-        [&](const verify::LinkSpheresVerdict& link) { watch("deciding: " + link.link); });
+        [&](const verify::LinkSpheresVerdict& link) { watch("deciding: " + link.link); }, reach);
   });
   Verdict out;
   out.answer = found.answer;
@@ -246,13 +259,16 @@ Parameters
 robot : Robot or path
 spheres : str or path
     cuRobo's YAML, XRDF, SRDF with link_sphere_approximation, or URDF with spheres as collision shapes.
+epsilon : float or str
+    Also decides that no point of a sphere is farther from its link's shapes. [length]
 {keywords}
 
 Returns
 -------
 Verdict
     Its claims are 'links', a list of dicts with 'link', 'answer', 'sentence', 'spheres', 'share_outside' (bounds of the share
-    of the surface) and, where it is refuted, 'missed' (a point) and 'depth'; 'share_outside', 'depth' and 'sentence' of all.
+    of the surface), with epsilon 'distance' (an answer) and, where it is refuted, 'missed' (a point) and 'depth';
+    'share_outside', 'depth' and 'sentence' of all.
 
 Raises
 ------
@@ -280,10 +296,11 @@ void bind_spheres(py::module_& module) {
   module.def("repair_spheres", &repair_spheres, py::arg("robot"), py::arg("spheres"),
              py::arg("file"), py::kw_only(), py::arg("epsilon"), py::arg("effort") = "normal",
              repair.c_str());
-  const std::string verify = document("verify_spheres", "robot: object, spheres: object", shapes,
-                                      "kaboum.Verdict", kVerifyDoc, Runs::Threads);
-  module.def("verify_spheres", &verify_spheres, py::arg("robot"), py::arg("spheres"),
-             verify.c_str());
+  const std::string verify =
+      document("verify_spheres", "robot: object, spheres: object, *, epsilon: object = None",
+               shapes, "kaboum.Verdict", kVerifyDoc, Runs::Threads);
+  module.def("verify_spheres", &verify_spheres, py::arg("robot"), py::arg("spheres"), py::kw_only(),
+             py::arg("epsilon") = py::none(), verify.c_str());
 }
 
 }  // namespace kaboum::python

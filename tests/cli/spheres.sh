@@ -134,7 +134,6 @@ s/name="j" type="revolute"/name="j" type="prismatic"/|b' is not where the robot 
 s/multiplier="2"/multiplier="3"/|c' is not where the robot has it: joint 'k' mimics in another way
 s/"base"/"world"/; s/xyz="0 0 1"\/><axis/xyz="0 0 3"\/><axis/|b' is not where the robot has it: a step beside joint 'j' is 2 away
 E
-finish
 
 # XRDF: the geometry that is meant, its buffers; SRDF.
 xrdf() { # RADIUS BUFFER
@@ -174,9 +173,9 @@ expect 3 'bad.xrdf:2: .*format_version' "$V" robot arm.urdf --spheres bad.xrdf
 xrdf 9 0 | sed '/^collision/,/base: 0/d' >bad.xrdf
 expect 3 'which geometry' "$V" robot arm.urdf --spheres bad.xrdf
 xrdf 9 0 | sed 's/^  large:/&\n    capsules: {}/' >bad.xrdf
-expect 3 "bad.xrdf:15: .*no 'capsules'" "$V" robot arm.urdf --spheres bad.xrdf
+expect 3 "bad.xrdf:14: .*no 'capsules'" "$V" robot arm.urdf --spheres bad.xrdf
 xrdf -9 0 >bad.xrdf
-expect 3 'bad.xrdf:17: .*above 0' "$V" robot arm.urdf --spheres bad.xrdf
+expect 3 'bad.xrdf:16: .*above 0' "$V" robot arm.urdf --spheres bad.xrdf
 printf 'format: xrdf\nformat_version: 1.0\n' >bad.xrdf
 expect 3 'as XRDF has them' "$V" robot arm.urdf --spheres bad.xrdf
 srdf() { # RADIUS
@@ -216,7 +215,30 @@ echo '<robot name="can"><link name="can"><collision><geometry><cylinder radius="
 expect 0 '' "$B" can.urdf -o can.yaml --bodies spheres --epsilon 0.04 --effort fast --no-cache --report can.json
 json can.json "r['reach_upper'] <= 0.04"
 shows 0 '^verified' "$V" robot can.urdf --spheres can.yaml
-sed 's/"radius": [0-9.]*/"radius": 0.001/' can.yaml >tiny.yaml
+sed 's/radius: [0-9.]*/radius: 0.001/' can.yaml >tiny.yaml
 cmp -s can.yaml tiny.yaml && fail "no radius was made smaller"
 shows 1 "refuted: its point (.*), of a shape without triangles, is in none of its [0-9]* spheres" "$V" robot can.urdf --spheres tiny.yaml
-expect 3 'up to 0.00045.* farther: allow an epsilon above that' "$B" can.urdf -o fine.yaml --bodies spheres --epsilon 0.0004 --no-cache
+expect 1 'up to 0.00045.* farther: allow an epsilon above that' "$B" can.urdf -o fine.yaml --bodies spheres --epsilon 0.0004 --no-cache
+
+# What a reader of YAML would pass over: members that are given twice, other ones, documents, buffers of nobody.
+while IFS='|' read -r text place; do
+  # shellcheck disable=SC2059
+  printf "$text" >bad.yaml
+  expect 3 "bad.yaml:$place" "$V" robot arm.urdf --spheres bad.yaml
+done <<'E'
+collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 1\n      radius: 5\n|5: 'radius' is there already
+collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 1\ncollision_spheres:\n  hand: []\n|5: 'collision_spheres' is there already
+collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 1\n---\ncollision_spheres:\n  hand: []\n|[67]: a second document
+collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 1\n      offset: 3\n|5: .*no 'offset'
+collision_sphere_buffer: {bsae: 1}\ncollision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 1\n|1: a buffer of link 'bsae'
+collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius:\n|5: a radius must be a number
+geometry:\n  g:\n    spheres:\n      base: []\n| an XRDF says
+E
+# Links that cuRobo does not look at have no spheres; a file that may be cut, and one of another robot, are noted.
+printf 'collision_link_names: [hand]\ncollision_spheres:\n  base:\n    - center: [2, 0.5, 0.5]\n      radius: 9\n  hand:\n    - center: [0, 0, 0]\n      radius: 9' >named.yaml
+shows 1 "link 'base': refuted: it has no spheres" "$V" robot arm.urdf --spheres named.yaml
+expect 1 "the spheres of 'base' are none: collision_link_names does not name them" "$V" robot arm.urdf --spheres named.yaml
+expect 1 'does not end with a line break: is it cut' "$V" robot arm.urdf --spheres named.yaml
+srdf 9 | sed 's/robot name="arm"/robot name="panda"/' >other.srdf
+expect 0 "says that it is of robot 'panda'; this one is 'arm'" "$V" robot arm.urdf --spheres other.srdf
+finish

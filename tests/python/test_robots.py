@@ -368,6 +368,11 @@ def test_spheres_are_written_judged_and_repaired(arm, tmp_path):
     verdict = kaboum.verify_spheres(arm, tmp_path / "arm.yaml")
     assert verdict and [link["link"] for link in verdict.claims["links"]] == ["base", "upper", "tool"]
     assert verdict.claims["share_outside"] == (0, 0)
+    assert kaboum.verify_spheres(arm, tmp_path / "arm.yaml", epsilon="5cm")
+    far = kaboum.verify_spheres(arm, tmp_path / "arm.yaml", epsilon=0.001)
+    assert far.answer == "refuted" and "refuted" in [link["distance"] for link in far.claims["links"]]
+    with pytest.raises(kaboum.Error, match="percentage"):
+        kaboum.verify_spheres(arm, tmp_path / "arm.yaml", epsilon="1%")
 
     text = (tmp_path / "arm.yaml").read_text()
     radius = re.search(r'radius"?: ([0-9.e-]+)', text)

@@ -85,7 +85,7 @@ FRONT_ENDS = {
     "verify_mesh": (["verify_mesh"], {"relation"} | RUNS, "bound-verify mesh"),
     "verify_cover": (["verify_cover"], RUNS, "bound-verify cover"),
     "verify_robot": (["verify_robot"], RUNS, "bound-verify robot"),
-    "verify_spheres": (["shapes"], RUNS, "bound-verify robot"),
+    "verify_spheres": (["shapes"], {"epsilon"} | RUNS, "bound-verify robot"),
     "write_spheres": (["shapes"], {"epsilon", "robot_bodies", "share", "effort", "no_cache"} | RUNS, "bcd-decompose"),
     "repair_spheres": (["shapes"], {"epsilon", "effort"} | RUNS, "bcd-decompose"),
     "verify_sweep": (["verify_sweep"], RUNS, "bound-verify sweep"),

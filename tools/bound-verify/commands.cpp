@@ -24,7 +24,8 @@ constexpr const char* kClaims =
     "Both are answered; --claims says which decide the exit code.";
 
 /// Options of verdicts on robots that count where spheres are judged.
-constexpr std::array<std::string_view, 3> kOfSpheres{"geometry", "links", "package-path"};
+constexpr std::array<std::string_view, 4> kOfSpheres{"geometry", "links", "package-path",
+                                                     "epsilon"};
 
 /// A command.
 /// @param decide  what it does
@@ -186,8 +187,11 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
        "spheres as collision shapes. Decides of each "
        "link whether its own spheres hold its triangles, as the files have them, and the "
        "solid that they bound; else says how much of its surface is outside, and how "
-       "deep. Lengths are those of the robot's file: metres. Beside it only --geometry, --links, "
-       "--package-path and --page may be stated")
+       "deep. With --epsilon, a length, also whether no point of a sphere is farther than that "
+       "from "
+       "its link's shapes (meshes prepared as bcd-decompose does, holes filled). Lengths are those "
+       "of the robot's file: metres. Beside these only --geometry, --links, --package-path and "
+       "--page may be stated")
       ->type_name("FILE");
   c->add_option("--page", o.robot.page,
                 "With spheres: write a page (.html) that shows the robot with them in a browser, "
@@ -195,11 +199,13 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       ->check(page_name())
       ->type_name("FILE");
   c->add_option("--bodies", o.robot.bodies,
-                "Instead of RESULT, a URDF whose collision shapes are spheres, boxes, capsules and "
+                "Instead of RESULT, a robot (URDF, MJCF, SDF) whose collision shapes are spheres, "
+                "boxes, capsules and "
                 "cylinders with or without spheres at their ends: decides of each link whether its "
-                "own shapes hold its triangles, as --spheres does of spheres, and whether both "
-                "robots move alike. Beside it only --geometry, --links and --package-path may be "
-                "stated")
+                "own shapes hold its triangles, as --spheres does of spheres, with --epsilon "
+                "whether none is farther from the link's shapes, and whether both "
+                "robots move alike (of a file in another format up to 1e-9 of the robot's size). "
+                "Beside it only --epsilon, --geometry, --links and --package-path may be stated")
       ->type_name("FILE");
   c->add_option("--xacro-args", o.robot.xacro_arguments,
                 "Arguments of ORIGINAL, a .xacro file, as bcd-decompose was given them; further "

@@ -8,6 +8,7 @@
 #include <kaboum/robot/exact_shapes.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/link_reach.h>
 #include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
@@ -28,6 +29,8 @@ using verify::Answer;
 /// Of lengths: bounds what the pose of a shape, whose rotation is computed from angles within
 /// 40 · 2^-53, and a dozen operations err by.
 constexpr double kPoseRounding = 0x1p-45;
+/// Steps between the same frames in two formats differ by no more than this, in sizes of the robot.
+constexpr double kSameFrame = 1e-9;
 constexpr double kLeastCapsule = 0.5;  ///< of its cylinder's radius: thinner ones are of no use
 
 /// Bodies within the shapes of a link, and bodies round them.
@@ -142,6 +145,8 @@ struct LinkAnswer {
   std::string name, sentence;
   std::size_t shapes = 0, triangles = 0;
   Answer answer = Answer::Verified;
+  Answer held = Answer::Undefined;  ///< `answer` without the distance
+  std::optional<verify::DistanceClaim> distance = {};
   verify::Inclusion inclusion;
 };
 
@@ -284,7 +289,33 @@ void require_known(const robot::RobotFile& bodies, const robot::RobotFile& robot
                                                did_you_mean(link.name, names));
 }
 
+/// Why links' frames are elsewhere in the file; empty: they are not.
+std::string difference_in_frames(const robot::RobotFile& robot, const robot::RobotFile& bodies) {
+  if (robot.format == bodies.format) return verify::difference_in_motion(robot.robot, bodies.robot);
+  const auto found = verify::find_frame_elsewhere(robot.robot, bodies.robot, kSameFrame);
+  if (!found) return {};
+  return "the frame of link '" + robot.robot.links[found->link].name +
+         "' is not where the robot has it: " + found->why;
+}
+
 }  // namespace
+
+std::optional<double> length_of_reach(const std::optional<Length>& epsilon) {
+  if (!epsilon) return std::nullopt;
+  if (epsilon->percent)
+    throw Error(ErrorCode::InvalidArgument,
+                "--epsilon: a percentage has no meaning for bodies that hold several meshes: state "
+                "a length");
+  return epsilon->in("m").value;
+}
+
+Json reach_json(const verify::DistanceClaim& claim) {
+  Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
+  if (claim.answer == verify::Answer::Refuted)
+    json["witness"] = {{"point", {claim.at.x(), claim.at.y(), claim.at.z()}},
+                       {"distance", claim.largest}};
+  return json;
+}
 
 int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
@@ -294,9 +325,10 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   robot::require_links(robot, o.how.shapes.links);
   const robot::RobotFile bodies = robot::read_robot(o.bodies);
   require_known(bodies, robot);
+  const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   Answer all = Answer::Verified;
-  std::size_t held = 0, judged = 0, count = 0;
+  std::size_t held = 0, within = 0, judged = 0, count = 0;
   Json links = Json::array();
   for (const robot::Link& link : robot.robot.links) {
     if (!o.how.shapes.has(link)) continue;
@@ -309,10 +341,21 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     const auto index = bodies.robot.find_link(link.name);
     const robot::Link none{link.name, {}, {}};
     const robot::Link& own = index ? bodies.robot.links[*index] : none;
-    const LinkAnswer now = judge(link.name, mesh, round, bounds_of(own, o.bodies), own.collision);
+    const Bounds bounds = bounds_of(own, o.bodies);
+    LinkAnswer now = judge(link.name, mesh, round, bounds, own.collision);
+    now.held = now.answer;
+    if (epsilon) {
+      now.distance = verify::verify_link_reach(
+          bounds.inside, bounds.outside,
+          verify::measured_link(o.how.shapes.shapes_of(link), robot, o.how.shapes.packages),
+          *epsilon);
+      now.answer = verify::worse(now.answer, now.distance->answer);
+      now.sentence += "; " + verify::sentence_of_reach(*now.distance, *epsilon);
+      within += now.distance->answer == Answer::Verified ? 1 : 0;
+    }
     all = verify::worse(all, now.answer);
     ++judged;
-    held += now.answer == Answer::Verified ? 1 : 0;
+    held += now.held == Answer::Verified ? 1 : 0;
     count += now.shapes;
     links.push_back({{"link", now.name},
                      {"answer", name_of(now.answer)},
@@ -322,6 +365,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                      {"claims",
                       {{"surface", json_of_claim(now.inclusion.surface)},
                        {"solid", json_of_claim(now.inclusion.solid)}}}});
+    if (now.distance) links.back()["claims"]["distance"] = reach_json(*now.distance);
     if (!common.quiet)
       out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
           << std::endl;
@@ -331,7 +375,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                 o.original + ": no link has a shape" +
                     (o.how.shapes.visual ? std::string() : "; try --geometry visual"));
   // Shapes in the links' frames hold the robot only where the file has these frames.
-  const std::string motion = verify::difference_in_motion(robot.robot, bodies.robot);
+  const std::string motion = difference_in_frames(robot, bodies);
   if (!motion.empty()) all = Answer::Refuted;
   if (!common.quiet) out << line_on_joints(motion) << std::endl;
   if (!common.report.empty())
@@ -343,10 +387,14 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                   {"bodies", {{"file", o.bodies}, {"sha256", bodies.sha256}}},
                   {"count", count},
                   {"links_held", held},
+                  {"epsilon", epsilon ? Json(*epsilon) : Json()},
                   {"joints", json_of_joints(motion)},
                   {"links", std::move(links)}});
   if (!common.quiet)
     out << name_of(all) << ": " << count << " shapes hold " << held << " of " << judged << " links"
+        << (epsilon ? "; of " + std::to_string(within) + " links none is farther than " +
+                          number(*epsilon)
+                    : "")
         << (motion.empty() ? "" : ", but the robots do not move alike") << std::endl;
   return exit_code(all);
 }

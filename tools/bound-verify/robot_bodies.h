@@ -1,5 +1,9 @@
 #pragma once
 
+#include <kaboum/verify/distance.h>
+
+#include <optional>
+
 #include "common/cli.h"
 #include "robot.h"
 
@@ -7,11 +11,20 @@ namespace kaboum::tools {
 
 /// Judges spheres, boxes, cylinders and capsules that a file gives a robot's links: of each link
 /// whether the union of its own holds its triangles, in its frame, and the solid that they bound;
-/// and whether both robots move alike (verify::difference_in_motion). Poses are rounded: what
+/// and whether both robots move alike: verify::difference_in_motion where the files are in one
+/// format; else verify::find_frame_elsewhere, since other formats state frames in other numbers.
+/// Poses are rounded: what
 /// smaller bodies hold is verified, what larger ones do not hold is refuted
 /// (docs/algorithms/capsules-and-boxes.md, "Robots").
 /// @return the exit code
 /// @throws Error on bad input: links that the robot does not have, shapes of other kinds
 int verify_bodies(const VerifyRobotOptions& options, const CommonOptions& common);
+
+/// How far bodies of links may be from these, in metres.
+/// @throws Error{InvalidArgument} on a percentage: links are of several meshes
+std::optional<double> length_of_reach(const std::optional<Length>& epsilon);
+
+/// A distance claim about a link's bodies, as reports have it.
+Json reach_json(const verify::DistanceClaim& claim);
 
 }  // namespace kaboum::tools

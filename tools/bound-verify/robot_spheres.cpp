@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "common/verdict.h"
+#include "robot_bodies.h"
 #include "spheres_page.h"
 
 namespace kaboum::tools {
@@ -40,6 +41,7 @@ Json link_json(const verify::LinkSpheresVerdict& link) {
     json["missed"] = {{"point", point_json(link.missed->point)}};
     if (std::isfinite(link.missed->depth)) json["missed"]["depth"] = link.missed->depth;
   }
+  if (link.distance) json["claims"]["distance"] = reach_json(*link.distance);
   return json;
 }
 
@@ -54,11 +56,13 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
   const robot::SphereFile spheres = robot::read_spheres(o.spheres);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   const verify::SpheresVerdict verdict = verify::decide_spheres(
-      robot, spheres, o.spheres, o.how.shapes, [&](const verify::LinkSpheresVerdict& link) {
+      robot, spheres, o.spheres, o.how.shapes,
+      [&](const verify::LinkSpheresVerdict& link) {
         if (!common.quiet)
           out << "link '" << link.link << "': " << name_of(link.answer) << ": " << link.sentence
               << std::endl;
-      });
+      },
+      length_of_reach(o.how.epsilon));
   for (const std::string& note : verdict.notes)
     log(common.quiet, "note: " + o.spheres + ": " + note);
   if (!o.page.empty()) io::write_file(o.page, page_of_spheres(robot, o.spheres, verdict));
@@ -76,6 +80,7 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
          {"links_held", verdict.held},
          {"share_outside", {{"lower", verdict.share_lower}, {"upper", verdict.share_upper}}},
          {"depth", verdict.depth},
+         {"epsilon", verdict.epsilon ? Json(*verdict.epsilon) : Json()},
          {"links", std::move(links)},
          {"notes", verdict.notes}});
   }

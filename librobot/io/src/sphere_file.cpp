@@ -121,8 +121,17 @@ std::string edited_srdf(const std::string& text, const std::vector<LinkSpheres>&
   return printed(document);
 }
 
+/// What a well-formed SRDF calls its robot.
+std::string robot_name_of(const std::string& text) {
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  const tinyxml2::XMLElement* root = document.RootElement();
+  const char* name = root != nullptr ? root->Attribute("name") : nullptr;
+  return name != nullptr ? name : "";
+}
+
 SphereFile read_urdf(const std::string& file, Robot robot) {
-  SphereFile out{{}, "spheres of a URDF", {}, {}};
+  SphereFile out{{}, "spheres of a URDF", {}, {}, robot.name};
   for (const Link& link : robot.links) {
     if (link.collision.empty()) continue;
     LinkSpheres one{link.name, link.collision.front().line, {}};
@@ -141,7 +150,7 @@ SphereFile read_urdf(const std::string& file, Robot robot) {
 }
 
 SphereFile read_srdf(const std::string& file, const std::string& text) {
-  SphereFile out{{}, "spheres of an SRDF", {}, {}};
+  SphereFile out{{}, "spheres of an SRDF", {}, {}, robot_name_of(text)};
   for (const SphereApproximation& link : parse_sphere_approximations(text, file)) {
     LinkSpheres one{link.link, link.line, {}};
     for (const LinkSphere& sphere : link.spheres) {
@@ -234,31 +243,22 @@ class YamlFile {
   SphereFile read(const std::string& text) {
     std::vector<YAML::Node> documents;
     try {
-      documents.push_back(YAML::Load(text));
+      documents = YAML::LoadAll(text);
     } catch (const YAML::Exception& error) {
       fail(file_, error.mark.line + 1, error.msg + " (is the file cut?)");
     }
+    if (documents.size() > 1)
+      fail(file_, line_of(documents[1]), "a second document; all spheres are to be in one");
+    if (documents.empty() || !documents[0].IsMap()) fail(file_, 0, kForm);
     const YAML::Node root = documents[0];
-    if (!root.IsMap()) fail(file_, 0, kForm);
-    if (const YAML::Node format = root["format"];
+    SphereFile out;
+    if (const YAML::Node format = member(root, "format");
         format && format.IsScalar() && format.Scalar() == "xrdf")
-      return read_xrdf(root);
-    YAML::Node kinematics = root;
-    if (const YAML::Node config = root["robot_cfg"]; config && config.IsMap())
-      if (const YAML::Node inner = config["kinematics"]; inner && inner.IsMap())
-        kinematics.reset(inner);
-    const YAML::Node spheres = kinematics["collision_spheres"];
-    if (!spheres) fail(file_, 0, kForm);
-    if (spheres.IsScalar())
-      fail(file_, line_of(spheres),
-           "the spheres are in another file, '" + spheres.Scalar() + "': name that one");
-    if (!spheres.IsMap()) fail(file_, line_of(spheres), kForm);
-    spheres_ = spheres;
-    read_buffer(kinematics["collision_sphere_buffer"], "collision_sphere_buffer");
-    SphereFile out{{}, "cuRobo YAML", {}, {}};
-    read_links(spheres, out);
-    if (out.links.empty()) fail(file_, line_of(spheres), kForm);
-    if (buffered_) out.notes.emplace_back("collision_sphere_buffer is added to the radii");
+      out = read_xrdf(root);
+    else
+      out = read_curobo(root);
+    if (!text.ends_with('\n'))
+      out.notes.emplace_back("the file does not end with a line break: is it cut?");
     return out;
   }
 
@@ -282,6 +282,74 @@ class YamlFile {
   }
 
  private:
+  /// A member of a mapping, of which YAML's readers take the first one or the last one where there
+  /// are several.
+  [[nodiscard]] YAML::Node member(const YAML::Node& map, const char* key) const {
+    YAML::Node out(YAML::NodeType::Undefined);
+    if (!map.IsMap()) return out;
+    bool found = false;
+    for (const auto& entry : map) {
+      if (!entry.first.IsScalar() || entry.first.Scalar() != key) continue;
+      if (found) fail(file_, line_of(entry.first), std::string("'") + key + "' is there already");
+      found = true;
+      out.reset(entry.second);
+    }
+    return out;
+  }
+
+  SphereFile read_curobo(const YAML::Node& root) {
+    YAML::Node kinematics = root;
+    if (const YAML::Node config = member(root, "robot_cfg"); config && config.IsMap())
+      if (const YAML::Node inner = member(config, "kinematics"); inner && inner.IsMap()) {
+        if (const YAML::Node outer = member(root, "collision_spheres"))
+          fail(file_, line_of(outer), "there are spheres here, and in robot_cfg as well");
+        kinematics.reset(inner);
+      }
+    const YAML::Node spheres = member(kinematics, "collision_spheres");
+    if (!spheres && member(root, "geometry"))
+      fail(file_, 0, "an XRDF says 'format: xrdf' and its format_version");
+    if (!spheres) fail(file_, 0, kForm);
+    if (spheres.IsScalar())
+      fail(file_, line_of(spheres),
+           "the spheres are in another file, '" + spheres.Scalar() + "': name that one");
+    if (!spheres.IsMap()) fail(file_, line_of(spheres), kForm);
+    spheres_ = spheres;
+    read_buffer(member(kinematics, "collision_sphere_buffer"), "collision_sphere_buffer");
+    SphereFile out{{}, "cuRobo YAML", {}, {}, {}};
+    read_links(spheres, out);
+    if (out.links.empty()) fail(file_, line_of(spheres), kForm);
+    require_buffered(out);
+    if (buffered_) out.notes.emplace_back("collision_sphere_buffer is added to the radii");
+    leave_out_unnamed(member(kinematics, "collision_link_names"), out);
+    return out;
+  }
+
+  /// Spheres of links that `collision_link_names` does not name are none to cuRobo.
+  void leave_out_unnamed(const YAML::Node& names, SphereFile& out) const {
+    if (!names || names.IsNull()) return;
+    if (!names.IsSequence())
+      fail(file_, line_of(names), "collision_link_names: a list of links is expected");
+    std::set<std::string> named;
+    for (const YAML::Node& name : names) named.insert(name.Scalar());
+    std::vector<std::string> unnamed;
+    for (LinkSpheres& link : out.links) {
+      if (named.contains(link.link) || link.balls.bodies.empty()) continue;
+      unnamed.push_back(link.link);
+      link.balls.bodies.clear();
+    }
+    if (!unnamed.empty())
+      out.notes.push_back("the spheres of " + names_of(unnamed) +
+                          " are none: collision_link_names does not name them");
+  }
+
+  /// @throws Error{InvalidInput} where a link has a buffer and no spheres
+  void require_buffered(const SphereFile& read) const {
+    for (const auto& [link, line] : buffer_lines_)
+      if (std::ranges::none_of(read.links,
+                               [&](const LinkSpheres& known) { return known.link == link; }))
+        fail(file_, line, "a buffer of link '" + link + "', which has no spheres here");
+  }
+
   /// A sphere with the radius that is stated, without the buffer.
   [[nodiscard]] std::pair<std::string, std::string> stated(const std::string& link,
                                                            const geom::ConvexBody& ball) const {
@@ -387,24 +455,24 @@ class YamlFile {
   /// The group of spheres that `collision` names, with its buffer_distance; without `collision`
   /// the only group that there is.
   SphereFile read_xrdf(const YAML::Node& root) {
-    const YAML::Node version = root["format_version"];
+    const YAML::Node version = member(root, "format_version");
     const double stated = version ? number_of(version, file_, "format_version")
                                   : std::numeric_limits<double>::quiet_NaN();
     if (!(stated >= 1 && stated < 3))
       fail(file_, version ? line_of(version) : 0, "XRDF of format_version 1.0 or 2.0 is read");
-    const YAML::Node groups = root["geometry"];
+    const YAML::Node groups = member(root, "geometry");
     if (!groups || !groups.IsMap() || groups.size() == 0)
       fail(file_, groups ? line_of(groups) : 0, kXrdfForm);
     YAML::Node group = groups.begin()->second;
-    const YAML::Node collision = root["collision"];
+    const YAML::Node collision = member(root, "collision");
     if (collision) {
-      const YAML::Node name = collision.IsMap() ? collision["geometry"] : YAML::Node();
+      const YAML::Node name = member(collision, "geometry");
       if (!collision.IsMap() || !name || !name.IsScalar())
         fail(file_, line_of(collision), "'collision' must name its geometry");
-      const YAML::Node named = groups[name.Scalar()];
+      const YAML::Node named = member(groups, name.Scalar().c_str());
       if (!named) fail(file_, line_of(name), "there is no geometry '" + name.Scalar() + "'");
       group.reset(named);
-      read_buffer(collision["buffer_distance"], "buffer_distance");
+      read_buffer(member(collision, "buffer_distance"), "buffer_distance");
     } else if (groups.size() > 1) {
       fail(file_, line_of(groups), "'collision' must say which geometry is meant");
     }
@@ -413,12 +481,13 @@ class YamlFile {
       if (entry.first.Scalar() != "spheres")
         fail(file_, line_of(entry.first),
              "a geometry of spheres is read, no '" + entry.first.Scalar() + "'");
-    const YAML::Node spheres = group["spheres"];
+    const YAML::Node spheres = member(group, "spheres");
     if (!spheres || !spheres.IsMap()) fail(file_, line_of(group), kXrdfForm);
     spheres_ = spheres;
-    SphereFile out{{}, "XRDF", {}, {}};
+    SphereFile out{{}, "XRDF", {}, {}, {}};
     read_links(spheres, out);
     if (out.links.empty()) fail(file_, line_of(spheres), kXrdfForm);
+    require_buffered(out);
     if (buffered_) out.notes.emplace_back("collision's buffer_distance is added to the radii");
     if (root["modifiers"])
       out.notes.emplace_back(
@@ -428,13 +497,22 @@ class YamlFile {
 
   void read_buffer(const YAML::Node& node, const std::string& name) {
     if (!node || node.IsNull()) return;
-    buffered_ = true;
+    const auto take = [&](const YAML::Node& number) {
+      const double out = number_of(number, file_, name);
+      buffered_ = buffered_ || out != 0;
+      return out;
+    };
     if (!node.IsMap()) {
-      buffer_ = number_of(node, file_, name);
+      buffer_ = take(node);
       return;
     }
-    for (const auto& entry : node)
-      of_link_[entry.first.Scalar()] = number_of(entry.second, file_, name);
+    for (const auto& entry : node) {
+      const std::string link = entry.first.Scalar();
+      const double buffer = take(entry.second);
+      if (!of_link_.emplace(link, buffer).second)
+        fail(file_, line_of(entry.first), "link '" + link + "' has a buffer already");
+      if (buffer != 0) buffer_lines_.emplace_back(link, line_of(entry.first));
+    }
   }
 
   void read_link(const YAML::Node& list, LinkSpheres& link) const {
@@ -443,11 +521,14 @@ class YamlFile {
     const double buffer = buffer_of(link.link);
     for (const YAML::Node& sphere : list) {
       const int line = line_of(sphere);
-      const YAML::Node center = sphere.IsMap() ? sphere["center"] : YAML::Node(),
-                       radius = sphere.IsMap() ? sphere["radius"] : YAML::Node();
+      const YAML::Node center = member(sphere, "center"), radius = member(sphere, "radius");
       if (!sphere.IsMap() || !center || !radius || !center.IsSequence() || center.size() != 3)
         fail(file_, line,
              "link '" + link.link + "': a sphere needs a center of three numbers and a radius");
+      for (const auto& entry : sphere)
+        if (const std::string key = entry.first.Scalar(); key != "center" && key != "radius")
+          fail(file_, line_of(entry.first),
+               "link '" + link.link + "': a sphere has a center and a radius, no '" + key + "'");
       geom::Vec3 at;
       for (std::size_t k = 0; k < 3; ++k)
         at[static_cast<int>(k)] = number_of(center[k], file_, "a center's coordinate");
@@ -461,6 +542,7 @@ class YamlFile {
   YAML::Node spheres_;  ///< by link
   double buffer_ = 0;
   std::map<std::string, double> of_link_;
+  std::vector<std::pair<std::string, int>> buffer_lines_;  ///< of links
   bool buffered_ = false;
 };
 

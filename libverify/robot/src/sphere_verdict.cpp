@@ -6,6 +6,7 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/exact_shapes.h>
+#include <kaboum/verify/link_reach.h>
 #include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
@@ -209,7 +210,18 @@ void judge(const std::vector<Geometry>& round, LinkSpheresVerdict& out) {
     }
   }
   if (out.answer == Answer::Refuted) out.missed = deepest_of(out, missed);
+  out.held = out.answer;
   out.sentence = sentence_of(out);
+}
+
+/// The distance of a link's spheres from its shapes.
+void judge_distance(const std::vector<Geometry>& shapes, const robot::RobotFile& robot,
+                    const std::vector<std::string>& packages, double epsilon,
+                    LinkSpheresVerdict& out) {
+  out.distance =
+      verify_link_reach(out.balls, out.balls, measured_link(shapes, robot, packages), epsilon);
+  out.answer = worse(out.answer, out.distance->answer);
+  out.sentence += "; " + sentence_of_reach(*out.distance, epsilon);
 }
 
 /// Links of which no sphere comes near: most likely another robot's, or of another frame.
@@ -236,7 +248,8 @@ void sum_up(SpheresVerdict& out) {
     out.answer = worse(out.answer, link.answer);
     out.spheres += link.spheres;
     out.bare += link.spheres == 0 ? 1 : 0;
-    out.held += link.answer == Answer::Verified ? 1 : 0;
+    out.held += link.held == Answer::Verified ? 1 : 0;
+    out.within += link.distance && link.distance->answer == Answer::Verified ? 1 : 0;
     area += link.outside.area;
     lower += link.outside.area * link.outside.share_lower;
     upper += link.outside.area * link.outside.share_upper;
@@ -250,6 +263,9 @@ void sum_up(SpheresVerdict& out) {
                  " to " + percent(out.share_upper) +
                  " % of the surface is outside its own link's spheres" +
                  (out.depth > 0 ? ", by " + number_text(out.depth) + " at the most" : "");
+  if (out.epsilon)
+    out.sentence += "; of " + std::to_string(out.within) + " links none is farther than " +
+                    number_text(*out.epsilon);
   if (out.bare > 0)
     out.sentence +=
         "; " + std::to_string(out.bare) + (out.bare == 1 ? " link has none" : " links have none");
@@ -265,9 +281,11 @@ void require_spheres_of(const robot::RobotFile& robot, const robot::SphereFile& 
 
 SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::SphereFile& spheres,
                               const std::string& file, const robot::ShapeChoice& shapes,
-                              const std::function<void(const LinkSpheresVerdict&)>& judged) {
+                              const std::function<void(const LinkSpheresVerdict&)>& judged,
+                              std::optional<double> epsilon) {
   require_spheres_of(robot, spheres, file);
   SpheresVerdict out;
+  out.epsilon = epsilon;
   for (std::uint32_t index = 0; index < robot.robot.links.size(); ++index) {
     const robot::Link& link = robot.robot.links[index];
     if (!shapes.has(link)) continue;
@@ -283,6 +301,7 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     for (const robot::LinkSpheres& given : spheres.links)
       if (given.link == link.name) one.balls = given.balls;
     judge(round, one);
+    if (epsilon) judge_distance(shapes.shapes_of(link), robot, shapes.packages, *epsilon, one);
     out.links.push_back(std::move(one));
     if (judged) judged(out.links.back());
   }
@@ -291,6 +310,9 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
                 robot.path.string() + ": no link has a shape" +
                     (shapes.visual ? std::string() : "; try «geometry=visual»"));
   out.notes = spheres.notes;
+  if (!spheres.robot_name.empty() && spheres.robot_name != robot.robot.name)
+    out.notes.push_back("the file says that it is of robot '" + spheres.robot_name +
+                        "'; this one is '" + robot.robot.name + "'");
   note_far_spheres(out);
   sum_up(out);
   return out;

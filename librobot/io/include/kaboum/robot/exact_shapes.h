@@ -8,6 +8,10 @@
 
 namespace kaboum::robot {
 
+/// Triangles of a mesh's file where a shape of a link has them, turned where its scale mirrors
+/// them.
+geom::Mesh placed_mesh(const geom::Mesh& file, const Geometry& shape);
+
 /// Shapes of a link as one mesh in its frame: the triangles of mesh files as they are, turned where
 /// the scale mirrors them; boxes; of cylinders and spheres the polytopes that enclose them
 /// (bounding_points). Nothing of points.

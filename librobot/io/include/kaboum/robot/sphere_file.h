@@ -22,14 +22,17 @@ struct SphereFile {
   std::string format;              ///< in words
   std::vector<std::string> notes;  ///< what a user should know
   std::optional<Robot> robot;      ///< whose shapes they are, where the file has a robot
+  std::string robot_name = {};     ///< what it calls its robot; empty: nothing is said
 };
 
 /// Reads spheres of cuRobo's YAML (`collision_spheres`, alone or under `robot_cfg: kinematics:`,
-/// with its `collision_sphere_buffer` added to the radii); of XRDF 1.0 and 2.0 (`geometry`, the one
+/// with its `collision_sphere_buffer` added to the radii; of links that `collision_link_names`
+/// names, where it is there: others have none); of XRDF 1.0 and 2.0 (`geometry`, the one
 /// that `collision` names, with its `buffer_distance`); of an SRDF's <link_sphere_approximation>;
 /// or those of a URDF's <collision> elements, as foam and VAMP write them.
-/// @throws Error{InvalidInput} naming file and line: what is not well-formed, radii that are not
-///   above 0, numbers that are not finite, shapes that are no spheres; Error{NotBuilt} without
+/// @throws Error{InvalidInput} naming file and line: what is not well-formed or given twice, radii
+///   that are not above 0, numbers that are not finite, shapes that are no spheres, buffers of
+///   links without spheres; Error{NotBuilt} without
 ///   yaml-cpp
 SphereFile read_spheres(const std::string& file);
 

@@ -3,6 +3,7 @@
 #include <kaboum/robot/link_meshes.h>
 #include <kaboum/robot/sphere_file.h>
 #include <kaboum/verify/ball_cover.h>
+#include <kaboum/verify/distance.h>
 
 #include <functional>
 #include <optional>
@@ -27,9 +28,11 @@ struct LinkSpheresVerdict {
   Inclusion inclusion;   ///< of the triangles, placed in the link's frame
   OutsideBalls outside;  ///< of these
   std::string open;      ///< why it is not known that shapes without triangles are held
-  std::optional<MissedPoint> missed;  ///< the deepest that is known, where refuted
-  std::string sentence;               ///< in words
-  geom::Mesh mesh;                    ///< the triangles
+  std::optional<MissedPoint> missed;           ///< the deepest that is known, where refuted
+  Answer held = Answer::Undefined;             ///< `answer` without the distance
+  std::optional<DistanceClaim> distance = {};  ///< of the spheres from the shapes, where asked for
+  std::string sentence;                        ///< in words
+  geom::Mesh mesh;                             ///< the triangles
   geom::ConvexSet balls;
 };
 
@@ -38,6 +41,8 @@ struct SpheresVerdict {
   Answer answer = Answer::Verified;
   std::vector<LinkSpheresVerdict> links;    ///< that have a shape, in the robot's order
   std::size_t spheres = 0, held = 0;        ///< held: number of links
+  std::optional<double> epsilon = {};       ///< that was asked for [length]
+  std::size_t within = 0;                   ///< number of links whose spheres are within it
   std::size_t bare = 0;                     ///< links without spheres
   double share_lower = 0, share_upper = 0;  ///< of the area of all links, outside their own spheres
   double depth = 0;                         ///< the largest that is known and finite [length]
@@ -54,10 +59,13 @@ void require_spheres_of(const robot::RobotFile& robot, const robot::SphereFile& 
 /// Decides of each link of a robot whether its own spheres hold the triangles of its shapes, placed
 /// in the link's frame in rounded arithmetic, and the solid that they bound as oriented. Links
 /// without spheres have all outside. docs/algorithms/sphere-covers.md.
-/// @param judged  called with each verdict as soon as it is there; may be empty
+/// @param judged   called with each verdict as soon as it is there; may be empty
+/// @param epsilon  decides as well that no point of a sphere is farther than this from its link's
+///   shapes (measured_link) [length]
 /// @throws as require_spheres_of; Error{InvalidInput} where there are no shapes; as reading meshes
 SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::SphereFile& spheres,
                               const std::string& file, const robot::ShapeChoice& shapes,
-                              const std::function<void(const LinkSpheresVerdict&)>& judged = {});
+                              const std::function<void(const LinkSpheresVerdict&)>& judged = {},
+                              std::optional<double> epsilon = {});
 
 }  // namespace kaboum::verify

@@ -1,0 +1,121 @@
+// How far bodies of a link reach beyond its shapes.
+#include <kaboum/base/number_text.h>
+#include <kaboum/geom/body_polytopes.h>
+#include <kaboum/geom/convex_hull.h>
+#include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/exact_shapes.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/verify/cover.h>
+#include <kaboum/verify/link_reach.h>
+#include <kaboum/verify/subject.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace kaboum::verify {
+namespace {
+
+using geom::Vec3;
+using robot::Geometry;
+
+constexpr int kLevel = 3;  ///< of the sphere's points: 0.3 % of a radius
+constexpr int kSides = 64;
+constexpr double kInwards = 1 - 1e-12;
+
+void append(geom::Mesh& all, const geom::Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(all.vertices.size());
+  all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (const geom::Triangle& t : mesh.triangles)
+    all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+/// Points of a round shape whose hull is nearly all of it.
+std::vector<Vec3> points_within(const Geometry& g) {
+  std::vector<Vec3> out;
+  if (g.shape == Geometry::Shape::Cylinder) {
+    for (int i = 0; i < kSides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kSides;
+      for (const double end : {-0.5, 0.5})
+        out.emplace_back(g.size.x() * std::cos(angle), g.size.x() * std::sin(angle),
+                         end * g.size.y());
+    }
+  } else {
+    const bool ellipsoid = g.shape == Geometry::Shape::Ellipsoid;
+    const Vec3 half = ellipsoid ? g.size : Vec3(Vec3::Constant(g.size.x()));
+    const double along = g.shape == Geometry::Shape::Capsule ? 0.5 * g.size.y() : 0;
+    for (const Vec3& p : geom::sphere_points(kLevel).points)
+      for (const double end : {-along, along})
+        out.emplace_back(p.cwiseProduct(half) + Vec3(0, 0, end));
+  }
+  for (Vec3& p : out) p = g.origin * (kInwards * p);
+  return out;
+}
+
+}  // namespace
+
+MeasuredLink measured_link(const std::vector<Geometry>& shapes, const robot::RobotFile& robot,
+                           const std::vector<std::string>& packages) {
+  MeasuredLink out;
+  const auto take = [&](const geom::Mesh& inside, const geom::Mesh& round) {
+    append(out.inside, inside);
+    append(out.round, round);
+  };
+  for (const Geometry& g : shapes) {
+    if (robot::is_point(g)) continue;
+    if (g.shape == Geometry::Shape::Mesh) {
+      const io::ReadResult read = io::read_mesh(robot::resolve_mesh(g.mesh, robot.path, packages));
+      const Subject subject =
+          prepared_subject(read.mesh, {.holes = geom::Holes::Fill,
+                                       .quads = read.bent_quads,
+                                       .diagonal = geom::PrepareOptions::Diagonal::Outward});
+      const geom::Mesh placed = robot::placed_mesh(measured_mesh(subject, read.mesh).mesh, g);
+      take(placed, placed);
+      continue;
+    }
+    const geom::Mesh round = *geom::convex_hull(robot::bounding_points(g));
+    if (g.shape == Geometry::Shape::Box) {
+      take(round, round);
+    } else if (const auto inside = geom::convex_hull(points_within(g))) {
+      take(*inside, round);
+    } else {  // flat: nearly all of it
+      append(out.round, round);
+    }
+  }
+  return out;
+}
+
+DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
+                                const MeasuredLink& link, double epsilon) {
+  DistanceClaim out;
+  if (round.bodies.empty()) {
+    out.answer = Answer::Verified;
+    return out;
+  }
+  const auto of = [&](const geom::ConvexSet& set, const geom::Mesh& shapes) {
+    DistanceClaim claim;
+    claim.answer = Answer::Undecided;
+    claim.reason = "the link's shapes have no area";
+    return shapes.triangles.empty() ? claim : verify_excess(set, shapes, epsilon, true);
+  };
+  out = of(round, link.inside);
+  if (out.answer == Answer::Verified || inside.bodies.empty()) return out;
+  DistanceClaim necessary = of(inside, link.round);
+  if (necessary.answer == Answer::Refuted) return necessary;
+  out.answer = Answer::Undecided;
+  if (out.reason.empty())
+    out.reason = "bodies a little larger are farther away, and a little smaller ones are not";
+  return out;
+}
+
+std::string sentence_of_reach(const DistanceClaim& claim, double epsilon) {
+  const std::string bound = number_text(epsilon);
+  if (claim.answer == Answer::Verified)
+    return "no point of them is farther than " + bound + " from it";
+  if (claim.answer == Answer::Refuted)
+    return "they reach " + number_down(claim.largest) + ", farther than " + bound + ", at (" +
+           number_text(claim.at.x()) + ", " + number_text(claim.at.y()) + ", " +
+           number_text(claim.at.z()) + ")";
+  return "whether they reach farther than " + bound + " is not decided: " + claim.reason;
+}
+
+}  // namespace kaboum::verify
