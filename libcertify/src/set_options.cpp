@@ -61,8 +61,9 @@ void add_limits(std::vector<Option<R>>& out) {
       {.name = "bodies",
        .text = "What the bodies are, whose union holds the solid and every triangle: polytopes; "
                "spheres, as planners with spheres take them (a robot's are written as cuRobo YAML, "
-               "XRDF, SRDF or URDF); capsules; boxes; mixed: of spheres, capsules and boxes "
-               "whichever takes least to be queried"},
+               "XRDF or SRDF); capsules; boxes; mixed: of spheres, capsules and boxes whichever "
+               "takes least to be queried. All but polytopes are written as shapes of a robot's "
+               "URDF, MJCF or SDF, too"},
       [](auto& r) -> auto& { return r.request.body_kind; }, kBodyKinds));
   out.push_back(choice<R>(
       {.name = "direction",

@@ -16,6 +16,11 @@ namespace {
 
 using tinyxml2::XMLElement;
 
+/// What a geom says of its size and place.
+constexpr std::array kPlace{"type",    "size",  "pos",      "quat",        "axisangle", "xyaxes",
+                            "zaxis",   "euler", "fromto",   "mesh",        "hfield",    "fitscale",
+                            "density", "mass",  "material", "shellinertia"};
+
 /// What a geom says of contacts.
 constexpr std::array kContact{"contype", "conaffinity", "condim", "priority", "friction",
                               "solmix",  "solref",      "solimp", "margin",   "gap"};
@@ -41,12 +46,17 @@ class Editor {
     move_assets();
     for (std::size_t l = 0; l < edit_.links.size() && l < model_.robot.links.size(); ++l)
       if (!edit_.links[l].empty()) edit_link(l);
+    for (const auto& [l, shapes] : edit_.primitives) replace_link(l, shapes);
     for (const auto& [old, fresh] : replaced_) replace_pairs(old, fresh);
+    if (!edit_.primitives.empty()) drop_doubled_pairs();
     for (XMLElement* e : removed_) document_.DeleteNode(e);
     tinyxml2::XMLPrinter printer;
     document_.Print(&printer);
     return printer.CStr();
   }
+
+  /// As it was read.
+  [[nodiscard]] const Robot& robot() const { return model_.robot; }
 
  private:
   void collect_names() {
@@ -108,6 +118,46 @@ class Editor {
     if (!edit_.visual) return;
     for (const XMLElement* old : model_.collision[l])
       if (gone_.insert(old).second) take_out(l, *old, drawn_besides, fresh);
+  }
+
+  /// Primitives for all shapes of a link, in its body.
+  void replace_link(std::size_t l, const std::vector<Primitive>& shapes) {
+    const auto& originals = (edit_.visual ? model_.visual : model_.collision).at(l);
+    const XMLElement* body = l == 0 ? root_.FirstChildElement("worldbody") : model_.bodies[l];
+    if (originals.empty() || body == nullptr) return;
+    if (!filled_.insert(body).second) return;  // replicated: the same element
+    const bool drawn_besides = model_.visual[l] != model_.collision[l];
+    const char* own = body->Attribute("name");
+    const std::string name = l == 0 ? "world" : own != nullptr ? own : model_.robot.links[l].name;
+    std::vector<std::string> fresh;
+    for (const auto& [g, rpy] : shapes) {
+      XMLElement* e = originals.front()->ShallowClone(&document_)->ToElement();
+      for (const char* key : kPlace) e->DeleteAttribute(key);
+      fresh.push_back(geoms_.give(name + "_" + std::to_string(fresh.size())));
+      e->SetAttribute("name", fresh.back().c_str());
+      state_primitive(*e, g);
+      if (edit_.visual) let_collide(l, *e);
+      if (model_.weighed_by_geoms[l]) e->SetAttribute("mass", "0");
+      mine(body).InsertEndChild(e);
+    }
+    std::set<const XMLElement*> old(originals.begin(), originals.end());
+    if (edit_.visual) old = {model_.collision[l].begin(), model_.collision[l].end()};
+    for (const XMLElement* e : old) take_out(l, *e, drawn_besides, fresh);
+  }
+
+  static void state_primitive(XMLElement& e, const Geometry& g) {
+    using Shape = Geometry::Shape;
+    e.SetAttribute("type", g.shape == Shape::Box      ? "box"
+                           : g.shape == Shape::Sphere ? "sphere"
+                                                      : "capsule");
+    e.SetAttribute("size", g.shape == Shape::Box ? digits((g.size / 2).eval()).c_str()
+                           : g.shape == Shape::Sphere
+                               ? digits({g.size.x()}).c_str()
+                               : digits({g.size.x(), g.size.y() / 2}).c_str());
+    e.SetAttribute("pos", digits(g.origin.translation).c_str());
+    if (g.shape == Shape::Sphere) return;
+    const auto [w, x, y, z] = quaternion(g.origin.linear);
+    e.SetAttribute("quat", digits({w, x, y, z}).c_str());
   }
 
   /// The geoms that stand for a shape, before it. @return their names
@@ -216,6 +266,21 @@ class Editor {
       }
   }
 
+  /// Pairs of several old geoms that the same new ones stand for.
+  void drop_doubled_pairs() {
+    std::set<std::pair<std::string, std::string>> seen;
+    for (XMLElement* contact = root_.FirstChildElement("contact"); contact != nullptr;
+         contact = contact->NextSiblingElement("contact"))
+      for (XMLElement* pair = contact->FirstChildElement("pair"); pair != nullptr;) {
+        XMLElement* next = pair->NextSiblingElement("pair");
+        const char *a = pair->Attribute("geom1"), *b = pair->Attribute("geom2");
+        if (a != nullptr && b != nullptr && pair->Attribute("name") == nullptr &&
+            !seen.insert(std::minmax(std::string(a), std::string(b))).second)
+          contact->DeleteChild(pair);
+        pair = next;
+      }
+  }
+
   tinyxml2::XMLDocument& document_;
   XMLElement& root_;
   const ShapeEdit& edit_;
@@ -224,7 +289,7 @@ class Editor {
   std::set<std::string> mentioned_;  // by other elements than geoms and pairs
   std::map<std::pair<std::string, const XMLElement*>, std::string> new_meshes_;  // file, mesh
   std::map<std::string, std::vector<std::string>> replaced_;  // geoms by the name of the old one
-  std::set<const XMLElement*> done_, gone_;
+  std::set<const XMLElement*> done_, gone_, filled_;
   std::vector<XMLElement*> removed_;
 };
 
@@ -234,7 +299,12 @@ std::string mjcf_with_shapes(std::string_view text, const std::string& name,
                              const ShapeEdit& edit) {
   tinyxml2::XMLDocument document;
   parse_xml(document, text, name);
-  return Editor(document, name, edit).edit();
+  if (edit.primitives.empty()) return Editor(document, name, edit).edit();
+  Editor editor(document, name, edit);
+  std::string out = editor.edit();
+  // Classes may state what a geom does not.
+  require_primitives(parse_mjcf(out, name).robot, editor.robot(), edit.primitives, name);
+  return out;
 }
 
 }  // namespace kaboum::robot

@@ -2,8 +2,11 @@
 
 #include "model_words.h"
 
+#include <kaboum/base/error.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -35,6 +38,57 @@ std::array<double, 4> quaternion(const Mat3& rotation) {
 
 bool is_identity(const Transform& pose) {
   return pose.translation.isZero(0) && pose.linear.isIdentity(0);
+}
+
+std::array<Geometry, 3> parts_of_capsule(const Geometry& capsule) {
+  std::array<Geometry, 3> out{capsule, capsule, capsule};
+  out[0].shape = Geometry::Shape::Cylinder;
+  for (const std::size_t i : {1U, 2U}) {
+    Geometry& ball = out[i];
+    ball.shape = Geometry::Shape::Sphere;
+    ball.origin.translation +=
+        (i == 1 ? -0.5 : 0.5) * capsule.size.y() * capsule.origin.linear.col(2);
+    ball.origin.linear = Mat3::Identity();
+    ball.size = Vec3::Constant(capsule.size.x());
+  }
+  return out;
+}
+
+std::vector<Primitive> without_capsules(const std::vector<Primitive>& primitives) {
+  std::vector<Primitive> out;
+  for (const Primitive& one : primitives) {
+    if (one.geometry.shape != Geometry::Shape::Capsule) {
+      out.push_back(one);
+      continue;
+    }
+    for (const Geometry& part : parts_of_capsule(one.geometry))
+      out.push_back({part, part.shape == Geometry::Shape::Sphere ? Vec3(Vec3::Zero()) : one.rpy});
+  }
+  return out;
+}
+
+void require_primitives(const Robot& written, const Robot& original,
+                        const std::map<std::size_t, std::vector<Primitive>>& primitives,
+                        const std::string& name) {
+  constexpr double kRounding = 1e-12;  // of quaternions and poses
+  const auto is_same = [](const Geometry& a, const Primitive& wanted) {
+    const Geometry& b = wanted.geometry;
+    using Shape = Geometry::Shape;
+    const int sizes = b.shape == Shape::Sphere ? 1 : b.shape == Shape::Box ? 3 : 2;
+    return a.shape == b.shape && a.size.head(sizes) == b.size.head(sizes) &&
+           (a.origin.translation - b.origin.translation).norm() <=
+               kRounding * (b.origin.translation.norm() + b.size.norm()) &&
+           (b.shape == Shape::Sphere || (a.origin.linear - b.origin.linear).norm() <= kRounding);
+  };
+  for (const auto& [index, wanted] : primitives) {
+    const std::string& link = original.links.at(index).name;
+    const std::optional<std::uint32_t> found = written.find_link(link);
+    if (!found || !std::ranges::equal(written.links[*found].collision, wanted, is_same))
+      throw Error(ErrorCode::InvalidInput,
+                  name + ": link '" + link +
+                      "': its new shapes would not be where they are to be: a class or a frame of "
+                      "the file says otherwise");
+  }
 }
 
 std::optional<Inertial> sound_inertial(const std::string& link, const Inertial& inertial,

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <kaboum/robot/model_text.h>
+#include <kaboum/robot/primitive.h>
 
 #include <array>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,6 +29,13 @@ bool is_identity(const Transform& pose);
 /// Sizes of a box, cylinder or sphere that hold it and none of which is 0: what is flat is given
 /// 0.5 % of its largest size. @pre it is no point.
 Vec3 solid_size(const Geometry& geometry);
+
+/// @param written     the robot as its edited text is read
+/// @param original    whose links `primitives` counts
+/// @throws Error{InvalidInput} naming a link whose collision shapes are others than its primitives
+void require_primitives(const Robot& written, const Robot& original,
+                        const std::map<std::size_t, std::vector<Primitive>>& primitives,
+                        const std::string& name);
 
 /// The inertial of a link as simulators take it: that of a body. Where one main moment is larger
 /// than the sum of the others, all grow by what is missing.

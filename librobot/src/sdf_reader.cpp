@@ -57,6 +57,7 @@ class Reader {
   }
 
   SdfRobot& result() { return out_; }
+  [[nodiscard]] int minor() const { return minor_; }
   [[nodiscard]] XMLElement& link_element(std::size_t l) const { return *link_elements_[l]; }
   [[nodiscard]] bool has_element(std::size_t l) const { return link_elements_[l] != nullptr; }
   /// Of a link's shapes.
@@ -675,7 +676,71 @@ LinkElements sdf_links(tinyxml2::XMLDocument& document, const std::string& name)
   return out;
 }
 
+namespace {
+
+/// Collision elements of a link that stand for its shapes, and take their place.
+class NewCollisions {
+ public:
+  NewCollisions(tinyxml2::XMLDocument& document, XMLElement& link)
+      : document_(document), link_(link) {}
+
+  /// One with what an element says besides, and its place and shape where `placed`.
+  /// @param surface  with what it says of contacts
+  XMLElement& add(const XMLElement& original, bool placed, bool surface) {
+    XMLElement* e = document_.NewElement("collision");
+    e->SetAttribute("name", (std::string(link_.Attribute("name")) + "_collision_" +
+                             std::to_string(fresh_.size()))
+                                .c_str());
+    for (const auto* child = original.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      const std::string_view tag = child->Name();
+      const bool place = tag == "pose" || tag == "geometry";
+      if (place ? placed : surface && tag != "plugin")
+        e->InsertEndChild(child->DeepClone(&document_));
+    }
+    fresh_.push_back(e);
+    return *e;
+  }
+
+  void add(const XMLElement& original, const Primitive& one, bool surface) {
+    XMLElement& e = add(original, false, surface);
+    const Geometry& g = one.geometry;
+    const Vec3& t = g.origin.translation;
+    XMLElement* pose = document_.NewElement("pose");
+    pose->SetText(digits({t.x(), t.y(), t.z(), one.rpy.x(), one.rpy.y(), one.rpy.z()}).c_str());
+    XMLElement* geometry = document_.NewElement("geometry");
+    e.InsertFirstChild(geometry);
+    e.InsertFirstChild(pose);
+    const auto shape = [&](const char* kind) -> XMLElement& {
+      return *geometry->InsertNewChildElement(kind);
+    };
+    const auto state = [](XMLElement& in, const char* tag, const std::string& text) {
+      in.InsertNewChildElement(tag)->SetText(text.c_str());
+    };
+    using Shape = Geometry::Shape;
+    if (g.shape == Shape::Box) return state(shape("box"), "size", digits(g.size));
+    XMLElement& round = shape(g.shape == Shape::Sphere     ? "sphere"
+                              : g.shape == Shape::Cylinder ? "cylinder"
+                                                           : "capsule");
+    state(round, "radius", digits(g.size.x()));
+    if (g.shape != Shape::Sphere) state(round, "length", digits(g.size.y()));
+  }
+
+  void put(const Elements& old) {
+    for (XMLElement* e : old) link_.DeleteChild(e);
+    for (XMLElement* e : fresh_) link_.InsertEndChild(e);
+  }
+
+ private:
+  tinyxml2::XMLDocument& document_;
+  XMLElement& link_;
+  std::vector<XMLElement*> fresh_;
+};
+
+}  // namespace
+
 std::string sdf_with_shapes(std::string_view text, const std::string& name, const ShapeEdit& edit) {
+  constexpr int kFirstWithCapsules = 8;
   tinyxml2::XMLDocument document;
   parse_xml(document, text, name);
   Reader reader(*document.RootElement(), name);
@@ -683,26 +748,15 @@ std::string sdf_with_shapes(std::string_view text, const std::string& name, cons
   move_files(*document.RootElement(), edit.moved);
   for (std::size_t l = 0; l < edit.links.size(); ++l) {
     if (edit.links[l].empty() || !reader.has_element(l)) continue;
-    XMLElement& link = reader.link_element(l);
     const Elements& originals = reader.shapes(l, edit.visual);
-    std::size_t count = 0;
-    std::vector<XMLElement*> fresh;
+    NewCollisions fresh(document, reader.link_element(l));
     const auto add = [&](const XMLElement& original, const std::string* file) {
-      XMLElement* e = document.NewElement("collision");
-      e->SetAttribute(
-          "name",
-          (std::string(link.Attribute("name")) + "_collision_" + std::to_string(count++)).c_str());
-      for (const auto* child = original.FirstChildElement(); child != nullptr;
-           child = child->NextSiblingElement())
-        if (const std::string_view tag = child->Name();
-            tag == "pose" || tag == "geometry" || (!edit.visual && tag != "plugin"))
-          e->InsertEndChild(child->DeepClone(&document));
+      XMLElement& e = fresh.add(original, true, !edit.visual);
       if (file != nullptr)
-        e->FirstChildElement("geometry")
+        e.FirstChildElement("geometry")
             ->FirstChildElement("mesh")
             ->FirstChildElement("uri")
             ->SetText(file->c_str());
-      fresh.push_back(e);
     };
     for (std::size_t i = 0; i < edit.links[l].size() && i < originals.size(); ++i) {
       if (!edit.links[l][i])
@@ -710,11 +764,22 @@ std::string sdf_with_shapes(std::string_view text, const std::string& name, cons
       else
         for (const std::string& file : *edit.links[l][i]) add(*originals[i], &file);
     }
-    for (XMLElement* old : reader.shapes(l, false)) link.DeleteChild(old);
-    for (XMLElement* e : fresh) link.InsertEndChild(e);
+    fresh.put(reader.shapes(l, false));
+  }
+  std::map<std::size_t, std::vector<Primitive>> primitives = edit.primitives;
+  for (auto& [l, shapes] : primitives) {
+    const Elements& originals = reader.shapes(l, edit.visual);
+    if (originals.empty() || !reader.has_element(l)) continue;
+    if (reader.minor() < kFirstWithCapsules) shapes = without_capsules(shapes);
+    NewCollisions fresh(document, reader.link_element(l));
+    for (const Primitive& one : shapes) fresh.add(*originals.front(), one, !edit.visual);
+    fresh.put(reader.shapes(l, false));
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
+  if (!primitives.empty())
+    require_primitives(parse_sdf(printer.CStr(), name).robot, reader.result().robot, primitives,
+                       name);
   return printer.CStr();
 }
 

@@ -49,8 +49,22 @@ RealTurn turn_of(const Real3& rpy) {
   return about(2, rpy[2]) * about(1, rpy[1]) * about(0, rpy[0]);
 }
 
-/// What the URDF of some bodies has.
-std::vector<Written> written(const std::vector<robot::LinkBody>& bodies) {
+/// The rotation of a quaternion w, x, y, z of any length.
+RealTurn turn_of_quaternion(const std::string& text) {
+  std::istringstream in(text);
+  double w = 0, x = 0, y = 0, z = 0;
+  in >> w >> x >> y >> z;
+  const Real n = sqrt(Real(w) * w + Real(x) * x + Real(y) * y + Real(z) * z);
+  const Real a = w / n, b = x / n, c = y / n, d = z / n;
+  RealTurn out;
+  out << 1 - 2 * (c * c + d * d), 2 * (b * c - a * d), 2 * (b * d + a * c), 2 * (b * c + a * d),
+      1 - 2 * (b * b + d * d), 2 * (c * d - a * b), 2 * (b * d - a * c), 2 * (c * d + a * b),
+      1 - 2 * (b * b + c * c);
+  return out;
+}
+
+/// The file of some bodies.
+std::string text_with(ShapeFormat format, const std::vector<robot::LinkBody>& bodies) {
   static const robot::RobotFile robot = [] {
     robot::RobotFile out;
     out.path = "r.urdf";
@@ -61,8 +75,36 @@ std::vector<Written> written(const std::vector<robot::LinkBody>& bodies) {
   certify::RobotRequest request;
   request.set.epsilon = Length{0.5};
   static const certify::CertifiedBodies certified = certify::certify_bodies(robot, request);
-  const std::string text =
-      urdf_of_shapes(robot, certified, simple_shapes(bodies), "", "bodies.urdf");
+  return text_of_shapes(format, robot, {}, certified, simple_shapes(bodies), "", "bodies.urdf")
+      .text;
+}
+
+/// What the MJCF of some bodies has.
+std::vector<Written> written_as_mjcf(const std::vector<robot::LinkBody>& bodies) {
+  const std::string text = text_with(ShapeFormat::Mjcf, bodies);
+  static const std::regex geom("<geom ([^>]*)/>");
+  const auto attribute = [](const std::string& of, const std::string& name) {
+    std::smatch found;
+    return std::regex_search(of, found, std::regex("\\b" + name + "=\"([^\"]*)\"")) ? found[1].str()
+                                                                                    : std::string();
+  };
+  std::vector<Written> out;
+  for (std::sregex_iterator i(text.begin(), text.end(), geom), end; i != end; ++i) {
+    const std::string of = (*i)[1];
+    const std::string quat = attribute(of, "quat"), pos = attribute(of, "pos");
+    Written one{attribute(of, "type"), pos.empty() ? Real3(Real3::Zero()) : three(pos),
+                quat.empty() ? RealTurn(RealTurn::Identity()) : turn_of_quaternion(quat),
+                three(attribute(of, "size") + " 0 0")};
+    if (one.kind == "box") one.size *= Real(2);
+    if (one.kind == "capsule") one.size[1] *= Real(2);
+    out.push_back(one);
+  }
+  return out;
+}
+
+/// What the URDF of some bodies has.
+std::vector<Written> written(const std::vector<robot::LinkBody>& bodies) {
+  const std::string text = text_with(ShapeFormat::Urdf, bodies);
   static const std::regex shape(
       "<origin xyz=\"([^\"]*)\" rpy=\"([^\"]*)\"/>\\s*<geometry>\\s*<(\\w+) "
       "(?:size|radius)=\"([^\"]*)\"(?: length=\"([^\"]*)\")?");
@@ -117,6 +159,59 @@ TEST(SimpleOutput, CapsulesHoldTheirBodiesHoweverLittleTheyAreTilted) {
           EXPECT_GE(left, 0) << tilt << " " << size << " " << axis;
           EXPECT_LE(left, 1e-12 * size) << tilt << " " << size << " " << axis;
         }
+}
+
+/// How far the ends of a capsule are from a segment, less than the radius allows.
+Real room_in(const Written& capsule, const robot::LinkBody& body) {
+  const Real half = capsule.kind == "capsule" ? Real(capsule.size[1] / 2) : Real(0);
+  Real farthest = 0;
+  for (const geom::Vec3& p : body.points) {
+    const Real3 q = capsule.turn.transpose() * (p.cast<Real>() - capsule.place);
+    const Real beyond = std::max(Real(abs(q[2]) - half), Real(0));
+    farthest = std::max(farthest, Real(sqrt(q[0] * q[0] + q[1] * q[1] + beyond * beyond)));
+  }
+  return capsule.size[0] - Real(body.margin) - farthest;
+}
+
+TEST(SimpleOutput, CapsulesAndBoxesOfMjcfHoldTheirBodies) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const double tilt : {0.0, 1e-15, 1e-12, 1e-8, 1e-6, 1e-3, 0.1, 1.0})
+    for (const double size : {1e-3, 1.0, 1e3})
+      for (int turn = 0; turn < 6; ++turn) {
+        const geom::Vec3 middle = 3 * size * geom::Vec3(unit(random), unit(random), unit(random));
+        const Eigen::Matrix3d about =
+            robot::rotation_about(geom::Vec3::Unit(turn % 3), std::acos(0.0) * turn) *
+            robot::rotation_about(geom::Vec3(unit(random), unit(random), unit(random)).normalized(),
+                                  tilt);
+        robot::LinkBody capsule{"c", 0, {middle, middle + size * about.col(turn % 3)}, 0.05 * size};
+        robot::LinkBody box{"b", 0, {}, 0.01 * size};
+        for (int i = 0; i < 8; ++i)
+          box.points.emplace_back(middle + size * about *
+                                               geom::Vec3((i & 1) != 0 ? 0.5 : -0.5,
+                                                          (i & 2) != 0 ? 0.1 : -0.1,
+                                                          (i & 4) != 0 ? 0.3 : -0.3));
+        const std::vector<Written> shapes = written_as_mjcf({capsule, box});
+        ASSERT_EQ(shapes.size(), 2U);
+        ASSERT_EQ(shapes[0].kind, "capsule");
+        ASSERT_EQ(shapes[1].kind, "box");
+        EXPECT_GE(room_in(shapes[0], capsule), 0) << tilt << " " << size << " " << turn;
+        EXPECT_LE(room_in(shapes[0], capsule), 1e-11 * size) << tilt << " " << size << " " << turn;
+        for (const geom::Vec3& p : box.points) {
+          const Real3 q = shapes[1].turn.transpose() * (p.cast<Real>() - shapes[1].place);
+          for (int k = 0; k < 3; ++k)
+            EXPECT_LE(abs(q[k]) + Real(box.margin), shapes[1].size[k] / 2) << tilt << " " << turn;
+        }
+      }
+  // Of next to no length: a sphere.
+  for (const double length : {0.0, 1e-300, 1e-12, 1e-6}) {
+    const geom::Vec3 at(3, -4, 5);
+    const robot::LinkBody body{"c", 0, {at, at + length * geom::Vec3(1, 2, -2)}, 0.25};
+    const std::vector<Written> shapes = written_as_mjcf({body});
+    ASSERT_EQ(shapes.size(), 1U);
+    EXPECT_EQ(shapes[0].kind, length > 1e-9 ? "capsule" : "sphere");
+    EXPECT_GE(room_in(shapes[0], body), 0) << length;
+  }
 }
 
 TEST(SimpleOutput, ShortCapsulesFarAwayAreHeld) {

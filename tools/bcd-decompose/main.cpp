@@ -99,6 +99,7 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
   std::vector<std::string> inputs{o.input};
   if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
   if (!o.repair.empty()) inputs.push_back(o.repair);
+  if (!o.pairs.empty()) inputs.push_back(o.pairs);
   if (!o.epsilon_map.empty()) inputs.push_back(o.epsilon_map);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},

@@ -26,7 +26,8 @@ void add_input(CLI::App& app, DecomposeOptions& o) {
          "Where the bodies go: a .glb container, an .obj with one object per body, or a "
          "folder with one STL per body (- for stdout); for robots a folder, which gets a "
          "URDF, the bodies that it refers to, and a container per link; with --bodies spheres a "
-         ".yaml (cuRobo), .xrdf, .srdf or .urdf file")
+         ".yaml (cuRobo), .xrdf, .srdf or .urdf file; with spheres, capsules, boxes or mixed "
+         "bodies the robot with them as .urdf, .xml (MJCF) or .sdf")
       ->required()
       ->type_name("PATH");
 }
@@ -67,12 +68,22 @@ void add_repair(CLI::App& app, DecomposeOptions& o) {
       ->type_name("FILE");
 }
 
+void add_pairs(CLI::App& app, DecomposeOptions& o) {
+  app.add_option("--pairs", o.pairs,
+                 "With --bodies spheres: a file of pairs of links that need no check, as "
+                 "kaboum-pairs ROBOT --srdf writes one (SRDF; also MJCF, Drake's filter groups, "
+                 "XRDF and cuRobo's YAML). Those of links with spheres are written as well, where "
+                 "cuRobo, XRDF and SRDF have them; kaboum-pairs ROBOT --judge FILE decides whether "
+                 "they never touch")
+      ->type_name("FILE");
+}
+
 void add_output(CLI::App& app, DecomposeOptions& o) {
   app.add_option(
          "--preview", o.preview,
          "Write a picture of the bodies (.png), or a page that shows them over the input in "
-         "a browser (.html)")
-      ->check(preview_name())
+         "a browser (.html); of a robot's spheres, capsules and boxes a scene for viewers (.glb)")
+      ->check(preview_or_scene_name())
       ->type_name("FILE");
   app.add_option("--explode", o.explode,
                  "How far apart a picture's second panel draws the bodies; 0: no second panel")
@@ -103,6 +114,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
   add_budget(app, "--robot-vertices", o.robot_vertices, "vertices");
   add_share(app, o);
   add_repair(app, o);
+  add_pairs(app, o);
   app.add_flag(
       "--srdf", o.srdf,
       "Also write NAME.srdf beside a robot's URDF, which MoveIt reads: pairs of links that "
@@ -172,13 +184,21 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   if (app.count("--share") != 0 &&
       o.set.request.body_kind != certify::SetRequest::BodyKind::Spheres)
     throw Error(ErrorCode::InvalidArgument, "--share is for --bodies spheres");
+  if (!o.pairs.empty() &&
+      (!is_robot(o.input) || o.set.request.body_kind != certify::SetRequest::BodyKind::Spheres))
+    throw Error(ErrorCode::InvalidArgument, "--pairs is for --bodies spheres of a robot");
+  if (is_scene(o.preview) &&
+      (!is_robot(o.input) || o.set.request.body_kind == certify::SetRequest::BodyKind::Polytopes))
+    throw Error(ErrorCode::InvalidArgument,
+                "--preview with a scene (.glb) shows spheres, capsules and boxes of a robot; "
+                "polytopes are in one anyway: name a page (.html) or a picture (.png)");
   if (!o.repair.empty()) {
     if (!is_robot(o.input))
       throw Error(ErrorCode::InvalidArgument,
                   "--repair is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
     std::vector<std::string> others{"--bodies", "--epsilons", "--robot-bodies", "--robot-vertices",
                                     "--srdf",   "--preview",  "--html-report",  "--robot-format",
-                                    "--for",    "--no-cache", "--inertia"};
+                                    "--for",    "--no-cache", "--inertia",      "--pairs"};
     for (const auto& option : certify::set_options())
       if (option.name != "epsilon" && option.name != "effort" && option.name != "geometry")
         others.push_back("--" + std::string(option.name));

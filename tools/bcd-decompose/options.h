@@ -26,6 +26,7 @@ struct DecomposeOptions {
   certify::SphereShare share = certify::SphereShare::Farthest;
   std::string epsilon_map;  ///< file of regions; empty: none
   std::string repair;       ///< spheres of the robot that are to be changed; empty: none
+  std::string pairs;        ///< file of pairs of links that need no check; empty: none
   std::string inertia;      ///< «mass» or a density; empty: what the file says stays
   bool no_cache = false, srdf = false;
   RobotOptions robot;

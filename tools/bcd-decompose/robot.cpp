@@ -12,9 +12,11 @@
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/page/robot_page.h>
 #include <kaboum/page/set_page.h>
+#include <kaboum/pairs/matrix.h>
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
 #include <kaboum/robot_folder/certified_folder.h>
+#include <kaboum/robot_folder/shapes_glb.h>
 #include <kaboum/robot_folder/simple_shapes.h>
 #include <kaboum/robot_folder/sphere_text.h>
 #include <kaboum/scene/robot_pairs.h>
@@ -295,35 +297,85 @@ void write_page(const Run& run, const RobotWriter& output) {
           .counts = page::counts_of(run.made)}));
 }
 
-/// The format of a file of spheres, capsules or boxes.
+/// The format of a file of spheres, capsules or boxes: one of planners, or of robots.
+struct BodyFormat {
+  std::optional<robot_folder::SphereFormat> spheres;
+  std::optional<robot_folder::ShapeFormat> shapes;
+};
+
 /// @throws Error{InvalidArgument} where it has no place for them, and on options of polytopes
-robot_folder::SphereFormat format_of_shapes(const DecomposeOptions& o) {
+BodyFormat format_of_shapes(const DecomposeOptions& o) {
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
-  const std::optional<robot_folder::SphereFormat> format = sphere_format_of(o.output);
-  if (!spheres && format != robot_folder::SphereFormat::Urdf)
+  BodyFormat format;
+  if (spheres) format.spheres = sphere_format_of(o.output);
+  if (!format.spheres) format.shapes = robot_folder::shape_format_of(o.output);
+  if (!format.spheres && !format.shapes)
     throw Error(ErrorCode::InvalidArgument,
-                "--bodies capsules, boxes or mixed of a robot: end --output in .urdf");
-  if (!format)
+                spheres ? "--bodies spheres of a robot: end --output in .yaml (cuRobo), .xrdf, "
+                          ".srdf (link_sphere_approximation), or in .urdf, .xml (MJCF) or .sdf "
+                          "(spheres as collision shapes)"
+                        : "--bodies capsules, boxes or mixed of a robot: end --output in .urdf, "
+                          ".xml (MJCF) or .sdf");
+  if (!o.pairs.empty() && (!format.spheres || format.spheres == robot_folder::SphereFormat::Urdf))
     throw Error(ErrorCode::InvalidArgument,
-                "--bodies spheres of a robot: end --output in .yaml (cuRobo), .xrdf, .srdf "
-                "(link_sphere_approximation) or .urdf (spheres as collision shapes)");
-  if (o.srdf || !o.preview.empty() || !o.robot.html.empty())
+                "--pairs: pairs of links have a place in .yaml (cuRobo), .xrdf and .srdf, not in " +
+                    o.output);
+  if (o.srdf || (!o.preview.empty() && !is_scene(o.preview)) || !o.robot.html.empty())
     throw Error(ErrorCode::InvalidArgument,
-                "--srdf, --preview and --html-report need --bodies polytopes of a robot");
+                "--srdf, --html-report and --preview with a picture or a page need --bodies "
+                "polytopes of a robot; --preview with a scene (.glb) shows other bodies");
   if (o.robot_vertices > 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
                 "state --robot-bodies");
-  return *format;
+  return format;
+}
+
+/// The pairs of links that a file says need no check.
+std::vector<robot_folder::UncheckedLinks> unchecked_links(const DecomposeOptions& o,
+                                                          const robot::Robot& robot, Notes& notes) {
+  std::vector<robot_folder::UncheckedLinks> out;
+  if (o.pairs.empty()) return out;
+  const std::vector<char> text = io::read_file(o.pairs);
+  const pairs::Matrix matrix =
+      pairs::parse_matrix(std::string(text.begin(), text.end()), o.pairs, robot);
+  for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
+  for (const pairs::MatrixFault& fault : matrix.faults)
+    notes.add(o.pairs, "line " + std::to_string(fault.line) + ": " + fault.text);
+  return out;
+}
+
+/// The file, and the scene of --preview.
+/// @return how far its shapes reach beyond the bodies [length]
+double write_shapes(Run& run, const BodyFormat& format, const certify::CertifiedBodies& bodies,
+                    const std::vector<robot_folder::UncheckedLinks>& unchecked) {
+  const DecomposeOptions& o = run.o;
+  const robot_folder::SimpleShapes shapes = robot_folder::simple_shapes(bodies.artefact());
+  if (!o.preview.empty())
+    io::write_file(o.preview, robot_folder::glb_of_shapes(run.robot.robot, shapes));
+  if (format.spheres) {
+    io::write_file(o.output,
+                   robot_folder::sphere_text(*format.spheres, run.robot, bodies,
+                                             run.request.parameters(), o.output, unchecked));
+    return 0;
+  }
+  const robot::ModelText made =
+      robot_folder::text_of_shapes(*format.shapes, run.robot, o.robot.shapes, bodies, shapes,
+                                   run.request.parameters(), o.output);
+  for (const std::string& note : made.notes) run.notes.add(o.output, note);
+  io::write_file(o.output, made.text);
+  return shapes.beyond;
 }
 
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
 int decompose_into_shapes(const DecomposeOptions& o) {
-  const robot_folder::SphereFormat format = format_of_shapes(o);
+  const BodyFormat format = format_of_shapes(o);
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
   Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
+  const std::vector<robot_folder::UncheckedLinks> unchecked =
+      unchecked_links(o, run.robot.robot, run.notes);
   const certify::SetCache kept(certify::SetCache::default_folder());
   const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
   if (o.robot_bodies > 0) {
@@ -355,25 +407,17 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   say_table(run, lines_of(run, bodies), shortfalls);
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   double distance = bodies.certificate().distance;
-  if (spheres) {
-    io::write_file(o.output, robot_folder::sphere_text(format, run.robot, bodies,
-                                                       run.request.parameters(), o.output));
-  } else {
-    const robot_folder::SimpleShapes shapes = robot_folder::simple_shapes(bodies.artefact());
-    distance += shapes.beyond;
-    const std::optional<Length>& epsilon = run.request.set.epsilon;
-    if (run.request.epsilons.empty() && epsilon && !epsilon->percent)
-      reached = reached && distance <= epsilon->value;
-    io::write_file(o.output, robot_folder::urdf_of_shapes(run.robot, bodies, shapes,
-                                                          run.request.parameters(), o.output));
-  }
-  log(o.common.quiet, o.output + ": " +
-                          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
-                                   : counted(bodies.artefact().size(), "body", "bodies")) +
-                          ", no point farther from its link's shapes than " + number_up(distance) +
-                          ", on the mean of links " + number_up(mean_distance(bodies)) +
-                          "; bound-verify robot " + o.input +
-                          (spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
+  distance += write_shapes(run, format, bodies, unchecked);
+  if (const std::optional<Length>& epsilon = run.request.set.epsilon;
+      format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
+    reached = reached && distance <= epsilon->value;
+  log(o.common.quiet,
+      o.output + ": " +
+          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
+                   : counted(bodies.artefact().size(), "body", "bodies")) +
+          ", no point farther from its link's shapes than " + number_up(distance) +
+          ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
+          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
@@ -388,6 +432,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                   {"notes", run.notes.lines()}});
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
+    if (!o.pairs.empty()) inputs.push_back(o.pairs);
+    if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
     for (std::string& file : strings(bodies.certificate().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);
   }
@@ -471,11 +517,12 @@ int decompose_robot(const DecomposeOptions& o) {
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
-  if (sphere_format_of(o.output) && !fs::is_directory(o.output))
+  if (const bool shapes = robot_folder::shape_format_of(o.output).has_value();
+      (shapes || sphere_format_of(o.output)) && !fs::is_directory(o.output))
     throw Error(ErrorCode::InvalidArgument,
-                o.output +
-                    ": such files hold spheres: state --bodies spheres, or name a folder for the "
-                    "robot, such as " +
+                o.output + ": such files hold spheres" + (shapes ? ", capsules or boxes" : "") +
+                    ": state --bodies spheres" + (shapes ? ", capsules, boxes or mixed" : "") +
+                    ", or name a folder for the robot, such as " +
                     fs::path(o.output).replace_extension().string() + ", not " + o.output);
   require_robot_folder(o.output, o.output_format);
   Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None,

@@ -58,6 +58,8 @@ CLI::Validator number_from(double low, double high) {
 
 bool is_page(const std::string& name) { return extension_of(name) == ".html"; }
 
+bool is_scene(const std::string& name) { return extension_of(name) == ".glb"; }
+
 CLI::Validator png_name() {
   return {[](const std::string& s) {
             return s == "-" || extension_of(s) == ".png"
@@ -73,6 +75,17 @@ CLI::Validator preview_name() {
                        ? std::string()
                        : "a picture or a page is written: give a name that ends with .png or "
                          ".html, not " +
+                             s;
+          },
+          ""};
+}
+
+CLI::Validator preview_or_scene_name() {
+  return {[](const std::string& s) {
+            return s == "-" || extension_of(s) == ".png" || is_page(s) || is_scene(s)
+                       ? std::string()
+                       : "a picture, a page or a scene is written: give a name that ends with "
+                         ".png, .html or .glb, not " +
                              s;
           },
           ""};

@@ -29,12 +29,16 @@ CLI::Validator number_from(double low, double high);
 CLI::Validator png_name();
 /// Refuses names of previews that are neither pictures (.png) nor pages (.html).
 CLI::Validator preview_name();
+/// The same, or scenes (.glb).
+CLI::Validator preview_or_scene_name();
 /// Refuses names of pages that are not .html.
 CLI::Validator page_name();
 /// Refuses names of JSON where CSV is written.
 CLI::Validator csv_name();
 /// Whether the name is that of a page.
 bool is_page(const std::string& name);
+/// Whether the name is that of a scene (.glb).
+bool is_scene(const std::string& name);
 
 /// Units of length that a container may name.
 CLI::Validator unit_name();

@@ -26,11 +26,17 @@ void move_references(tinyxml2::XMLElement& element, const fs::path& from, const 
   }
 }
 
+}  // namespace
+
 fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-}  // namespace
+bool has_capsules(const tinyxml2::XMLDocument& urdf) {
+  const char* version = urdf.RootElement()->Attribute("version");
+  return version != nullptr &&
+         (version == std::string_view("1.1") || version == std::string_view("1.2"));
+}
 
 std::string decimal(double x) {
   std::ostringstream out;

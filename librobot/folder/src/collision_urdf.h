@@ -4,6 +4,7 @@
 #include <kaboum/robot/robot_file.h>
 #include <tinyxml2.h>
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -22,6 +23,12 @@ std::string origin_of(const std::string& what, const robot::RobotFile& robot,
 std::string comment_of_xml(std::string text);
 
 std::string text_of(const tinyxml2::XMLDocument& document);
+
+/// The folder that a file is in.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// True if a URDF is of 1.1 or 1.2, which have <capsule>.
+bool has_capsules(const tinyxml2::XMLDocument& urdf);
 
 /// Adds a <collision> with an origin. @return its <geometry>
 tinyxml2::XMLElement* add_collision(tinyxml2::XMLElement& link, const geom::Vec3& xyz,

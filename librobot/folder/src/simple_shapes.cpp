@@ -1,21 +1,28 @@
-// Capsules and boxes of robots in the formats of engines.
+// Spheres, capsules and boxes of robots in the formats of engines.
+#include <kaboum/robot/sdf.h>
+#include <kaboum/robot_folder/new_shapes.h>
 #include <kaboum/robot_folder/simple_shapes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <map>
 
 #include "collision_urdf.h"
 
 namespace kaboum::robot_folder {
 namespace {
 
+namespace fs = std::filesystem;
+
 using geom::Vec3;
 using Kind = SimpleShape::Kind;
 
-/// Of lengths: more than what a dozen operations and a rotation from its angles err by, which is
-/// 300 · 2^-53 (docs/algorithms/capsules-and-boxes.md, "Robots").
-constexpr double kPoseRounding = 0x1p-44;
+/// Of lengths: more than what a dozen operations and a rotation from its angles, or from the
+/// quaternion that stands for them, err by: 510 · 2^-53 (docs/algorithms/capsules-and-boxes.md,
+/// "Robots").
+constexpr double kPoseRounding = 0x1p-43;
 
 /// Angles whose rotation is about that of the matrix.
 Vec3 rpy_of(const Eigen::Matrix3d& m) {
@@ -99,31 +106,55 @@ double beyond_of(const SimpleShape& box, const robot::LinkBody& body) {
 }
 
 void add_shape(tinyxml2::XMLElement& link, const SimpleShape& shape) {
-  switch (shape.kind) {
-    case Kind::Box:
-      add_collision(link, shape.center, shape.rpy)
-          ->InsertNewChildElement("box")
-          ->SetAttribute("size", decimals(shape.size).c_str());
-      return;
-    case Kind::Sphere:
-      add_collision(link, shape.center, shape.rpy)
-          ->InsertNewChildElement("sphere")
-          ->SetAttribute("radius", decimal(shape.size.x()).c_str());
-      return;
-    case Kind::Capsule:
-      break;
+  if (shape.kind == Kind::Box) {
+    add_collision(link, shape.center, shape.rpy)
+        ->InsertNewChildElement("box")
+        ->SetAttribute("size", decimals(shape.size).c_str());
+    return;
   }
-  const std::string radius = decimal(shape.size.x());
-  tinyxml2::XMLElement* cylinder =
-      add_collision(link, shape.center, shape.rpy)->InsertNewChildElement("cylinder");
-  cylinder->SetAttribute("radius", radius.c_str());
-  cylinder->SetAttribute("length", decimal(shape.size.y()).c_str());
-  const Eigen::Matrix3d turn =
-      robot::rotation_from_rpy(shape.rpy.x(), shape.rpy.y(), shape.rpy.z());
-  for (const double end : {-0.5, 0.5})
-    add_collision(link, shape.center + end * shape.size.y() * turn.col(2), Vec3::Zero())
-        ->InsertNewChildElement("sphere")
-        ->SetAttribute("radius", radius.c_str());
+  const std::string radius = decimal(shape.size.x()), length = decimal(shape.size.y());
+  const auto add = [&](const char* kind, const Vec3& center, const Vec3& rpy) {
+    tinyxml2::XMLElement* round = add_collision(link, center, rpy)->InsertNewChildElement(kind);
+    round->SetAttribute("radius", radius.c_str());
+    if (std::string_view(kind) != "sphere") round->SetAttribute("length", length.c_str());
+  };
+  if (shape.kind == Kind::Sphere) return add("sphere", shape.center, shape.rpy);
+  if (has_capsules(*link.GetDocument())) return add("capsule", shape.center, shape.rpy);
+  for (const robot::Geometry& part : robot::parts_of_capsule(geometry_of(shape)))
+    if (part.shape == robot::Geometry::Shape::Sphere)
+      add("sphere", part.origin.translation, Vec3::Zero());
+    else
+      add("cylinder", shape.center, shape.rpy);
+}
+
+/// The shape, or for a capsule of next to no length a sphere: MJCF refuses lengths of 0.
+SimpleShape engine_shape(SimpleShape shape) {
+  constexpr double kShort = 1e-9;
+  const double radius = shape.size.x(), length = shape.size.y();
+  if (shape.kind != Kind::Capsule || length > kShort * radius) return shape;
+  shape.kind = Kind::Sphere;
+  shape.size.x() = (radius + length) * (1 + 1e-15);
+  return shape;
+}
+
+/// By link, for engines' formats.
+std::map<std::size_t, std::vector<robot::Primitive>> primitives_of(
+    const certify::CertifiedBodies& bodies, const SimpleShapes& shapes) {
+  std::map<std::size_t, std::vector<robot::Primitive>> out;
+  for (const robot::LinkShape& shape : bodies.certificate().shapes) out[shape.link];
+  for (const SimpleShape& given : shapes.shapes) {
+    const SimpleShape shape = engine_shape(given);
+    out[shape.link].push_back({geometry_of(shape), shape.rpy});
+  }
+  return out;
+}
+
+/// The text of a document with a comment in its root.
+std::string with_comment(const std::string& text, const std::string& comment) {
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  document.RootElement()->InsertFirstChild(document.NewComment(comment_of_xml(comment).c_str()));
+  return text_of(document);
 }
 
 }  // namespace
@@ -142,15 +173,67 @@ SimpleShapes simple_shapes(const std::vector<robot::LinkBody>& bodies) {
   return out;
 }
 
-std::string urdf_of_shapes(const robot::RobotFile& robot, const certify::CertifiedBodies& bodies,
-                           const SimpleShapes& shapes, const std::string& parameters,
-                           const std::string& file) {
-  const auto add = [&](tinyxml2::XMLElement& link, std::uint32_t index) {
-    for (const SimpleShape& shape : shapes.shapes)
-      if (shape.link == index) add_shape(link, shape);
-  };
-  return urdf_with(robot, bodies, add, origin_of("Spheres, capsules and boxes", robot, parameters),
-                   file);
+robot::Geometry geometry_of(const SimpleShape& shape) {
+  using Shape = robot::Geometry::Shape;
+  robot::Geometry out;
+  out.origin = {robot::rotation_from_rpy(shape.rpy.x(), shape.rpy.y(), shape.rpy.z()),
+                shape.center};
+  out.shape = shape.kind == Kind::Box      ? Shape::Box
+              : shape.kind == Kind::Sphere ? Shape::Sphere
+                                           : Shape::Capsule;
+  const double radius = shape.size.x(), length = shape.size.y();
+  out.size = shape.kind == Kind::Box      ? shape.size
+             : shape.kind == Kind::Sphere ? Vec3(Vec3::Constant(radius))
+                                          : Vec3(radius, length, length);
+  return out;
+}
+
+std::optional<ShapeFormat> shape_format_of(const std::string& file) {
+  const std::string extension = fs::path(file).extension().string();
+  if (extension == ".urdf") return ShapeFormat::Urdf;
+  if (extension == ".xml" || extension == ".mjcf") return ShapeFormat::Mjcf;
+  if (extension == ".sdf") return ShapeFormat::Sdf;
+  return std::nullopt;
+}
+
+robot::ModelText text_of_shapes(ShapeFormat format, const robot::RobotFile& robot,
+                                const robot::ShapeChoice& choice,
+                                const certify::CertifiedBodies& bodies, const SimpleShapes& shapes,
+                                const std::string& parameters, const std::string& file) {
+  using Format = robot::RobotFile::Format;
+  const std::string origin = origin_of("Spheres, capsules and boxes", robot, parameters);
+  if (format == ShapeFormat::Urdf) {
+    const auto add = [&](tinyxml2::XMLElement& link, std::uint32_t index) {
+      for (const SimpleShape& shape : shapes.shapes)
+        if (shape.link == index) add_shape(link, shape);
+    };
+    return {urdf_with(robot, bodies, add, origin, file), {}};
+  }
+  const fs::path folder = folder_of(file);
+  const auto primitives = primitives_of(bodies, shapes);
+  const bool sdf = format == ShapeFormat::Sdf;
+  if (robot.format == (sdf ? Format::Sdf : Format::Mjcf)) {
+    robot::ShapeEdit edit;
+    edit.visual = choice.visual;
+    const fs::path from = fs::absolute(robot.path).parent_path();
+    edit.moved = [&](const std::string& name) { return moved_reference(name, from, folder); };
+    edit.primitives = primitives;
+    const std::string name = robot.path.string();
+    return {with_comment(sdf ? robot::sdf_with_shapes(robot.text, name, edit)
+                             : robot::mjcf_with_shapes(robot.text, name, edit),
+                         origin),
+            {}};
+  }
+  robot::Model model = new_model(robot, choice, NewShapes(robot.robot.links.size()), folder, {},
+                                 sdf ? KeptNames::Moved : KeptNames::Files);
+  for (const auto& [link, own] : primitives) {
+    std::vector<robot::Geometry>& collision = model.robot.links[link].collision;
+    collision.clear();
+    for (const robot::Primitive& one : own) collision.push_back(one.geometry);
+  }
+  robot::ModelText out = sdf ? robot::to_sdf(model) : robot::to_mjcf(model);
+  out.text = with_comment(out.text, origin);
+  return out;
 }
 
 }  // namespace kaboum::robot_folder

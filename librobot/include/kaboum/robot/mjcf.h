@@ -2,9 +2,11 @@
 
 #include <kaboum/geom/mesh.h>
 #include <kaboum/robot/dynamics.h>
+#include <kaboum/robot/primitive.h>
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,13 +68,18 @@ struct ShapeEdit {
   std::vector<std::vector<ShapeMeshes>> links;
   /// A name of a file, relative to the robot's folder, as it is in the new document.
   std::function<std::string(const std::string& file)> moved;
+  /// By link, what stands for all of its shapes together, in its frame; such links have nothing in
+  /// `links`.
+  std::map<std::size_t, std::vector<Primitive>> primitives = {};
 };
 
 /// The document with other collision geoms, each with pose, scale and contact parameters of the one
 /// that it stands for. All else stays, masses too: of bodies that take them from geoms the old ones
-/// stay without collisions, and the new ones weigh nothing. Assets' files are renamed.
+/// stay without collisions, and the new ones weigh nothing. Assets' files are renamed. Primitives
+/// have contact parameters and class of the first geom that they stand for.
 /// @param text  that parse_mjcf reads
-/// @throws as parse_mjcf
+/// @throws as parse_mjcf; Error{InvalidInput} naming a link whose primitives a class makes others
+/// of
 std::string mjcf_with_shapes(std::string_view text, const std::string& name, const ShapeEdit& edit);
 
 }  // namespace kaboum::robot

@@ -29,7 +29,8 @@ struct SdfRobot {
 SdfRobot parse_sdf(std::string_view text, const std::string& name);
 
 /// The document with other collision elements, each with the pose and scale of the shape that it
-/// stands for. All else stays; names of files are given by ShapeEdit::moved.
+/// stands for. All else stays; names of files are given by ShapeEdit::moved. Before SDF 1.8, which
+/// has no capsules, a cylinder and two spheres stand for one.
 /// @param text  that parse_sdf reads
 /// @throws as parse_sdf
 std::string sdf_with_shapes(std::string_view text, const std::string& name, const ShapeEdit& edit);
