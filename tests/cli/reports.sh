@@ -30,11 +30,16 @@ run decompose "$BIN/bcd-decompose" "$BRACKET" -o set.glb --epsilon 5% --effort f
 run inner "$BIN/bcd-decompose" wide.off -o inner.glb --direction inner --epsilon 20% --no-cache
 run robot "$BIN/bcd-decompose" arm.urdf -o safe --effort fast --no-cache
 run robot-meshes "$BIN/bmesh-decimate" arm.urdf -o round --ratio 0.9 --effort fast --no-cache
+run robot-spheres "$BIN/bcd-decompose" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
+run robot-repair "$BIN/bcd-decompose" arm.urdf -o mended.yaml --repair arm.yaml --epsilon 0.4
+run robot-capsules "$BIN/bcd-decompose" arm.urdf -o arm-capsules.xml --bodies capsules --epsilon 0.4 --effort fast --no-cache
 run sweep "$BIN/sweep-approx" arm.urdf --path path.csv -o swept.glb --epsilon 0.2 --no-cache
 run distance "$BIN/hausdorff-eval" box.off wide.off --samples 100
 run verify-outer "$BIN/bound-verify" mesh --outer "$BRACKET" outer.ply
 run verify-cover "$BIN/bound-verify" cover "$BRACKET" set.glb --epsilon 5%
 run verify-robot "$BIN/bound-verify" robot arm.urdf safe/arm.urdf
+run verify-spheres "$BIN/bound-verify" robot arm.urdf --spheres arm.yaml --epsilon 0.4
+expect 1 '' "$BIN/bound-verify" robot arm.urdf --bodies arm-capsules.xml --epsilon 0.001 --report reports/verify-bodies.json
 run verify-sweep "$BIN/bound-verify" sweep arm.urdf path.csv swept.glb
 run verify-progressive "$BIN/bound-verify" progressive "$BRACKET" outer.pm
 run scene "$BIN/kaboum-scene" make cell.json --robot arm=arm.urdf --object box=wide.off --no-cache
