@@ -183,7 +183,7 @@ Verdict verify_spheres(const py::object& robot, const py::object& spheres,
   robot::ShapeChoice shapes;
   const RunKeywords running =
       take_keywords("verify_spheres", robot::shape_options(), given, shapes, Runs::Threads);
-  const RobotValue value = robot_of(robot, "robot");
+  const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   robot::require_links(*value.file, shapes.links);
   const std::string file = file_of(spheres, "spheres");
   const std::optional<double> reach = reach_of(epsilon);

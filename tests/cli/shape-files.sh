@@ -110,6 +110,13 @@ expect 3 "link 'base'\|mesh of its class\|fits to" "$B" fitted.xml -o fitted-cap
 [ ! -e fitted-capsules.xml ] || fail 'fitted-capsules.xml was written'
 expect 3 'only a URDF' "$B" arm.xml -o x.urdf --bodies capsules --epsilon 0.4 --effort fast
 
+# A floating base, and a ball joint, move in ways that no file of shapes says: links are judged in their frames all the same.
+sed 's/<joint name="j" type="hinge" axis="0 0 1"\/>/<freejoint\/>/' arm.xml >free.xml
+make free.xml free-capsules.xml capsules
+shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.xml --bodies free-capsules.xml
+make free.xml free.yaml spheres
+shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.xml --spheres free.yaml
+
 # SDF that stays SDF; before 1.8 it has no capsules.
 for version in 1.6 1.9; do
   cat >arm.sdf <<X

@@ -321,9 +321,9 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   require_apart({{"--report", common.report}}, {o.original, o.bodies});
   const robot::RobotFile robot =
-      robot::read_robot(o.original, robot::Motions::All, o.xacro_arguments);
+      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments);
   robot::require_links(robot, o.how.shapes.links);
-  const robot::RobotFile bodies = robot::read_robot(o.bodies);
+  const robot::RobotFile bodies = robot::read_robot(o.bodies, robot::Motions::None);
   require_known(bodies, robot);
   const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;

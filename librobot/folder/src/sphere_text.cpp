@@ -91,6 +91,7 @@ std::vector<UncheckedLinks> pairs_of(const std::vector<UncheckedLinks>& given,
                                    links[static_cast<std::size_t>(second)], pair.reason});
   }
   std::vector<UncheckedLinks> sorted;
+  sorted.reserve(out.size());
   for (auto& [places, pair] : out) sorted.push_back(std::move(pair));
   return sorted;
 }

@@ -344,10 +344,10 @@ class YamlFile {
 
   /// @throws Error{InvalidInput} where a link has a buffer and no spheres
   void require_buffered(const SphereFile& read) const {
-    for (const auto& [link, line] : buffer_lines_)
-      if (std::ranges::none_of(read.links,
-                               [&](const LinkSpheres& known) { return known.link == link; }))
-        fail(file_, line, "a buffer of link '" + link + "', which has no spheres here");
+    for (const auto& buffer : buffer_lines_)
+      if (std::ranges::find(read.links, buffer.first, &LinkSpheres::link) == read.links.end())
+        fail(file_, buffer.second,
+             "a buffer of link '" + buffer.first + "', which has no spheres here");
   }
 
   /// A sphere with the radius that is stated, without the buffer.
