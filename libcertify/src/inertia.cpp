@@ -24,6 +24,8 @@ struct MeshMoments {
 
 MeshMoments read_moments(const robot::LinkMesh& mesh, const InertiaRequest& request) {
   MeshMoments out;
+  out.flaw = mesh.missing;
+  if (!out.flaw.empty()) return out;
   try {
     const io::ReadResult read = io::read_mesh(mesh.file, request.format);
     if (read.deviation > 0) {

@@ -123,6 +123,10 @@ bool hold_by_larger_ones(const RobotRequest& request, const SetCache* cache,
 CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
                                   const RobotRequest& request, const SetCache* cache,
                                   const RobotHooks& given, std::exception_ptr& first) {
+  if (!mesh.missing.empty()) {
+    if (!first) first = std::make_exception_ptr(Error(ErrorCode::InvalidInput, mesh.missing));
+    return {mesh, epsilon, {}, mesh.missing, false};
+  }
   bool ended = false;
   const RobotHooks hooks = watched(given, ended);
   std::string flaw;
@@ -299,7 +303,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
     out.meshes.push_back(
         certify_somehow(found.meshes[i], found.epsilons[i], own, cache, hooks, first));
     const CertifiedFile& made = out.meshes.back().made;
-    out.files.push_back(found.meshes[i].file);
+    if (found.meshes[i].missing.empty()) out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());
     if (hooks.made) hooks.made(out.meshes.back());
   }

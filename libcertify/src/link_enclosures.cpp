@@ -69,6 +69,11 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
           };
         EnclosedLinkMesh& mesh = out.meshes[i];
         mesh.mesh = found.meshes[i];
+        if (!mesh.mesh.missing.empty()) {
+          mesh.flaw = mesh.mesh.missing;
+          flaws[i] = std::make_exception_ptr(Error(ErrorCode::InvalidInput, mesh.flaw));
+          return;
+        }
         const EnclosureRequest asked = request_of(request, mesh.mesh, found.epsilons[i]);
         mesh.epsilon = asked.mesh.epsilon;
         try {
@@ -90,7 +95,7 @@ LinkEnclosures enclose_links(const robot::RobotFile& robot, const LinkEnclosures
   if (std::ranges::all_of(flaws, [](const auto& flaw) { return flaw != nullptr; }))
     std::rethrow_exception(flaws.front());
   for (const EnclosedLinkMesh& mesh : out.meshes) {
-    out.files.push_back(mesh.mesh.file);
+    if (mesh.mesh.missing.empty()) out.files.push_back(mesh.mesh.file);
     out.files.insert(out.files.end(), mesh.made.other_files.begin(), mesh.made.other_files.end());
   }
   out.files.insert(out.files.end(), found.files.begin(), found.files.end());

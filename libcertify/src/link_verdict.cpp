@@ -20,6 +20,7 @@ struct MeshOutcome {
 };
 
 MeshOutcome outcome_of(const CertifiedLinkMesh& mesh) {
+  if (!mesh.mesh.missing.empty()) return {Outcome::Missing, mesh.flaw, 0};
   if (!mesh.held) return {Outcome::Kept, mesh.flaw, 0};
   const SetCertificate& c = mesh.made.found.set.certificate();
   MeshOutcome out{Outcome::Held, {}, c.subject.dropped_sheets};
@@ -38,6 +39,7 @@ MeshOutcome outcome_of(const CertifiedLinkMesh& mesh) {
 }
 
 MeshOutcome outcome_of(const EnclosedLinkMesh& mesh) {
+  if (!mesh.mesh.missing.empty()) return {Outcome::Missing, mesh.flaw, 0};
   if (!mesh.flaw.empty()) return {Outcome::Kept, mesh.flaw, 0};
   const EnclosureCertificate& c = mesh.made.enclosure.certificate();
   MeshOutcome out{Outcome::Held, {}, c.subject.dropped_sheets};
@@ -78,9 +80,11 @@ std::string sentence_of(const MeshOutcome& worst, const std::string& held, std::
     case Outcome::Outside:
       return "NOT every triangle is inside" + why;
     case Outcome::Kept:
+      return "NOT enclosed, its mesh stays as it was" + why;
+    case Outcome::Missing:
       break;
   }
-  return "NOT enclosed, its mesh stays as it was" + why;
+  return "NOT verified, its mesh is missing and left out" + why;
 }
 
 /// @param others  what is said of a link without meshes
@@ -128,9 +132,11 @@ const char* name_of(Outcome outcome) {
     case Outcome::Outside:
       return "not held";
     case Outcome::Kept:
+      return "kept";
+    case Outcome::Missing:
       break;
   }
-  return "kept";
+  return "missing";
 }
 
 std::vector<LinkVerdict> verdicts(const CertifiedBodies& robot) {

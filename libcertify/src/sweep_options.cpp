@@ -90,6 +90,10 @@ void add_unrecorded(std::vector<Option<R>>& out) {
   out.push_back(option<R>(
       option_named(robot::shape_options(), "package-path"),
       [](auto& r) -> auto& { return r.packages; }));
+  const std::vector<std::pair<const char*, bool>> missing{{"error", false}, {"skip", true}};
+  out.push_back(choice<R>(
+      option_named(robot::held_shape_options(), "missing-meshes"),
+      [](auto& r) -> auto& { return r.skip_missing; }, missing));
   std::vector<std::pair<std::string, std::string>> units;
   units.reserve(kLengthUnits.size());
   for (const std::string_view unit : kLengthUnits) units.emplace_back(unit, unit);
@@ -169,7 +173,7 @@ const std::vector<Option<SweptSetOptions>>& swept_set_options() {
 
 RobotRequest bodies_request_of(const SweptSetOptions& options) {
   RobotRequest out;
-  out.shapes = {options.links, options.visual, options.packages};
+  out.shapes = {options.links, options.visual, options.packages, options.skip_missing};
   out.set = request_of(options.bodies);
   if (!out.set.epsilon) out.set.epsilon = options.epsilon;
   return out;

@@ -13,7 +13,15 @@ WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoi
     if (!robot.robot.find_link(link))
       throw Error(ErrorCode::InvalidArgument,
                   robot.path.string() + ": there is no link '" + link + "' to have an epsilon");
-  WantedMeshes out{robot::link_meshes(robot, choice), {}};
+  WantedMeshes out;
+  try {
+    static_cast<robot::LinkMeshes&>(out) = robot::link_meshes(robot, choice);
+  } catch (const Error& error) {
+    if (choice.skip_missing || error.code() != ErrorCode::InvalidInput) throw;
+    throw Error(error.code(), std::string(error.what()) +
+                                  "; «missing-meshes=skip» leaves them out, and their links are "
+                                  "not verified then");
+  }
   std::vector<robot::LinkMesh> meshes;
   std::vector<std::size_t> of;  // of `meshes`: index in out.meshes
   for (robot::LinkShape& shape : out.shapes) {

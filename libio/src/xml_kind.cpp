@@ -58,4 +58,19 @@ std::string describe(XmlKind kind) {
   return {};
 }
 
+std::string describe_other(std::string_view text) {
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  if (const tinyxml2::XMLElement* root = document.RootElement(); root != nullptr)
+    return "XML with the root <" + std::string(root->Name()).substr(0, 40) + ">";
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return "no XML: it is empty";
+  text.remove_prefix(first);
+  if (text.starts_with('<')) return "XML that is damaged before its first element";
+  std::string begin;
+  for (const char c : text.substr(0, 20)) begin += c >= ' ' && c <= '~' ? c : '?';
+  return "no XML: it begins with '" + begin + "'";
+}
+
 }  // namespace kaboum::io

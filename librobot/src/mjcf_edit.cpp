@@ -47,6 +47,7 @@ class Editor {
     for (std::size_t l = 0; l < edit_.links.size() && l < model_.robot.links.size(); ++l)
       if (!edit_.links[l].empty()) edit_link(l);
     for (const auto& [l, shapes] : edit_.primitives) replace_link(l, shapes);
+    drop_missing();
     for (const auto& [old, fresh] : replaced_) replace_pairs(old, fresh);
     if (!edit_.primitives.empty()) drop_doubled_pairs();
     for (XMLElement* e : removed_) document_.DeleteNode(e);
@@ -237,11 +238,31 @@ class Editor {
     if (name != nullptr) replaced_[name].insert(replaced_[name].end(), fresh.begin(), fresh.end());
     const bool named = name != nullptr && mentioned_.contains(name);
     if (drawn_besides && !model_.weighed_by_geoms[l] && !named) {
-      removed_.push_back(&mine(&old));
+      removed_.insert(&mine(&old));
       return;
     }
     mine(&old).SetAttribute("contype", "0");
     mine(&old).SetAttribute("conaffinity", "0");
+  }
+
+  /// Takes out the geoms and assets of meshes without a file.
+  void drop_missing() {
+    const auto drop = [&](const std::vector<Geometry>& shapes,
+                          const std::vector<const XMLElement*>& elements) {
+      for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (shapes[i].shape != Geometry::Shape::Mesh || !edit_.left_out.contains(shapes[i].mesh))
+          continue;
+        const XMLElement* geom = elements[i];
+        if (const char* name = geom->Attribute("name"); name != nullptr) replaced_[name];
+        removed_.insert(&mine(geom));
+        removed_.insert(&mine(model_.meshes.at(model_.geoms.at(geom).at("mesh")).element));
+      }
+    };
+    for (std::size_t l = 0; l < model_.robot.links.size(); ++l) {
+      const Link& link = model_.robot.links[l];
+      drop(link.collision, model_.collision[l]);
+      drop(link.visual, model_.visual[l]);
+    }
   }
 
   /// Pairs of the old geom become pairs of the new ones.
@@ -290,7 +311,7 @@ class Editor {
   std::map<std::pair<std::string, const XMLElement*>, std::string> new_meshes_;  // file, mesh
   std::map<std::string, std::vector<std::string>> replaced_;  // geoms by the name of the old one
   std::set<const XMLElement*> done_, gone_, filled_;
-  std::vector<XMLElement*> removed_;
+  std::set<XMLElement*> removed_;
 };
 
 }  // namespace

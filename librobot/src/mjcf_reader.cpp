@@ -11,6 +11,7 @@
 #include <set>
 
 #include "link_elements.h"
+#include "mjcf_classes.h"
 #include "mjcf_model.h"
 #include "model_words.h"
 #include "xml.h"
@@ -19,103 +20,9 @@ namespace kaboum::robot {
 namespace {
 
 using tinyxml2::XMLElement;
-using Attributes = std::map<std::string, std::string>;
 
 constexpr std::size_t kMostLinks = 100'000;
 constexpr const char* kWorld = "world";
-/// Ways of stating a rotation that come before `quat`. MuJoCo 2.2.2 keeps those of a class beside
-/// an element's own, and takes the last of these that is there.
-constexpr std::array<const char*, 4> kOtherRotations{"axisangle", "xyaxes", "zaxis", "euler"};
-
-/// Attributes over those of a class: a rotation takes the place of the class's.
-void lay_over(Attributes& below, const XMLElement& element) {
-  const auto rotates = [&](const char* key) { return element.Attribute(key) != nullptr; };
-  if (std::ranges::any_of(kOtherRotations, rotates) || rotates("quat"))
-    for (const char* key : kOtherRotations) below.erase(key);
-  for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
-    below[a->Name()] = a->Value();
-}
-
-/// Where in kOtherRotations the last is that an element states itself; -1: none.
-int rotation_of(const XMLElement& element) {
-  int out = -1;
-  for (int i = 0; i < static_cast<int>(kOtherRotations.size()); ++i)
-    if (element.Attribute(kOtherRotations[static_cast<std::size_t>(i)]) != nullptr) out = i;
-  return out;
-}
-
-/// Default classes: the attributes that elements of a kind have where they state none.
-class DefaultClasses {
- public:
-  explicit DefaultClasses(const std::string& name) : name_(name) { classes_["main"]; }
-
-  /// @param element  a <default> of the root
-  void read(const XMLElement& element) {
-    if (const char* name = element.Attribute("class"); name != nullptr) main_ = name;
-    read_into(element, "main");
-  }
-
-  /// What an element says itself or by its class.
-  [[nodiscard]] Attributes of(const XMLElement& element, const std::string& class_here) const {
-    const char* own = element.Attribute("class");
-    const auto& kinds = named(own != nullptr ? own : class_here, element);
-    const auto found = kinds.find(element.Name());
-    Attributes out = found == kinds.end() ? Attributes() : found->second;
-    lay_over(out, element);
-    return out;
-  }
-
-  /// Where in kOtherRotations the last is that a class of an element states, or one that this class
-  /// is made from; -1: none.
-  [[nodiscard]] int rotates(const XMLElement& element, const std::string& class_here) const {
-    const char* own = element.Attribute("class");
-    const std::string name = own != nullptr ? own : class_here;
-    const auto found =
-        rotations_.find({name.empty() || name == main_ ? "main" : name, element.Name()});
-    return found == rotations_.end() ? -1 : found->second;
-  }
-
-  void require(const std::string& name, const XMLElement& element) const {
-    static_cast<void>(named(name, element));
-  }
-
- private:
-  using Kinds = std::map<std::string, Attributes>;  // by tag
-
-  [[nodiscard]] const Kinds& named(const std::string& name, const XMLElement& element) const {
-    const auto found = classes_.find(name.empty() || name == main_ ? "main" : name);
-    if (found == classes_.end())
-      fail_at(name_, element.GetLineNum(), "there is no default class '" + name + "'");
-    return found->second;
-  }
-
-  void read_into(const XMLElement& element, const std::string& name) {
-    Kinds& kinds = classes_[name];
-    for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-      if (std::string_view(e->Name()) != "default") {
-        lay_over(kinds[e->Name()], *e);
-        int& last = rotations_.try_emplace({name, e->Name()}, -1).first->second;
-        last = std::max(last, rotation_of(*e));
-      }
-    for (const auto* e = element.FirstChildElement("default"); e != nullptr;
-         e = e->NextSiblingElement("default")) {
-      const char* inner = e->Attribute("class");
-      if (inner == nullptr) fail_at(name_, e->GetLineNum(), "a <default> without a class");
-      if (!classes_.contains(inner)) {
-        classes_[inner] = classes_[name];
-        for (const auto& [tag, unused] : classes_[name])
-          rotations_[{inner, tag}] = rotations_[{name, tag}];
-      }
-      read_into(*e, inner);
-    }
-  }
-
-  const std::string& name_;
-  std::string main_ = "main";
-  std::map<std::string, Kinds> classes_;
-  std::map<std::pair<std::string, std::string>, int> rotations_;  // by class and tag
-};
-
 /// Settings of <compiler>.
 struct Compiler {
   bool degrees = true, automatic_limits = true, strips_paths = false;
@@ -235,15 +142,7 @@ class Reader {
   }
 
   [[nodiscard]] Mat3 from_euler(const Vec3& angles) const {
-    Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-    for (int i = 0; i < 3; ++i) {
-      const char axis = compiler_.euler[static_cast<std::size_t>(i)];
-      const bool moving = axis >= 'x';
-      const Vec3 about = Vec3::Unit(axis - (moving ? 'x' : 'X'));
-      const Eigen::Quaterniond turn(Eigen::AngleAxisd(angles[i], about));
-      q = moving ? q * turn : turn * q;
-    }
-    return q.normalized().toRotationMatrix();
+    return rotation_from_euler(angles, compiler_.euler);
   }
 
   /// Angles that from_euler makes a rotation of, in the compiler's unit.
@@ -836,6 +735,18 @@ std::string state_fitted_sizes(std::string_view text, const std::string& name,
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   return printer.CStr();
+}
+
+Mat3 rotation_from_euler(const Vec3& angles, const std::string& order) {
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  for (int i = 0; i < 3; ++i) {
+    const char axis = order[static_cast<std::size_t>(i)];
+    const bool moving = axis >= 'x';
+    const Vec3 about = Vec3::Unit(axis - (moving ? 'x' : 'X'));
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angles[i], about));
+    q = moving ? q * turn : turn * q;
+  }
+  return q.normalized().toRotationMatrix();
 }
 
 MjcfModel read_mjcf(const tinyxml2::XMLDocument& document, const std::string& name,

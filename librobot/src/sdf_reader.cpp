@@ -26,14 +26,6 @@ constexpr const char* kWorld = "world";
 constexpr const char* kModel = "__model__";
 constexpr int kFirstVersion = 4, kLastVersion = 12;  ///< 1.4 to 1.12
 
-std::string trimmed(const char* text) {
-  const std::string_view blanks = " \t\r\n";
-  std::string_view out = text == nullptr ? "" : text;
-  const std::size_t first = out.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return std::string(out.substr(first, out.find_last_not_of(blanks) + 1 - first));
-}
-
 /// One model, and the elements of its shapes.
 class Reader {
  public:

@@ -37,6 +37,13 @@ void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std
     throw Error(ErrorCode::InvalidInput, name + ": no XML element");
 }
 
+std::string trimmed(const char* text) {
+  const std::string_view out = text == nullptr ? "" : text;
+  const std::size_t first = out.find_first_not_of(kXmlBlanks);
+  if (first == std::string_view::npos) return {};
+  return std::string(out.substr(first, out.find_last_not_of(kXmlBlanks) + 1 - first));
+}
+
 std::optional<double> finite_number(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kXmlBlanks);
   if (first == std::string_view::npos) return std::nullopt;

@@ -19,6 +19,21 @@ void parse_xml(tinyxml2::XMLDocument& document, std::string_view text, const std
 /// "file:line: what" as Error{InvalidInput}.
 [[noreturn]] void fail_at(const std::string& name, int line, const std::string& what);
 
+/// Text without the blanks round it; of none, nothing.
+std::string trimmed(const char* text);
+
+/// So many elements may come of what files include, and so deep may they include one another.
+inline constexpr std::size_t kMostExpanded = 1'000'000;
+inline constexpr std::size_t kMostNested = 32;
+
+/// Does something with an element and all below it.
+template <class Action>
+void for_all(tinyxml2::XMLElement& element, const Action& action) {
+  action(element);
+  for (auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    for_all(*e, action);
+}
+
 /// A number written in decimal, blanks round it allowed; nullopt for anything else, infinity and
 /// NaN too.
 std::optional<double> finite_number(std::string_view text);

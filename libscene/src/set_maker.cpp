@@ -173,7 +173,7 @@ void SetMaker::add_bad_links(const std::string& name, const robot::Robot& robot,
     const std::string& link_name = robot.links[link.link].name;
     std::string line = "robot '";
     line.append(name).append("', link '").append(link_name).append("': ").append(link.sentence);
-    if (link.outcome == Outcome::Kept) {
+    if (link.outcome >= Outcome::Kept) {
       kept_[name].push_back(link_name);
       line += "; it has no set, and the scene is refused until it has one";
     }

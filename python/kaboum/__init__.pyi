@@ -628,7 +628,12 @@ def to_trimesh(shape: ConvexSet | CertifiedSet) -> list[Any]: ...
 @overload
 def to_trimesh(shape: _HasFaces | tuple[ArrayLike, ArrayLike]) -> Any: ...
 def from_trimesh(shape: Any) -> Mesh: ...
-def read_robot(path: _Path, *, xacro_args: str | Sequence[str] | None = None) -> Robot: ...
+def read_robot(
+    path: _Path,
+    *,
+    xacro_args: str | Sequence[str] | None = None,
+    package_path: _Path | Sequence[_Path] | None = None,
+) -> Robot: ...
 def prepare(
     mesh: _Mesh,
     *,
@@ -750,6 +755,7 @@ def sweep(
     no_merge: bool = False,
     ignore_limits: bool = False,
     package_path: _Path | Sequence[_Path] | None = None,
+    missing_meshes: Literal["error", "skip"] = "error",
     unit: str = "m",
     # end of options
     no_cache: bool = False,
@@ -868,6 +874,7 @@ def verify_robot(
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",
     package_path: _Path | Sequence[_Path] | None = None,
+    missing_meshes: Literal["error", "skip"] = "error",
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,
@@ -924,10 +931,11 @@ def certify_robot(
     robot_bodies: int | None = None,
     robot_vertices: int | None = None,
     partial: bool = False,
-    # options of shapes
+    # options of held_shapes
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",
     package_path: _Path | Sequence[_Path] | None = None,
+    missing_meshes: Literal["error", "skip"] = "error",
     # end of options
     # options of certify_robot
     epsilon: _Length | None = None,
@@ -959,10 +967,11 @@ def decimate_robot(
     epsilons: Mapping[str, _Length] | None = None,
     output_format: Literal["stl", "obj"] | None = None,
     partial: bool = False,
-    # options of shapes
+    # options of held_shapes
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",
     package_path: _Path | Sequence[_Path] | None = None,
+    missing_meshes: Literal["error", "skip"] = "error",
     # end of options
     # options of decimate_robot, vertices: int | None = None
     vertices: int | None = None,

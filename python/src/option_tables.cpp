@@ -37,6 +37,7 @@ void bind_option_tables(py::module_& module) {
         out["decimate_robot"] = table_of(keywords_of(link_mesh_options()));
         out["certify_robot"] = table_of(keywords_of(link_options()));
         out["shapes"] = table_of(keywords_of(robot::shape_options()));
+        out["held_shapes"] = table_of(keywords_of(robot::held_shape_options()));
         out["draw"] = table_of(keywords_of(picture::panel_options()));
         out["sweep"] = table_of(keywords_of(certify::swept_set_options()));
         out["hausdorff"] = table_of(keywords_of(distance::compare_options()));

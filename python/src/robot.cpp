@@ -96,7 +96,7 @@ void bind_robot(py::module_& module) {
 }
 
 std::vector<Keyword> certify_keywords() {
-  return keywords_of(robot::shape_options()) + keywords_of(link_options());
+  return keywords_of(robot::held_shape_options()) + keywords_of(link_options());
 }
 
 CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons,
@@ -107,7 +107,7 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons
   certify::SetOptions options;
   const std::set<std::string> stated = take_options(link_options(), keywords, options);
   certify::RobotRequest r;
-  take_options(robot::shape_options(), keywords, r.shapes);
+  take_options(robot::held_shape_options(), keywords, r.shapes);
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("certify_robot", keywords, certify_keywords());
   require_none(certify::contradiction(options, stated));
@@ -327,13 +327,26 @@ constexpr const char* kRobotParameters =
     "object = None, "
     "partial: bool = False";
 
-RobotValue read_robot_file(const py::object& file, const py::object& xacro_args) {
+RobotValue read_robot_file(const py::object& file, const py::object& xacro_args,
+                           const py::object& package_path) {
   const auto path = path_of(file);
-  if (!path || xacro_args.is_none()) return robot_of(file, "path", robot::Motions::None);
+  if (!path || (xacro_args.is_none() && package_path.is_none()))
+    return robot_of(file, "path", robot::Motions::None);
   const std::vector<std::string> arguments = names_given(xacro_args);
+  std::vector<std::string> packages;
+  if (const auto one = path_of(package_path)) {
+    packages.push_back(*one);
+  } else if (!package_path.is_none()) {
+    for (const py::handle& folder : package_path) {
+      const auto place = path_of(py::reinterpret_borrow<py::object>(folder));
+      if (!place)
+        throw Error(ErrorCode::InvalidArgument, "package_path must be a path or several of them");
+      packages.push_back(*place);
+    }
+  }
   return run(0, [&] {
     return RobotValue{std::make_shared<robot::RobotFile>(
-        robot::read_robot(*path, robot::Motions::None, arguments))};
+        robot::read_robot(*path, robot::Motions::None, arguments, packages))};
   });
 }
 
@@ -431,13 +444,16 @@ void bind_robots(py::module_& module) {
   bind_robot(module);
   bind_certified(module);
   module.def("read_robot", &read_robot_file, py::arg("path"), py::kw_only(),
-             py::arg("xacro_args") = py::none(),
+             py::arg("xacro_args") = py::none(), py::arg("package_path") = py::none(),
              R"(Reads a robot: URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin and rlmdl.
 
 Parameters
 ----------
 xacro_args : sequence of str, optional
     Arguments of a file called NAME.xacro, as in 'name:=left'.
+package_path : path or sequence of paths, optional
+    Packages, or folders that hold them, which $(find NAME) of xacro and included models of SDF
+    name, besides those of the environment and the folders above the file.
 
 Raises
 ------

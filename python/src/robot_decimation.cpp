@@ -27,7 +27,7 @@ struct EnclosedValue {
 };
 
 std::vector<Keyword> decimate_keywords() {
-  return keywords_of(robot::shape_options()) + keywords_of(link_mesh_options());
+  return keywords_of(robot::held_shape_options()) + keywords_of(link_mesh_options());
 }
 
 EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons,
@@ -38,7 +38,7 @@ EnclosedValue decimate_robot(const py::object& robot, const py::object& epsilons
   const auto known = link_mesh_options();
   const std::set<std::string> stated = take_options(known, keywords, options);
   robot::ShapeChoice shapes;
-  take_options(robot::shape_options(), keywords, shapes);
+  take_options(robot::held_shape_options(), keywords, shapes);
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("decimate_robot", keywords, decimate_keywords());
   require_none(certify::contradiction(options, stated));

@@ -24,7 +24,18 @@ class Files {
   Files(std::vector<std::string> packages, std::size_t exact_points)
       : packages_(std::move(packages)), exact_points_(exact_points) {}
 
-  const verify::MeshFile& of(const robot::Geometry& mesh, const robot::RobotFile& robot) {
+  /// @param skip  a mesh without a file is one with an error
+  const verify::MeshFile& of(const robot::Geometry& mesh, const robot::RobotFile& robot,
+                             bool skip) {
+    if (skip) {
+      const robot::FoundMesh found = robot::look_for_mesh(mesh.mesh, robot.path, packages_);
+      if (found.files.empty()) {
+        verify::MeshFile file{mesh.mesh, {}, {}};
+        file.error = Error(ErrorCode::InvalidInput, found.what);
+        return files_.emplace(robot.path.string() + '\n' + mesh.mesh, std::move(file))
+            .first->second;
+      }
+    }
     const std::string path = robot::find_only_mesh(mesh.mesh, robot.path, packages_).string();
     const auto at = files_.find(path);
     if (at != files_.end()) return at->second;
@@ -89,7 +100,8 @@ Verdict verify_robot(const py::object& original, const py::object& result,
   verify::RobotQuestion question = verify::question_of(
       first.file->robot, second.file->robot,
       [&](const robot::Geometry& mesh, bool of_result) -> const verify::MeshFile& {
-        return files.of(mesh, of_result ? *second.file : *first.file);
+        return files.of(mesh, of_result ? *second.file : *first.file,
+                        !of_result && options.shapes.skip_missing);
       },
       options);
   Watch watch(running.progress);

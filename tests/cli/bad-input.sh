@@ -76,7 +76,8 @@ echo '<robot name="r"><group name="g"><link name="l"/></group></robot>' >robot.s
 echo '<package/>' >package.xml
 cp robot.urdf urdf.xml
 expect 2 'need a folder' "$D" robot.urdf -o x.off --epsilon 1%
-expect 3 'bcd-decompose urdf.xml -o FOLDER' "$D" urdf.xml -o x.off --epsilon 1%
+expect 2 'need a folder' "$D" urdf.xml -o x.off --epsilon 1%
+expect 3 'bcd-decompose urdf.xml -o FOLDER' "$BIN/hausdorff-eval" urdf.xml t.off
 expect 3 'xacro robot.urdf.xacro > robot.urdf' env PATH=/nowhere "$BIN/bcd-decompose" robot.urdf.xacro -o x
 for tool in "$D" "$BIN/bcd-decompose"; do
   for f in world.sdf world.xml arm.xml; do expect 2 'need a folder' "$tool" $f -o x.obj --epsilon 1%; done
@@ -85,10 +86,15 @@ for tool in "$D" "$BIN/bcd-decompose"; do
   expect 3 'rl.xml: a robot of the Robotics Library.*sweep-approx' "$tool" rl.xml -o x.obj --epsilon 1%
   expect 3 'scene.xml: a scene of the Robotics Library.*href' "$tool" scene.xml -o x.obj --epsilon 1%
   expect 3 'robot.srdf: SRDF .*give the URDF' "$tool" robot.srdf -o x.obj --epsilon 1%
-  expect 3 'package.xml: XML of a kind that is not known' "$tool" package.xml -o x.obj --epsilon 1%
-  expect 3 'empty.xml: neither a mesh nor well-formed XML' "$tool" empty.xml -o x.obj --epsilon 1%
+  expect 3 'package.xml: XML with the root <package>; neither a robot nor a mesh' "$tool" package.xml -o x.obj --epsilon 1%
+  expect 3 'empty.xml: neither a mesh nor a robot: no XML: it is empty' "$tool" empty.xml -o x.obj --epsilon 1%
   expect 3 'none.xml: no such file' "$tool" none.xml -o x.obj --epsilon 1%
 done
+# Robots are known by what they are, and what is none is called what it is.
+cp t.off off.urdf
+expect 3 "off.urdf: no robot, but no XML: it begins with 'OFF" "$BIN/bcd-decompose" off.urdf -o x
+cp package.xml package.urdf
+expect 3 'package.urdf: no robot, but XML with the root <package>' "$BIN/bcd-decompose" package.urdf -o x
 for f in robot.srdf scene.xml package.xml; do
   mkdir -p kinds
   cp $f kinds/$f.urdf

@@ -184,4 +184,30 @@ expect 3 'several links' "$V" sweep flat.urdf timed.csv flat.urdf
 # Shapes for drawing.
 expect 0 "no visual shape, only collision ones" "$S" flat.urdf --path plain.csv -o seen.glb --visual
 shows 0 '1 of 4 links judged' "$V" sweep flat.urdf plain.csv seen.glb --visual
+# A robot is what is in its file, whatever the file is called; the result's name says it.
+mkdir -p kinds
+cat >kinds/a.urdf <<'END'
+<robot name="r"><link name="l"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>
+END
+cat >kinds/b.sdf <<'END'
+<sdf version="1.9"><model name="m"><link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></sdf>
+END
+cat >kinds/c.xml <<'END'
+<mujoco model="m"><worldbody><body name="l"><geom type="box" size="1 1 1"/></body></worldbody></mujoco>
+END
+cp kinds/a.urdf kinds/d.xml
+cp kinds/a.urdf kinds/e.sdf
+cp kinds/b.sdf kinds/f.urdf
+cp kinds/b.sdf kinds/g.xml
+cp kinds/c.xml kinds/h.urdf
+for case in a.urdf:a.urdf b.sdf:b.sdf c.xml:c.xml d.xml:d.urdf e.sdf:e.urdf f.urdf:f.sdf g.xml:g.sdf h.urdf:h.xml; do
+  from=${case%:*} to=${case#*:}
+  out=kind-${from%.*}
+  expect 0 "$out/$to" "$BIN/bcd-decompose" "kinds/$from" -o "$out" --epsilon 2%
+  [ -s "$out/$to" ] || fail "$from: $(ls "$out")"
+  shows 0 '^verified' "$BIN/bound-verify" robot "kinds/$from" "$out/$to"
+done
+expect 0 '' "$BIN/bcd-decompose" kinds/d.xml -o kind-both --epsilon 2% --robot-format mjcf
+[ -s kind-both/d.urdf ] && [ -s kind-both/d.xml ] || fail "both: $(ls kind-both)"
+
 finish

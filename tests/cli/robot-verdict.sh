@@ -180,6 +180,7 @@ made 0 'every triangle of 1 link is inside' bcd-decompose "$R/few.urdf" -o out -
 made 0 'every triangle of 2 links is inside' bmesh-decimate "$R/few.urdf" -o out --links tool,base --epsilon 0.05
 # What was left out on request is said, and not called inside.
 made 0 'but the 2 of sheets that were dropped on request' bcd-decompose "$R/few.urdf" -o out --links tool --drop-sheets --effort fast
+grep -q '^tool .*  inside but sheets$' err.txt || fail "the row of a link without its sheets: $(cat err.txt)"
 # Nothing is verified about nothing, and a shape of size 0 is no obstacle.
 made 0 'every triangle of 4 links is inside' bcd-decompose "$R/zero.urdf" -o out --epsilon 0.05 --effort fast
 made 0 'every triangle of 4 links is inside' bmesh-decimate "$R/zero.urdf" -o out --epsilon 0.05

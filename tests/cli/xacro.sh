@@ -87,5 +87,58 @@ for bad in reach :=1 --deps:=1; do
   expect 2 'is no argument of xacro: NAME:=VALUE is meant' with_xacro "$D" robot/arm.urdf.xacro -o x --epsilon 2% --xacro-args "$bad"
 done
 expect 2 'are for files called NAME.xacro' "$D" of-urdf/arm.urdf -o x --epsilon 2% --xacro-args a:=1
+# $(find NAME): packages are found as those of meshes are, with Python's module of ROS or without; also those that
+# included files name, and by the other programs.
+cat >bin/xacro <<'END'
+#!/usr/bin/env python3
+import os, re, sys
+from ament_index_python.packages import get_package_share_directory
+def text_of(name):
+    text = re.sub(r"\$\(find ([^)]*)\)", lambda m: get_package_share_directory(m.group(1).strip()), open(name).read())
+    here = os.path.dirname(name)
+    return re.sub(r'<xacro:include filename="([^"]*)"/>', lambda m: text_of(os.path.join(here, m.group(1))), text)
+arguments = [a for a in sys.argv[1:] if ":=" in a]
+if arguments not in ([], ["side:=left"]):
+    sys.exit("got: " + str(sys.argv))
+if sys.argv[1] == "--deps":
+    sys.exit()
+print(text_of(sys.argv[1]))
+END
+chmod +x bin/xacro
+mkdir -p ws/arm_description/urdf ws/arm_description/meshes ws/grip/urdf found
+cp robot/meshes/t.off ws/arm_description/meshes
+echo '<package><name>grip_description</name></package>' >ws/grip/package.xml
+echo '<link name="tool"><collision><geometry><mesh filename="package://arm_description/meshes/t.off"/></geometry></collision></link>' >ws/grip/urdf/grip.xacro
+cat >ws/arm_description/urdf/links.xacro <<'END'
+<link name="base"><collision><geometry><mesh filename="package://arm_description/meshes/t.off"/></geometry></collision></link>
+<xacro:include filename="$(find grip_description)/urdf/grip.xacro"/>
+END
+cat >found/arm.urdf.xacro <<'END'
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="$(find arm_description)/urdf/links.xacro"/>
+<joint name="j" type="revolute"><parent link="base"/><child link="tool"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+END
+expect 0 '2 links' with_xacro "$D" found/arm.urdf.xacro -o of-found --epsilon 2% --package-path ws --xacro-args side:=left --depfile y.d
+shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot found/arm.urdf.xacro of-found/arm.urdf --package-path ws
+expect 0 '2 links' env ROS_PACKAGE_PATH="$WORK/ws" PATH="$WORK/bin:$PATH" "$D" found/arm.urdf.xacro -o of-ros --epsilon 2%
+expect 3 "xacro fails.*\$(find arm_description) of found/arm.urdf.xacro:2 is no package that is found: name it, or the folder that holds it, by --package-path" with_xacro "$D" found/arm.urdf.xacro -o x --epsilon 2%
+mkdir -p ros/ament_index_python
+cat >ros/ament_index_python/packages.py <<'END'
+import os, sys
+def get_package_share_directory(name):
+    print("the installed one", file=sys.stderr)
+    return os.path.join(os.environ["AMENT_PREFIX_PATH"].split(":")[0], "share", name)
+END
+: >ros/ament_index_python/__init__.py
+mkdir tmp
+expect 0 '2 links' env TMPDIR="$WORK/tmp" PYTHONPATH="$WORK/ros" PATH="$WORK/bin:$PATH" "$D" found/arm.urdf.xacro -o of-module --epsilon 2% --package-path ws
+[ -z "$(ls -A tmp)" ] || fail "folders are left behind: $(ls tmp)"
+printf 'j\n0\n0.2\n' >path.csv
+expect 0 '' with_xacro "$BIN/sweep-approx" found/arm.urdf.xacro --path path.csv -o swept.glb --epsilon 0.05 --package-path ws --xacro-args side:=left
+shows 0 '' with_xacro "$BIN/bound-verify" sweep found/arm.urdf.xacro path.csv swept.glb --prepare --package-path ws --xacro-args side:=left
+with_xacro "$BIN/kaboum-pairs" found/arm.urdf.xacro --package-path ws --xacro-args side:=left >out.txt 2>err.txt
+case $? in 0 | 7) ;; *) fail "kaboum-pairs: $(cat err.txt)" ;; esac
+shows 0 '' with_xacro "$BIN/kaboum-ik" found/arm.urdf.xacro --pose-of 0.5 --package-path ws --xacro-args side:=left
 pgrep -f "$WORK/bin/xacro" >/dev/null && fail "xacro still runs"
 finish

@@ -12,6 +12,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -67,6 +68,41 @@ NESTED = """<sdf version="1.11"><model name="n"><link name="base"><pose>0 0 1 0 
 <joint name="shoulder" type="revolute"><parent>base</parent><child>arm::lower</child><axis><xyz>0 0 1</xyz></axis></joint>
 <link name="hook"><pose>1 0 0 0 0 0</pose></link><joint name="follows" type="revolute"><parent>base</parent><child>hook</child>
 <axis><xyz>1 0 0</xyz><mimic joint="shoulder"><multiplier>0.5</multiplier><offset>0.2</offset><reference>0.1</reference></mimic></axis></joint></model></sdf>"""
+# A model attached whole, a body and a frame of it, with prefixes; its angles are in another unit and order, its classes
+# are its own, its mesh lies in its own folder, and it attaches another one itself.
+ATTACHED = {
+    "attach.xml": """<mujoco model="main"><compiler angle="degree" meshdir="meshes"/>
+<default><geom contype="1" density="5"/><joint axis="1 0 0" damping="2"/><default class="mc"><geom contype="0" conaffinity="0"/><joint range="-10 10"/></default></default>
+<asset><mesh file="part.obj"/><model name="arm" file="sub/arm.xml"/></asset>
+<worldbody><body name="table" childclass="mc"><joint name="turn"/><geom class="main" type="mesh" mesh="part"/>
+<frame pos="0 0 1" euler="0 0 90"><attach model="arm" body="base" prefix="l_"/></frame><attach model="arm" body="base" prefix="r_"/>
+<replicate count="2" offset="0 1 0"><attach model="arm" frame="mount" prefix="f"/></replicate></body><attach model="arm" prefix="w_"/></worldbody></mujoco>""",
+    "sub/arm.xml": """<mujoco model="a"><compiler angle="radian" meshdir="parts" eulerseq="ZYx" autolimits="true"/>
+<default><geom type="box"/><default class="c"><geom size="0.02 0.03 0.04"/><joint range="-1 1" axis="0 1 0" ref="0.1"/>
+<default class="slides"><joint type="slide" range="-0.2 0.3"/></default></default></default>
+<asset><mesh name="part" file="part.obj" scale="1 1 2"/><model file="hand.xml"/></asset>
+<worldbody><geom name="floor" size="1 1 .1"/><body name="base" pos="0 0 1" euler="0.1 0.2 0.3" childclass="c"><joint name="j" pos="0.1 0 0"/>
+<geom name="g" type="capsule" fromto="0 0 0 0 0.1 .3" size="0.02"/><geom type="mesh" mesh="part" axisangle="0 1 1 0.7"/>
+<frame name="mount" pos="0.1 0 0" euler="0.3 0 0.1"><geom size="0.01 0.02 0.03"/></frame>
+<body name="tip" pos="0 0 .3"><joint name="j2" class="slides"/><geom/><attach model="hand" prefix="h_"/></body></body><body name="other"><geom size=".1 .1 .1"/></body></worldbody>
+<contact><exclude body1="base" body2="tip"/><exclude body1="base" body2="other"/><exclude body1="world" body2="base"/></contact>
+<equality><joint joint1="j" joint2="j2"/></equality><actuator><motor joint="j" name="a"/></actuator><sensor><actuatorfrc actuator="a"/><framepos objtype="body" objname="tip"/></sensor></mujoco>""",
+    "sub/hand.xml": """<mujoco model="hand"><compiler angle="radian"/><worldbody><body name="palm" pos="0 0 0.1" euler="0.2 0.1 0"><joint name="grip" axis="0 0 1" range="0 0.5"/>
+<geom type="sphere" size="0.03"/></body></worldbody></mujoco>"""}
+# Models that are included: with and without a name, a pose and a placement frame, of an older version, and in one another.
+INCLUDED = {
+    "i.sdf": """<sdf version="1.9"><model name="i"><link name="base"><pose>0 0 1 0 0.2 0</pose></link>
+<include><uri>model://wrist/</uri><name>left</name><pose relative_to="base">0.1 0.2 0.3 0.1 0.2 0.3</pose><placement_frame>mount</placement_frame></include>
+<include><uri>model://wrist/</uri></include><joint name="l" type="revolute"><parent>base</parent><child>left::palm</child><axis><xyz>0 1 0</xyz></axis></joint>
+<joint name="r" type="prismatic"><parent>base</parent><child>wrist::palm</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>""",
+    "models/wrist/model.config": """<model><name>wrist</name><sdf version="1.4">old.sdf</sdf><sdf version="1.8">new.sdf</sdf></model>""",
+    "models/wrist/new.sdf": """<sdf version="1.8"><model name="wrist"><pose>0.5 0 0 0 0 0.5</pose><link name="palm"><collision name="c"><geometry><mesh><uri>meshes/part.obj</uri></mesh></geometry></collision></link>
+<frame name="mount" attached_to="palm"><pose>0 0 -0.1 0 0 0.4</pose></frame><include><name>tip</name><uri>model://finger/</uri><pose relative_to="palm">0 0 0.2 0 0 0.1</pose></include>
+<joint name="w" type="revolute"><parent>palm</parent><child>tip::finger</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>""",
+    "models/finger/model.config": """<model><sdf version="1.5">model.sdf</sdf></model>""",
+    "models/finger/model.sdf": """<sdf version="1.5"><model name="finger"><link name="finger"><pose>0 0.1 0 0.3 0 0</pose><collision name="c"><geometry><box><size>0.1 0.1 0.2</size></box></geometry></collision></link>
+<link name="nail"><pose>0 0.1 0.2 0 0.4 0</pose></link><joint name="n" type="revolute"><parent>finger</parent><child>nail</child>
+<axis><xyz>0 0 1</xyz><use_parent_model_frame>true</use_parent_model_frame></axis></joint></model></sdf>"""}
 URDF = """<robot name="u" version="1.2"><link name="l0"/><link name="l1"><collision><origin quat_xyzw="0 0 0.6 0.8" xyz="1 2 3"/>
 <geometry><capsule radius="0.1" length="0.5"/></geometry></collision></link><link name="l2"/><link name="l3"/>
 <joint name="a" type="revolute"><parent link="l0"/><child link="l1"/><origin xyz="0.1 0 0.2" quat_xyzw="0.5 0.5 0.5 0.5"/><axis xyz="0 1 1"/>
@@ -81,9 +117,13 @@ def make_robots(folder):
     faces = [line.split()[1:] for line in BOX.splitlines()[10:]]
     (folder / "meshes/part.obj").write_text("".join(f"v {v}\n" for v in vertices) +
                                             "".join(f"f {' '.join(str(int(i) + 1) for i in f)}\n" for f in faces))
-    for name, text in {"m.xml": MJCF, "defaults.xml": DEFAULTS, "s.sdf": SDF, "n.sdf": NESTED, "u.urdf": URDF}.items():
+    for name, text in {"m.xml": MJCF, "defaults.xml": DEFAULTS, "s.sdf": SDF, "n.sdf": NESTED, "u.urdf": URDF, **ATTACHED, **INCLUDED}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
-    return [folder / name for name in ("m.xml", "s.sdf", "n.sdf", "u.urdf")]
+    for place in ("sub/parts", "models/wrist/meshes"):
+        shutil.copytree(folder / "meshes", folder / place)
+    os.environ["ROS_PACKAGE_PATH"] = os.pathsep.join([str(folder / "models"), *filter(None, [os.environ.get("ROS_PACKAGE_PATH")])])
+    return [folder / name for name in ("m.xml", "s.sdf", "n.sdf", "u.urdf", "attach.xml", "i.sdf")]
 
 
 def below(folder):
@@ -281,6 +321,8 @@ def compare_pinocchio_shapes(path, read, model, out):
 def add_packages(packages, path):
     """The folders of $ROS_PACKAGE_PATH that a file names as packages."""
     names = set(re.findall(r"(?:package|model)://([^/\"<]+)/", path.read_text(errors="replace")))
+    if "<include>" in path.read_text(errors="replace"):  # whatever those include
+        names.update(p.name for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x for p in pathlib.Path(x).iterdir())
     for folder in [x for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]:
         for name in sorted(names):
             if (pathlib.Path(folder) / name).is_dir():
@@ -331,6 +373,10 @@ def compare_drake(path, read):
         for name, q in values_of(read, configuration).items():
             # Drake has a joint in the model of its child.
             named = [plant.get_joint(j) for j in plant.GetJointIndices() if plant.get_joint(j).name() == name.split("::")[-1]]
+            if len(named) > 1:
+                models = name.split("::")[:-1]
+                named = [joint for joint in named
+                         if plant.GetModelInstanceName(joint.model_instance()).split("::")[1:len(models) + 1] == models]
             if len(named) != 1:
                 out.fault(f"Drake has {len(named)} joints {name}")
                 return out
@@ -443,6 +489,7 @@ def main():
                 if (answer.get("worst") or 0) > TOLERANCE:
                     fail(path, f"links are {answer['worst']} away from where {engine} has them")
         check_written(own[0], tools, fail)
+        check_written(own[4], tools, fail)
     print("compared:", ", ".join(f"{n} with {engine}" for engine, n in compared.items()))
     return 1 if fail.count else 0
 

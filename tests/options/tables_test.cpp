@@ -115,6 +115,7 @@ TEST(OptionTables, AreSound) {
   check("trajectories", motion::trajectory_options());
   check("files of paths", robot::path_options());
   check("shapes of robots", robot::shape_options());
+  check("shapes of robots that are to be held", robot::held_shape_options());
   check("states", world::state_options());
   check("margins", world::margin_options());
   check("engines", engines::engine_options());

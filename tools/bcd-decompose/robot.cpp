@@ -139,6 +139,7 @@ std::vector<LinkLine> lines_of(const Run& run, const certify::CertifiedBodies& b
     LinkLine& line = out.emplace_back();
     line.name = run.robot.robot.links[link.link].name;
     line.outcome = link.outcome;
+    line.dropped_sheets = link.dropped_sheets;
     line.epsilon =
         page::epsilon_of(line.name, run.request.epsilons, run.request.set.wanted_epsilon());
     if (const certify::CertifiedLink* set = run.set_of(link.link)) {
@@ -266,6 +267,7 @@ Json robot_report(const Run& run, const RobotWriter& output) {
                  {"vertices", counts.vertices},
                  {"meshes", counts.meshes},
                  {"meshes_kept", counts.kept},
+                 {"meshes_missing", counts.missing},
                  {"links", links_report(run, output.link_files())},
                  {"stop", run.code() == kDone ? "done" : "epsilon not reached"},
                  {"verdict", name_of(outcome_of(run.verdicts))},
@@ -371,7 +373,8 @@ double write_shapes(Run& run, const BodyFormat& format, const certify::Certified
 int decompose_into_shapes(const DecomposeOptions& o) {
   const BodyFormat format = format_of_shapes(o);
   const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
-  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments)};
+  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments,
+                               o.robot.shapes.packages)};
   run.request = robot_request(o, run.robot, o.robot.shapes);
   run.request.partial = true;
   const std::vector<robot_folder::UncheckedLinks> unchecked =
@@ -455,8 +458,8 @@ int repair(const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--repair: spheres are written in the format that they have: end --output as " +
                     o.repair + " does (.yaml, .yml, .xrdf, .srdf or .urdf)");
-  const robot::RobotFile robot =
-      robot::read_robot(o.input, robot::Motions::All, o.robot.xacro_arguments);
+  const robot::RobotFile robot = robot::read_robot(
+      o.input, robot::Motions::All, o.robot.xacro_arguments, o.robot.shapes.packages);
   robot::require_links(robot, o.robot.shapes.links);
   const std::vector<char> text = io::read_file(o.repair);
   Progress progress(o.common.quiet);
@@ -511,6 +514,11 @@ int repair(const DecomposeOptions& o) {
 }  // namespace
 
 int decompose_robot(const DecomposeOptions& o) {
+  if (o.robot.shapes.skip_missing &&
+      (!o.repair.empty() || o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes))
+    throw Error(ErrorCode::InvalidArgument,
+                "--missing-meshes skip is for --bodies polytopes: a link without spheres, capsules "
+                "or boxes is no obstacle for whoever reads them; name the others by --links");
   if (!o.repair.empty()) return repair(o);
   if (o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
     return decompose_into_shapes(o);
@@ -526,7 +534,7 @@ int decompose_robot(const DecomposeOptions& o) {
                     fs::path(o.output).replace_extension().string() + ", not " + o.output);
   require_robot_folder(o.output, o.output_format);
   Run run{o, robot::read_robot(o.input, o.srdf ? robot::Motions::All : robot::Motions::None,
-                               o.robot.xacro_arguments)};
+                               o.robot.xacro_arguments, o.robot.shapes.packages)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   robot_folder::FolderOptions folder = folder_options(o.robot);

@@ -84,7 +84,8 @@ std::vector<LinkLine> lines_of(const Run& run) {
     const robot::Link& link = run.robot.robot.links[shapes.front().link];
     LinkLine& line = out.emplace_back();
     line.name = link.name;
-    line.outcome = run.verdicts[at++].outcome;
+    line.outcome = run.verdicts[at].outcome;
+    line.dropped_sheets = run.verdicts[at++].dropped_sheets;
     line.epsilon = page::epsilon_of(link.name, run.request.epsilons, run.request.mesh.mesh.epsilon);
     line.vertices = 0;
     for (const robot::LinkShape& shape : shapes) {
@@ -133,7 +134,7 @@ std::string counts_in_words(const Run& run) {
       run.made.meshes, [](const auto& mesh) { return mesh.flaw.empty() && mesh.made.cached; });
   std::string out =
       counted(counts.bodies, "mesh", "meshes") + " of " + counted(counts.links, "link", "links");
-  if (counts.kept > 0) out += ", from " + counts.of_meshes();
+  if (counts.kept + counts.missing > 0) out += ", from " + counts.of_meshes();
   if (cached > 0) out += " (" + std::to_string(cached) + " from the cache)";
   return out;
 }
@@ -178,6 +179,7 @@ Json decimated_report(const Run& run, const RobotWriter& output) {
     if (mesh.flaw.empty()) before += mesh.made.enclosure.certificate().vertices_in;
   report.update({{"meshes", counts.meshes},
                  {"meshes_kept", counts.kept},
+                 {"meshes_missing", counts.missing},
                  {"vertices_in", before},
                  {"vertices", counts.vertices},
                  {"links", std::move(links)},
@@ -239,7 +241,8 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
   apply_preset(app, o.output, o.robot, nullptr);
   bring_lengths_into("m", certify::mesh_options(), o.mesh);
   require_separate(o);
-  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments)};
+  Run run{o, robot::read_robot(o.input, robot::Motions::None, o.robot.xacro_arguments,
+                               o.robot.shapes.packages)};
   const std::vector<std::string> included =
       o.depfile.empty() ? std::vector<std::string>() : robot::included_files(run.robot);
   const io::Format format = format_of_meshes(o);

@@ -207,10 +207,7 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
                 "robots move alike (of a file in another format up to 1e-9 of the robot's size). "
                 "Beside it only --epsilon, --geometry, --links and --package-path may be stated")
       ->type_name("FILE");
-  c->add_option("--xacro-args", o.robot.xacro_arguments,
-                "Arguments of ORIGINAL, a .xacro file, as bcd-decompose was given them; further "
-                "ones may follow, or the option may be repeated")
-      ->type_name("NAME:=VALUE");
+  add_xacro_arguments(*c, o.robot.xacro_arguments);
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);
   add_raw(*c, o.robot.how.claims);
   add_visual(*c, o.robot.how.shapes);
@@ -234,6 +231,7 @@ void add_sweep_command(CLI::App& app, VerifyOptions& o) {
   add_file(*c, "PATH", o.sweep.path, "Its motion (.csv, .json)");
   add_file(*c, "SWEPT", o.sweep.swept, "The bodies: .glb, .obj, a folder of .stl, .urdf");
   add_request_options(*c, verify::motion_verdict_options(), o.sweep.how, o.stated);
+  add_xacro_arguments(*c, o.sweep.xacro_arguments);
   add_raw(*c, o.sweep.how.claims);
   add_visual(*c, o.sweep.how.shapes.choice);
   add_witness(*c, o.sweep.witness);

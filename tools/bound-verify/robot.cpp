@@ -111,8 +111,9 @@ class RobotVerifier {
   RobotVerifier(const VerifyRobotOptions& options, const CommonOptions& common)
       : o_(options),
         common_(common),
-        original_(robot::read_robot(o_.original, robot::Motions::None, o_.xacro_arguments)),
-        result_(robot::read_robot(o_.result, robot::Motions::None)),
+        original_(robot::read_robot(o_.original, robot::Motions::None, o_.xacro_arguments,
+                                    o_.how.shapes.packages)),
+        result_(robot::read_robot(o_.result, robot::Motions::None, {}, o_.how.shapes.packages)),
         meshes_(o_.how.shapes.packages, o_.how.exact_points),
         progress_(common.quiet) {}
 
@@ -158,7 +159,8 @@ class RobotVerifier {
 
   verify::RobotQuestion question_of() {
     const auto file_of = [this](const Geometry& mesh, bool of_result) -> const verify::MeshFile& {
-      return meshes_.file_of(mesh, of_result ? result_ : original_);
+      return meshes_.file_of(mesh, of_result ? result_ : original_,
+                             !of_result && o_.how.shapes.skip_missing);
     };
     verify::RobotQuestion q = verify::question_of(original_.robot, result_.robot, file_of, o_.how);
     q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
@@ -216,19 +218,29 @@ class RobotVerifier {
 
   /// Before anything is written, so that no mesh is written over.
   void read_meshes(const verify::RobotQuestion& question) {
+    const bool skip = o_.how.shapes.skip_missing;
+    robot::ShapeChoice of_result = o_.how.shapes;
+    of_result.visual = false;
+    of_result.links.clear();
+    if (!skip) robot::require_meshes(original_, o_.how.shapes);
+    for (const robot::Link& link : result_.robot.links)
+      if (question.is_asked(link)) of_result.links.push_back(link.name);
+    if (!of_result.links.empty()) robot::require_meshes(result_, of_result);
     std::size_t shapes = 0;
     std::vector<std::string> inputs{o_.original, o_.result};
-    const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot) {
+    const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot,
+                              bool may_lack) {
       for (const Geometry& g : of)
-        if (g.shape == Geometry::Shape::Mesh) inputs.push_back(meshes_.file_of(g, robot).path);
+        if (g.shape == Geometry::Shape::Mesh)
+          inputs.push_back(meshes_.file_of(g, robot, may_lack).path);
     };
     for (const robot::Link& link : original_.robot.links) {
       if (!question.is_asked(link)) continue;
       shapes += question.shapes_of(link).size();
-      read_all(question.shapes_of(link), original_);
+      read_all(question.shapes_of(link), original_, skip);
     }
     for (const robot::Link& link : result_.robot.links)
-      if (question.is_asked(link)) read_all(link.collision, result_);
+      if (question.is_asked(link)) read_all(link.collision, result_, false);
     if (shapes == 0)
       throw Error(ErrorCode::InvalidInput, o_.original + ": no link has a shape" +
                                                (visual() ? "" : "; try --geometry visual"));

@@ -321,7 +321,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   require_apart({{"--report", common.report}}, {o.original, o.bodies});
   const robot::RobotFile robot =
-      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments);
+      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
   robot::require_links(robot, o.how.shapes.links);
   const robot::RobotFile bodies = robot::read_robot(o.bodies, robot::Motions::None);
   require_known(bodies, robot);

@@ -15,9 +15,20 @@ namespace kaboum::tools {
 namespace fs = std::filesystem;
 using robot::Geometry;
 
-const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot) {
+const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::RobotFile& robot,
+                                             bool skip) {
   const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
   if (!fresh) return *at->second;
+  if (skip) {
+    const robot::FoundMesh found = robot::look_for_mesh(g.mesh, robot.path, packages_);
+    if (found.files.empty()) {
+      // No file has this name, which holds its reader's place.
+      verify::MeshFile file{g.mesh, {}, {}};
+      file.error = Error(ErrorCode::InvalidInput, found.what);
+      const std::string key = robot.path.string() + '\n' + g.mesh;
+      return *(at->second = &files_.emplace(key, std::move(file)).first->second);
+    }
+  }
   const verify::MeshFile& file =
       read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
   at->second = &file;

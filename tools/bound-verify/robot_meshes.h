@@ -19,7 +19,9 @@ class RobotMeshes {
       : packages_(std::move(packages)), exact_points_(exact_points) {}
 
   /// The file of a mesh, where there is only one that may be meant. @throws Error naming it.
-  const verify::MeshFile& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot);
+  /// @param skip  a mesh without a file is one with an error
+  const verify::MeshFile& file_of(const robot::Geometry& mesh, const robot::RobotFile& robot,
+                                  bool skip = false);
 
   /// A record beside one of the files read that names a mesh which the original has among its
   /// shapes of the other kind only; empty: there is none. @param visual  the kind that is judged.

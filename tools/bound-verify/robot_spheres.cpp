@@ -51,7 +51,7 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   require_apart({{"--report", common.report}, {"--page", o.page}}, {o.original, o.spheres});
   const robot::RobotFile robot =
-      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments);
+      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
   robot::require_links(robot, o.how.shapes.links);
   const robot::SphereFile spheres = robot::read_spheres(o.spheres);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;

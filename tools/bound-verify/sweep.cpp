@@ -28,7 +28,13 @@ verify::SweptBodies read_swept(const std::string& path, const VerifySweepOptions
 
 /// Reads everything, and says what is to be known of it.
 SweepCase read(const VerifySweepOptions& o, const CommonOptions& common) {
-  SweepCase run{o, robot::read_robot(o.robot), {}, {}, {}, {}};
+  SweepCase run{o,
+                robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments,
+                                  o.how.shapes.choice.packages),
+                {},
+                {},
+                {},
+                {}};
   if (!o.how.base_pose.empty())
     naming(o.robot, [&] {
       run.robot.robot =

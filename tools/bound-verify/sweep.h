@@ -3,6 +3,7 @@
 #include <kaboum/verify/robot_options.h>
 
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
@@ -13,6 +14,7 @@ struct VerifySweepOptions {
   std::string robot, path, swept;
   std::string set_format;  ///< of `swept`; empty: by its name
   std::string witness;
+  std::vector<std::string> xacro_arguments;  ///< of the robot
   verify::MotionVerdictOptions how;
 };
 

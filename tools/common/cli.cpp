@@ -122,6 +122,13 @@ int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) 
   }
 }
 
+void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments) {
+  app.add_option("--xacro-args", arguments,
+                 "Arguments of a .xacro file, as the program xacro takes them, as in name:=left "
+                 "prefix:=l_; further ones may follow, or the option may be repeated")
+      ->type_name("NAME:=VALUE");
+}
+
 void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--report", options.report, "Write a JSON report to this file (- for stdout)")
       ->type_name("FILE");

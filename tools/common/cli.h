@@ -50,6 +50,9 @@ struct CommonOptions {
 };
 void add_common_options(CLI::App& app, CommonOptions& options);
 
+/// Adds --xacro-args, of tools that read a robot.
+void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments);
+
 /// Holds oneTBB to options.threads (0: all cores) while it lives.
 class ThreadLimit {
  public:

@@ -31,15 +31,18 @@ std::string route(const std::string& path) {
   if (!is({".xacro", ".urdf", ".srdf", ".sdf", ".world", ".mjcf", ".xml", ".rlkin", ".rlmdl"}))
     return {};
   io::XmlKind kind = io::XmlKind::None;
+  std::string other;
   try {
     const std::vector<char> bytes = io::read_file(path);
     kind = io::xml_kind({bytes.data(), bytes.size()});
+    other = io::describe_other({bytes.data(), bytes.size()});
   } catch (const Error& error) {
     return error.what();
   }
   if (extension == ".xacro") kind = io::XmlKind::Xacro;
-  if (kind != io::XmlKind::None) return route_to_mesh(kind, path);
-  return "neither a mesh nor well-formed XML";
+  if (kind == io::XmlKind::None) return "neither a mesh nor a robot: " + other;
+  if (kind == io::XmlKind::Other) return other + "; " + route_to_mesh(kind, path);
+  return route_to_mesh(kind, path);
 }
 
 /// Without slashes at the end.

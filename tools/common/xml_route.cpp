@@ -8,8 +8,8 @@ std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
   switch (kind) {
     case io::XmlKind::Urdf:
       return "a robot (URDF), not a mesh: bcd-decompose " + path +
-             " -o FOLDER decomposes all its links (the name has to end with .urdf); other tools "
-             "take its meshes one by one";
+             " -o FOLDER decomposes all its links (the name has to end with .urdf or .xml); other "
+             "tools take its meshes one by one";
     case io::XmlKind::Xacro:
       return "xacro, not a mesh; bcd-decompose and bmesh-decimate take it as a robot where it is "
              "called NAME.xacro; other tools after: xacro " +
@@ -27,7 +27,7 @@ std::string route_to_mesh(io::XmlKind kind, const std::string& path) {
     case io::XmlKind::RlScene:
       return describe(kind) + "; give the mesh that it names by href";
     case io::XmlKind::Other:
-      return describe(kind) + "; meshes in XML are .dae, .x3d and .3mf";
+      return "neither a robot nor a mesh: meshes in XML are .dae, .x3d and .3mf";
     case io::XmlKind::None:
       break;
   }

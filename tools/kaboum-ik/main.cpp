@@ -51,7 +51,8 @@ struct Chain {
 Chain read_chain(const Options& o) {
   Chain out;
   if (o.scene.empty()) {
-    robot::RobotFile read = robot::read_robot(o.robot);
+    robot::RobotFile read =
+        robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments, o.packages);
     out = {o.robot, read.sha256, std::move(read.robot), o.tip, {}};
   } else {
     world::SceneFile scene = world::read_scene(o.scene);

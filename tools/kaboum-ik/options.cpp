@@ -13,13 +13,22 @@ namespace kaboum::tools {
 
 void describe(CLI::App& app, IkOptions& o) {
   CLI::Option* file =
-      app.add_option("ROBOT", o.robot, "URDF, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
+      app.add_option("ROBOT", o.robot,
+                     "URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
           ->type_name("FILE");
   CLI::Option* scene =
       app.add_option("--scene", o.scene,
                      "A robot of this scene instead: poses are in the world, limits the scene's")
           ->type_name("FILE")
           ->excludes(file);
+  add_xacro_arguments(app, o.xacro_arguments);
+  app.get_option("--xacro-args")->excludes(scene);
+  app.add_option("--package-path", o.packages,
+                 "A package that $(find NAME) of xacro and model:// of SDF name, or a folder that "
+                 "holds it, besides those of the environment and the folders above the robot's "
+                 "file (repeatable)")
+      ->type_name("DIR")
+      ->excludes(scene);
   app.add_option("--robot", o.robot_name, "Which robot of the scene [the only one]")
       ->type_name("NAME")
       ->needs(scene);

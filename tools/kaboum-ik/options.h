@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
@@ -18,6 +19,7 @@ struct IkOptions {
   std::string robot;                    ///< a file, or
   std::string scene, robot_name, tool;  ///< a scene and what of it
   std::string base, tip, pose, pose_of, reference;
+  std::vector<std::string> xacro_arguments, packages;
   kinematics::InverseRequest request;  ///< but for the pose and the reference
   std::set<std::string> stated;        ///< names of the request's options that were stated
   bool json = false, degrees = false;

@@ -84,7 +84,8 @@ int run(const PairsOptions& o) {
                         {"--report", o.common.report}},
                        {o.robot, o.judge});
   const auto begin = std::chrono::steady_clock::now();
-  const robot::RobotFile file = robot::read_robot(o.robot);
+  const robot::RobotFile file =
+      robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments, o.choice.packages);
   std::optional<pairs::Matrix> matrix;
   if (!o.judge.empty()) matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
   std::vector<std::string> notes;

@@ -44,6 +44,7 @@ void describe(CLI::App& app, PairsOptions& o) {
       ->check(CLI::IsMember({"refuted", "open"}))
       ->needs(judge);
   add_request_options(app, robot::shape_options(), o.choice, o.stated);
+  add_xacro_arguments(app, o.xacro_arguments);
   add_request_options(app, pairs::decide_options(), o.decide, o.stated);
   app.add_flag("--json", o.json, "Print JSON instead of a line for each pair");
   add_common_options(app, o.common);

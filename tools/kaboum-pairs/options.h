@@ -5,6 +5,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
@@ -22,6 +23,7 @@ struct PairsOptions {
   std::string output, junit, sarif;  ///< to write, of the judged matrix
   bool fail_on_open = false;
   robot::ShapeChoice choice;
+  std::vector<std::string> xacro_arguments;
   pairs::DecideOptions decide;
   std::set<std::string> stated;
   bool json = false;

@@ -144,7 +144,7 @@ std::string joined(const std::vector<std::string>& texts) {
 std::vector<pairs::LinkSurface> surfaces_of(const robot::RobotFile& file,
                                             const robot::ShapeChoice& choice,
                                             std::vector<std::string>& notes) {
-  robot::require_links(file, choice.links);
+  robot::require_meshes(file, choice);
   std::vector<pairs::LinkSurface> out;
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
     const robot::Link& link = file.robot.links[l];

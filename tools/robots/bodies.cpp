@@ -8,7 +8,8 @@ namespace kaboum::tools {
 
 void require_formats(const robot::LinkMeshes& meshes, const std::string& format) {
   for (const robot::LinkMesh& mesh : meshes.meshes)
-    static_cast<void>(format_for(mesh.file.string(), format, "--input-format"));
+    if (mesh.missing.empty())
+      static_cast<void>(format_for(mesh.file.string(), format, "--input-format"));
 }
 
 std::vector<std::string> strings(const std::vector<std::filesystem::path>& files) {

@@ -22,6 +22,7 @@ int exit_code(Outcome outcome) {
     case Outcome::Far:
     case Outcome::Outside:
     case Outcome::Kept:
+    case Outcome::Missing:
       break;
   }
   return kNo;
@@ -74,6 +75,7 @@ RobotCheck check_of(const std::string& original, const std::string& result,
   if (!preparation.holds_exact_faces()) out.command += " --exact-points 0";
   if (options.shapes.visual) out.command += " --visual";
   if (preparation.drop_sheets) out.command += " --drop-sheets";
+  if (options.shapes.skip_missing) out.command += " --missing-meshes skip";
   if (!options.shapes.links.empty()) {
     std::string links;
     for (const std::string& link : options.shapes.links) links += (links.empty() ? "" : ",") + link;

@@ -58,11 +58,11 @@ bool is_robot(const std::string& path) {
   if (extension != ".xml" || !std::filesystem::is_regular_file(path)) return false;
   const std::vector<char> text = io::read_file(path);
   const io::XmlKind kind = io::xml_kind({text.data(), text.size()});
-  return kind == io::XmlKind::Mjcf || kind == io::XmlKind::Sdf;
+  return kind == io::XmlKind::Urdf || kind == io::XmlKind::Mjcf || kind == io::XmlKind::Sdf;
 }
 
 void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
-  add_request_options(app, robot::shape_options(), o.shapes, o.stated);
+  add_request_options(app, robot::held_shape_options(), o.shapes, o.stated);
   if (from)
     app.add_option_function<std::string>(
            "--from", [&o](const std::string& value) { o.shapes.visual = value == "visual"; },
@@ -88,13 +88,6 @@ void add_robot_options(CLI::App& app, RobotOptions& o, bool from) {
   add_formats(app, o);
 }
 
-void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments) {
-  app.add_option("--xacro-args", arguments,
-                 "Arguments of a .xacro file, as the program xacro takes them, as in name:=left "
-                 "prefix:=l_; further ones may follow, or the option may be repeated")
-      ->type_name("NAME:=VALUE");
-}
-
 void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
   app.add_flag_callback(
          "--require-closed", [&options] { options.holes = geom::Holes::Refuse; },
@@ -103,9 +96,9 @@ void add_require_closed(CLI::App& app, certify::PreparationOptions& options) {
 }
 
 void require_options_of_meshes(const CLI::App& app, const std::string& input) {
-  for (const char* option :
-       {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix", "--epsilons",
-        "--xacro-args", "--robot-format", "--for", "--html-report", "--verbose"})
+  for (const char* option : {"--geometry", "--visual", "--links", "--package-path", "--mesh-prefix",
+                             "--epsilons", "--xacro-args", "--robot-format", "--for",
+                             "--html-report", "--verbose", "--missing-meshes"})
     if (app.get_option(option)->count() != 0)
       throw Error(ErrorCode::InvalidArgument, std::string(option) +
                                                   " is for robots (.urdf, .xacro, .xml, .sdf); " +

@@ -37,9 +37,6 @@ bool is_robot(const std::string& path);
 /// @param from  whether --from collision|visual is one of the options here
 void add_robot_options(CLI::App& app, RobotOptions& options, bool from);
 
-/// Adds --xacro-args.
-void add_xacro_arguments(CLI::App& app, std::vector<std::string>& arguments);
-
 /// Adds --require-closed, the same as --holes refuse under the name that it had.
 void add_require_closed(CLI::App& app, certify::PreparationOptions& options);
 

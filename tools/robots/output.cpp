@@ -28,6 +28,10 @@ void require_robot_folder(const std::string& output, const std::string& output_f
                 "-o: a robot's bodies need a folder, which gets a URDF, the bodies and a container "
                 "per link; name one without the extension of a file, such as " +
                     fs::path(folder).replace_extension().string() + ", not " + output);
+  std::error_code error;
+  if (fs::exists(folder, error) && !is_folder(folder))
+    throw Error(ErrorCode::OutputFailed,
+                output + ": is a file, and a robot's bodies need a folder; name another place");
 }
 
 robot_folder::FolderOptions folder_options(const RobotOptions& o) {

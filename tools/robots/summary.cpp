@@ -20,7 +20,7 @@ constexpr std::size_t kLongestName = 28;
 
 using Cells = std::array<std::string, kColumns>;
 
-const char* word_of(Outcome outcome) {
+std::string word_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::Held:
       return "inside";
@@ -33,9 +33,11 @@ const char* word_of(Outcome outcome) {
     case Outcome::Outside:
       return "NOT inside";
     case Outcome::Kept:
+      return "NOT held";
+    case Outcome::Missing:
       break;
   }
-  return "NOT held";
+  return "NOT verified";
 }
 
 /// Characters that begin here: others of UTF-8 go on.
@@ -74,6 +76,8 @@ std::vector<std::size_t> shown(const std::vector<LinkLine>& links) {
   if (links.size() <= kLinesOfLinks) return order;
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     if (links[a].outcome != links[b].outcome) return links[a].outcome > links[b].outcome;
+    if ((links[a].dropped_sheets > 0) != (links[b].dropped_sheets > 0))
+      return links[a].dropped_sheets > 0;
     return links[a].bodies > links[b].bodies;
   });
   order.resize(kLinesOfLinks - 1);
@@ -101,7 +105,8 @@ std::vector<std::string> table_of(const std::vector<LinkLine>& links, const std:
                  l.vertices ? std::to_string(*l.vertices) : std::string("-"),
                  l.epsilon.empty() ? std::string("-") : epsilon(l.epsilon),
                  has ? length(l.within) : std::string("-"),
-                 word_of(l.outcome)};
+                 word_of(l.outcome) +
+                     (l.dropped_sheets > 0 && l.outcome < Outcome::Undecided ? " but sheets" : "")};
   };
   std::vector<Cells> rows{
       {"link", made, "vertices", "epsilon",
@@ -120,6 +125,7 @@ std::vector<std::string> table_of(const std::vector<LinkLine>& links, const std:
       if (links[i].vertices) rest.vertices = rest.vertices.value_or(0) + *links[i].vertices;
       rest.within = std::max(rest.within, links[i].within);
       rest.outcome = std::max(rest.outcome, links[i].outcome);
+      rest.dropped_sheets += links[i].dropped_sheets;
     }
     rest.name = std::to_string(links.size() - places.size()) + " others";
     rows.push_back(cells(rest));

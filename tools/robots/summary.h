@@ -17,6 +17,7 @@ struct LinkLine {
   std::string epsilon;  ///< asked for
   double within = 0;    ///< certified: nothing is farther from the link's shapes [length]
   certify::Outcome outcome = certify::Outcome::Held;
+  std::size_t dropped_sheets = 0;  ///< triangles of sheets dropped on request: they are outside
 };
 
 /// So many links have a line of their own.

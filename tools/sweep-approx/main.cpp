@@ -43,7 +43,7 @@ certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::R
   request.partial = true;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
-  require_formats(robot::link_meshes(robot, request.shapes), "");
+  require_formats(certify::wanted_meshes(robot, request.shapes), "");
   notes = {};
   for (const std::string& note :
        robot::notes_on_flat_shapes(robot, request.shapes.visual, request.shapes.links))
@@ -65,7 +65,7 @@ void make_bodies(SweepApproxOptions& o, Run& run) {
   Notes notes;
   run.bodies = make_bodies(o, run.robot, notes);
   run.verdicts = verdicts(run.bodies);
-  const auto is_kept = [](const auto& link) { return link.outcome == certify::Outcome::Kept; };
+  const auto is_kept = [](const auto& link) { return link.outcome >= certify::Outcome::Kept; };
   if (std::ranges::any_of(run.verdicts, is_kept)) {
     o.sweep.links.clear();
     std::string why;
@@ -87,7 +87,7 @@ void say_bad_links(const Run& run) {
   for (const certify::LinkVerdict& link : run.verdicts)
     if (link.outcome != certify::Outcome::Held)
       log(false, "link '" + run.robot.robot.links[link.link].name + "': " + link.sentence +
-                     (link.outcome == certify::Outcome::Kept ? "; it is NOT swept" : ""));
+                     (link.outcome >= certify::Outcome::Kept ? "; it is NOT swept" : ""));
 }
 
 /// @return whether float32 is fine enough.
@@ -111,7 +111,7 @@ bool sweep_bodies(Run& run) {
 std::string summary(const Run& run) {
   std::string out;
   for (const certify::LinkVerdict& link : run.verdicts)
-    if (link.outcome == certify::Outcome::Kept)
+    if (link.outcome >= certify::Outcome::Kept)
       out += (out.empty() ? "; NOT swept, as they are not held: " : ", ") +
              run.robot.robot.links[link.link].name;
   return page::summary_of(run.swept.certificate(), run.bodies.artefact().size()) + out;
@@ -202,13 +202,13 @@ robot::RobotFile placed_robot(SweepApproxOptions& o) {
   if (!o.scene.empty()) {
     const SceneRobot found = read_scene_robot(o.scene, o.robot_name);
     o.robot = found.file;
-    robot = robot::read_robot(o.robot);
+    robot = robot::read_robot(o.robot, robot::Motions::All, {}, o.sweep.packages);
     robot.robot.variables = found.variables;
     base = found.base;
   } else if (o.robot.empty()) {
     throw Error(ErrorCode::InvalidArgument, "which robot? Give ROBOT, or --scene");
   } else {
-    robot = robot::read_robot(o.robot);
+    robot = robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments, o.sweep.packages);
     if (!o.sweep.base_pose.empty()) base = robot::parse_pose(o.sweep.base_pose, "--base-pose");
   }
   naming(o.robot, [&] { certify::place(robot.robot, base, o.sweep); });

@@ -15,13 +15,16 @@ namespace {
 
 void add_files(CLI::App& app, SweepApproxOptions& o) {
   auto* robot =
-      app.add_option("ROBOT", o.robot, "Robot: URDF, or the Robotics Library's rlkin or rlmdl XML")
+      app.add_option("ROBOT", o.robot,
+                     "Robot: URDF, xacro, MJCF, SDF, or the Robotics Library's rlkin or rlmdl XML")
           ->type_name("FILE");
   auto* scene = app.add_option("--scene", o.scene,
                                "Instead of ROBOT, a robot of a scene where it stands there, with "
                                "the limits that the scene states (docs/scene.md)")
                     ->excludes(robot)
                     ->type_name("FILE");
+  add_xacro_arguments(app, o.xacro_arguments);
+  app.get_option("--xacro-args")->excludes(scene);
   app.add_option("--robot", o.robot_name, "Which robot of the scene [the only one]")
       ->needs(scene)
       ->type_name("NAME");

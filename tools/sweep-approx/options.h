@@ -5,6 +5,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/cli.h"
 
@@ -20,6 +21,7 @@ struct SweepApproxOptions {
   std::set<std::string> stated;  ///< names of the set's options that were stated
   std::string robot, scene, robot_name, path, output, output_format, preview, depfile, prefix,
       cache;
+  std::vector<std::string> xacro_arguments;
   bool no_cache = false;
   CommonOptions common;
 

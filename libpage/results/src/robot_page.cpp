@@ -11,6 +11,8 @@
 #include <kaboum/robot/mesh_files.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 namespace kaboum::page {
@@ -56,6 +58,17 @@ std::string number(double x) {
   return text.str();
 }
 
+/// Of a bound: four digits, not below it.
+std::string length_up(double x) {
+  if (!(x > 0) || !std::isfinite(x)) return number(x);
+  constexpr int kDigits = 4;
+  const double step = std::pow(10, std::floor(std::log10(x)) - (kDigits - 1));
+  std::string text = number(x);
+  for (double up = std::ceil(x / step); std::strtod(text.c_str(), nullptr) < x; ++up)
+    text = number(up * step);
+  return text;
+}
+
 /// Both seen from the same place.
 std::string drawn(const geom::Mesh& mesh, const geom::Box3& box, const picture::Colour& colour,
                   const std::string& what) {
@@ -91,7 +104,7 @@ void add_row(std::string& page, const PageLink& link) {
   cell(page, std::to_string(link.bodies), "n");
   cell(page, std::to_string(link.vertices), "n");
   cell(page, escape_xml(link.epsilon), "n");
-  cell(page, number(link.reach), "n");
+  cell(page, length_up(link.reach), "n");
   cell(page, link.seconds ? number(*link.seconds) : "cached", "n");
   cell(page, escape_xml(link.verdict.sentence),
        link.verdict.outcome == certify::Outcome::Held ? "yes" : "no");
@@ -105,6 +118,9 @@ std::string RobotCounts::of_meshes() const {
   if (kept > 0)
     text += ", of which " + std::to_string(kept) + (kept == 1 ? " stays" : " stay") + " as " +
             (kept == 1 ? "it was" : "they were");
+  if (missing > 0)
+    text += (kept > 0 ? " and " : ", of which ") + std::to_string(missing) +
+            (missing == 1 ? " is" : " are") + " missing";
   return text;
 }
 
@@ -150,7 +166,7 @@ std::string to_html(const RobotPage& p) {
   cell(page, std::to_string(p.counts.bodies), "n");
   cell(page, std::to_string(p.counts.vertices), "n");
   cell(page, "");
-  cell(page, number(reach), "n");
+  cell(page, length_up(reach), "n");
   cell(page, number(seconds), "n");
   cell(page, escape_xml(in_words(verdicts)),
        outcome_of(verdicts) == certify::Outcome::Held ? "yes" : "no");
@@ -197,7 +213,7 @@ RobotCounts counts_of(const certify::CertifiedRobot& made) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
   RobotCounts counts{.links = verdicts(made).size(), .meshes = bodies.meshes.size()};
   for (const certify::CertifiedLinkMesh& mesh : bodies.meshes)
-    if (!mesh.held) ++counts.kept;
+    if (!mesh.held) ++(mesh.mesh.missing.empty() ? counts.kept : counts.missing);
   for (const certify::CertifiedLink& link : made.links) {
     counts.bodies += link.artefact().bodies.size();
     for (const geom::ConvexBody& body : link.artefact().bodies)
@@ -242,7 +258,7 @@ RobotCounts counts_of(const certify::LinkEnclosures& made) {
   RobotCounts counts{.links = made.shapes_by_link().size(), .meshes = made.meshes.size()};
   for (const certify::EnclosedLinkMesh& mesh : made.meshes) {
     if (!mesh.flaw.empty()) {
-      ++counts.kept;
+      ++(mesh.mesh.missing.empty() ? counts.kept : counts.missing);
       continue;
     }
     ++counts.bodies;

@@ -16,13 +16,14 @@ NewShapes shapes_of(const RobotWriter& writer, const certify::BodiesCertificate&
   const RobotFolder& folder = writer.folder();
   return new_shapes(writer.robot(), bodies.choice, bodies.shapes, [&](std::size_t s) {
     const std::string& name = folder.name_of(s);
-    std::vector<std::string> out;
+    std::optional<std::vector<std::string>> out(std::in_place);
     const certify::CertifiedLinkMesh& mesh = bodies.meshes[*bodies.shapes[s].mesh];
-    if (!mesh.held) return out;
+    if (!mesh.mesh.missing.empty()) return out;
+    if (!mesh.held) return decltype(out)();
     const std::size_t count = mesh.made.found.set.artefact().bodies.size();
     for (std::size_t b = 0; b < count; ++b)
-      out.push_back(folder.part() + "/" + name + "/" + io::default_name(b, name) + "." +
-                    writer.options().bodies);
+      out->push_back(folder.part() + "/" + name + "/" + io::default_name(b, name) + "." +
+                     writer.options().bodies);
     return out;
   });
 }
@@ -60,8 +61,9 @@ void write_certified(RobotWriter& writer, const certify::CertifiedRobot& made,
   std::map<std::string, const geom::Mesh*> by_file;
   for (std::size_t s = 0; s < bodies.shapes.size(); ++s) {
     const robot::LinkShape& shape = bodies.shapes[s];
+    if (shapes[shape.link].empty()) continue;  // it stays as it is
     const auto& files = shapes[shape.link][count_before(bodies.shapes, s)].meshes;
-    if (!files) continue;
+    if (!files || files->empty()) continue;  // it is a mesh that stays, or that is left out
     const auto& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
     for (std::size_t b = 0; b < files->size(); ++b) by_file[(*files)[b]] = &set.bodies[b].core;
   }

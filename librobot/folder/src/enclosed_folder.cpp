@@ -19,8 +19,11 @@ void write_enclosed(RobotWriter& writer, const certify::LinkEnclosures& made,
   }
   const NewShapes shapes =
       new_shapes(writer.robot(), writer.options().shapes, made.shapes, [&](std::size_t s) {
-        std::vector<std::string> out;
-        if (made.meshes[*made.shapes[s].mesh].flaw.empty()) out.push_back(folder.place_of(s));
+        const certify::EnclosedLinkMesh& mesh = made.meshes[*made.shapes[s].mesh];
+        std::optional<std::vector<std::string>> out(std::in_place);
+        if (!mesh.mesh.missing.empty()) return out;
+        if (!mesh.flaw.empty()) return decltype(out)();
+        out->push_back(folder.place_of(s));
         return out;
       });
   if (cache != nullptr) {

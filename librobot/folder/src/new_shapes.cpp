@@ -3,6 +3,8 @@
 #include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot_folder/new_shapes.h>
 
+#include <algorithm>
+
 namespace kaboum::robot_folder {
 namespace {
 
@@ -27,13 +29,19 @@ class Keeper {
     for (Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) continue;
       g.mesh = kept_ == KeptNames::Files
-                   ? relative_to(robot::resolve_mesh(g.mesh, robot_.path, choice_.packages),
-                                 folder_, g.mesh)
+                   ? relative_to(file_of(g.mesh), folder_, g.mesh)
                    : moved_reference(g.mesh, fs::absolute(robot_.path).parent_path(), folder_);
     }
   }
 
  private:
+  [[nodiscard]] fs::path file_of(const std::string& reference) const {
+    if (!choice_.skip_missing) return robot::resolve_mesh(reference, robot_.path, choice_.packages);
+    const robot::FoundMesh found = robot::look_for_mesh(reference, robot_.path, choice_.packages);
+    return found.files.empty() ? fs::absolute(robot_.path).parent_path() / reference
+                               : found.files.front();
+  }
+
   const robot::RobotFile& robot_;
   const robot::ShapeChoice& choice_;
   fs::path folder_;
@@ -62,19 +70,20 @@ std::string moved_reference(const std::string& reference, const fs::path& from,
   return relative_to(from / reference, to, reference);
 }
 
-NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
-                     const std::vector<robot::LinkShape>& shapes,
-                     const std::function<std::vector<std::string>(std::size_t shape)>& meshes_of) {
+NewShapes new_shapes(
+    const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+    const std::vector<robot::LinkShape>& shapes,
+    const std::function<std::optional<std::vector<std::string>>(std::size_t shape)>& meshes_of) {
   NewShapes out(robot.robot.links.size());
   std::vector<std::size_t> count(out.size());
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     const robot::LinkShape& shape = shapes[s];
     NewShape& made = out[shape.link].emplace_back();
     made.first = count[shape.link];
-    std::vector<std::string> meshes;
+    std::optional<std::vector<std::string>> meshes;
     if (shape.mesh) meshes = meshes_of(s);
-    if (!meshes.empty()) {
-      count[shape.link] += meshes.size();
+    if (meshes) {
+      count[shape.link] += meshes->size();
       made.meshes = std::move(meshes);
     } else if (shape.mesh) {
       ++count[shape.link];
@@ -82,6 +91,18 @@ NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& ch
       ++count[shape.link];
     }
   }
+  const auto is_left_out = [](const NewShape& shape) {
+    return shape.meshes && shape.meshes->empty();
+  };
+  const auto is_there = [&](const Geometry& g) {
+    return g.shape != Geometry::Shape::Mesh ||
+           !robot::look_for_mesh(g.mesh, robot.path, choice.packages).files.empty();
+  };
+  if (choice.visual && choice.skip_missing)
+    for (std::size_t l = 0; l < out.size(); ++l)
+      if (std::ranges::all_of(out[l], is_left_out) &&
+          std::ranges::all_of(robot.robot.links[l].collision, is_there))
+        out[l].clear();  // what collided still does
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <kaboum/robot/sdf.h>
 
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "robot_urdf.h"
@@ -33,10 +34,13 @@ class EditedDocument : public RobotDocument {
   void require_shapes(const std::string& /*link*/, bool /*visual*/,
                       std::size_t /*shapes*/) override {}  // they are read by the same reader
 
+  void leave_out(const std::string& mesh) override { left_out_.insert(mesh); }
+
   std::string text(const NewShapes& shapes, bool visual, const MeshNames& names) override {
     const bool sdf = robot_.format == robot::RobotFile::Format::Sdf;
     robot::ShapeEdit edit;
     edit.visual = visual;
+    edit.left_out = left_out_;
     edit.moved = [&](const std::string& file) { return moved_reference(file, from_, folder_); };
     for (const std::vector<NewShape>& link : shapes) {
       std::vector<robot::ShapeMeshes>& to = edit.links.emplace_back();
@@ -54,6 +58,7 @@ class EditedDocument : public RobotDocument {
  private:
   const robot::RobotFile& robot_;
   fs::path from_, folder_;
+  std::set<std::string> left_out_;
 };
 
 }  // namespace

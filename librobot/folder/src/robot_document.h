@@ -30,6 +30,9 @@ class RobotDocument {
   /// @throws Error{InvalidInput} when a link has another number of shapes here.
   virtual void require_shapes(const std::string& link, bool visual, std::size_t shapes) = 0;
 
+  /// A mesh without a file (ShapeEdit::left_out). @param mesh  as Geometry::mesh
+  virtual void leave_out(const std::string& /*mesh*/) {}
+
   /// The copy's text, the last thing to be asked for.
   /// @param visual  whether the new shapes stand for the shapes for drawing
   virtual std::string text(const NewShapes& shapes, bool visual, const MeshNames& names) = 0;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <set>
 #include <string_view>
@@ -91,12 +92,30 @@ void refuse(const fs::path& place) {
                                            "program; remove it or name another folder");
 }
 
-/// The robot's name in the new folder.
-fs::path urdf_name(const fs::path& robot) {
-  fs::path name = robot.filename();
-  if (!robot::is_xacro(name)) return name;
-  name.replace_extension();
-  return name.extension() == ".urdf" ? name : fs::path(name.string() + ".urdf");
+/// The robot's name in the new folder, which says what is in it: the one that was read may not.
+fs::path urdf_name(const robot::RobotFile& robot) {
+  using Format = robot::RobotFile::Format;
+  fs::path name = robot.path.filename();
+  if (robot::is_xacro(name)) name.replace_extension();
+  std::string extension = name.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto with = [&](const char* its) {
+    for (const char* known : {".urdf", ".sdf", ".xml", ".mjcf"})
+      if (extension == known) return name.replace_extension(its);
+    return fs::path(name.string() + its);
+  };
+  switch (robot.format) {
+    case Format::Urdf:
+      return extension == ".urdf" ? name : with(".urdf");
+    case Format::Sdf:
+      return extension == ".sdf" ? name : with(".sdf");
+    case Format::Mjcf:
+      return extension == ".xml" || extension == ".mjcf" ? name : with(".xml");
+    case Format::Rl:
+      break;
+  }
+  return name;
 }
 
 }  // namespace
@@ -111,7 +130,7 @@ std::string marked(std::string document) {
 RobotFolder::RobotFolder(fs::path folder, const robot::RobotFile& robot, std::string part,
                          std::string extension)
     : folder_(std::move(folder)),
-      urdf_(folder_ / urdf_name(robot.path)),
+      urdf_(folder_ / urdf_name(robot)),
       part_(std::move(part)),
       extension_(std::move(extension)),
       robot_(robot.robot) {

@@ -48,14 +48,27 @@ struct RobotWriter::State {
   std::vector<std::string> links = {};
   std::vector<std::pair<std::string, std::string>> more = {};  ///< extension, text
   std::optional<certify::CacheFolder> cache = {};              ///< none: all is written
-  PartsHash meshes_hash = {};            ///< of meshes' places and what is in them
-  std::vector<std::string> places = {};  ///< of meshes, relative to the folder
+  PartsHash meshes_hash = {};                ///< of meshes' places and what is in them
+  std::vector<std::string> places = {};      ///< of meshes, relative to the folder
+  std::vector<std::string> unverified = {};  ///< links that have a mesh without a file
   robot::MeshOfFile mesh_of = [](const std::string& /*file*/) { return nullptr; };
 
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> other_formats(
       const NewShapes& shapes, const FileNote& note) const;
   [[nodiscard]] std::vector<std::string> documents() const;
   void write_or_reuse(RobotContents& contents);
+
+  /// A document with a comment that names the links that nothing is claimed of.
+  [[nodiscard]] std::string with_unverified(std::string text) const {
+    if (unverified.empty()) return text;
+    std::string names;
+    for (const std::string& link : unverified) names += (names.empty() ? " " : ", ") + link;
+    for (std::size_t at = names.find("--"); at != std::string::npos; at = names.find("--"))
+      names.replace(at, 2, "- -");  // which ends no comment
+    if (text.starts_with("#usda")) text += "# ";
+    return text + "<!-- NOT verified, for meshes of theirs are missing and left out:" + names +
+           " -->\n";
+  }
 };
 
 RobotWriter::RobotWriter(FolderOptions options, const std::string& folder,
@@ -86,6 +99,15 @@ void RobotWriter::add_document(std::string extension, std::string text) {
 
 void RobotWriter::plan(const robot::LinkMeshes& meshes) {
   const robot::ShapeChoice& shapes = state_->o.shapes;
+  state_->unverified.clear();
+  for (const robot::LinkShape& shape : meshes.shapes) {
+    if (!shape.mesh || meshes.meshes[*shape.mesh].missing.empty()) continue;
+    const std::string& link = state_->robot.robot.links[shape.link].name;
+    if (state_->unverified.empty() || state_->unverified.back() != link)
+      state_->unverified.push_back(link);
+    state_->document->leave_out(
+        shapes.shapes_of(state_->robot.robot.links[shape.link])[shape.index].mesh);
+  }
   for (const robot::Link& link : state_->robot.robot.links)
     if (shapes.has(link))
       state_->document->require_shapes(link.name, shapes.visual, shapes.shapes_of(link).size());
@@ -185,11 +207,12 @@ void RobotWriter::write(const NewShapes& shapes, decltype(RobotContents::write_m
       std::move(write_mesh), std::move(links), s.other_formats(shapes, note), {}};
   const MeshNames names{with_slash(state_->o.mesh_prefix), state_->o.declare_convex};
   contents.documents.insert(contents.documents.end(), state_->more.begin(), state_->more.end());
-  for (auto& [extension, text] : contents.documents) text = marked(std::move(text));
+  for (auto& [extension, text] : contents.documents)
+    text = s.with_unverified(marked(std::move(text)));
   std::string text = s.document->text(shapes, s.o.shapes.visual, names);
   if (!s.o.inertials.empty())
     text = robot::with_inertials(text, s.folder.urdf().string(), s.o.inertials).text;
-  contents.urdf = marked(std::move(text));
+  contents.urdf = s.with_unverified(marked(std::move(text)));
   s.write_or_reuse(contents);
 }
 

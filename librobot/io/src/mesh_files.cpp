@@ -121,19 +121,137 @@ std::string said(const char* title, const std::vector<fs::path>& places) {
   return std::string(title) + (places.empty() ? " (none)" : " (" + listed(places) + ")");
 }
 
+/// Where a package is, and where it was looked for.
+class PackagePlaces {
+ public:
+  /// @param folder  of the robot
+  PackagePlaces(const std::string& name, const fs::path& folder,
+                const std::vector<std::string>& packages)
+      : name_(name),
+        search_(name),
+        given_(packages.begin(), packages.end()),
+        ros_(places_of("ROS_PACKAGE_PATH")),
+        ament_(places_of("AMENT_PREFIX_PATH")) {
+    constexpr int kDepth = 5;
+    for (const fs::path& place : given_) search_.place(place, kDepth);
+    for (const fs::path& place : ros_) search_.place(place, kDepth);
+    for (const fs::path& place : ament_) search_.add(place / "share" / name);
+    for (const char* gazebo : {"GZ_SIM_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH"})
+      for (const fs::path& place : places_of(gazebo)) search_.add(place / name);
+    std::error_code error;
+    for (fs::path up = fs::absolute(folder, error).lexically_normal();; up = up.parent_path()) {
+      search_.place(up, 1);
+      above_.push_back(up);
+      if (up == up.root_path() || up.empty()) break;
+    }
+  }
+
+  [[nodiscard]] const std::vector<fs::path>& found() const { return search_.found(); }
+
+  /// @pre none was found
+  [[nodiscard]] std::string why_none() const {
+    return "no folder called " + name_ + ", or with a package.xml of that <name>, is in or is " +
+           said("one of «package-path»", given_) + ", " + said("$ROS_PACKAGE_PATH", ros_) + ", " +
+           said("share/ of $AMENT_PREFIX_PATH", ament_) + ", " +
+           said("the robot's folder and those above", above_) +
+           "; name it, or the folder that holds it, by «package-path»";
+  }
+
+ private:
+  std::string name_;
+  PackageSearch search_;
+  std::vector<fs::path> given_, ros_, ament_, above_;
+};
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The file of a model's folder.
+fs::path model_in(const fs::path& folder) {
+  constexpr int kLastMinor = 12;
+  tinyxml2::XMLDocument xml;
+  const fs::path config = folder / "model.config";
+  if (xml.LoadFile(config.c_str()) == tinyxml2::XML_SUCCESS && xml.RootElement() != nullptr) {
+    fs::path best;
+    int newest = -1;
+    for (const auto* e = xml.RootElement()->FirstChildElement("sdf"); e != nullptr;
+         e = e->NextSiblingElement("sdf")) {
+      const char* text = e->GetText();
+      const char* version = e->Attribute("version");
+      const std::string_view number = version == nullptr ? "1.0" : version;
+      const int minor =
+          number.starts_with("1.") ? std::atoi(std::string(number.substr(2)).c_str()) : 0;
+      if (text == nullptr || minor <= newest || minor > kLastMinor) continue;
+      std::string name = text;
+      std::erase_if(name, [](char c) { return c == '\n' || c == '\r' || c == '\t'; });
+      name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
+      name.erase(name.find_last_not_of(' ') + 1);
+      newest = minor;
+      best = folder / name;
+    }
+    if (!best.empty()) return best;
+  }
+  return folder / "model.sdf";
+}
+
 }  // namespace
 
-std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& robot,
-                                const std::vector<std::string>& packages) {
-  const auto fail = [&](const std::string& why) -> std::vector<fs::path> {
-    throw Error(ErrorCode::InvalidInput,
-                robot.string() + ": no mesh file for '" + reference + "': " + why +
-                    (reference.find("%20") != std::string::npos
-                         ? "; %20 stands for a blank in URIs, but is not decoded here: name the "
-                           "file with a blank"
-                         : ""));
+fs::path find_package(const std::string& name, const fs::path& robot,
+                      const std::vector<std::string>& packages) {
+  const PackagePlaces looked(name, folder_of(robot), packages);
+  return looked.found().empty() ? fs::path() : looked.found().front();
+}
+
+fs::path find_model(const std::string& uri, const fs::path& from,
+                    const std::vector<std::string>& packages) {
+  const auto fail = [&](const std::string& why) {
+    throw Error(ErrorCode::InvalidInput, "no model '" + uri + "': " + why);
   };
-  const fs::path folder = robot.has_parent_path() ? robot.parent_path() : fs::path(".");
+  const std::string file = "file://", model = "model://", package = "package://";
+  std::vector<fs::path> places;
+  std::string why;
+  if (uri.starts_with(model) || uri.starts_with(package)) {
+    const std::size_t scheme = uri.starts_with(model) ? model.size() : package.size();
+    const std::string path = uri.substr(std::min(uri.find_first_not_of('/', scheme), uri.size()));
+    const std::string name = path.substr(0, path.find('/'));
+    const std::string rest =
+        path.substr(std::min(path.find_first_not_of('/', name.size()), path.size()));
+    if (name.empty()) fail("it names no folder");
+    const PackagePlaces looked(name, folder_of(from), packages);
+    for (const fs::path& place : looked.found())
+      places.push_back(rest.empty() ? place : place / rest);
+    why = places.empty() ? looked.why_none() : "the folder is " + listed(places);
+  } else if (uri.find("://") != std::string::npos && !uri.starts_with(file)) {
+    fail("only model://, package:// and file:// are known; get it onto this machine");
+  } else {
+    fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
+    if (path.is_relative()) path = folder_of(from) / path;
+    why = "there is nothing of that name: " + path.string();
+    places.push_back(std::move(path));
+  }
+  for (const fs::path& place : places) {
+    if (is_file(place)) return place;
+    if (!is_folder(place)) continue;
+    const fs::path found = model_in(place);
+    if (is_file(found)) return found;
+    why = "the folder has no " + found.filename().string() + ": " + place.string();
+  }
+  fail(why);
+  return {};
+}
+
+FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
+                        const std::vector<std::string>& packages) {
+  const auto fail = [&](const std::string& why, const std::string& what = {}) {
+    return FoundMesh{{},
+                     why + (reference.find("%20") != std::string::npos
+                                ? "; %20 stands for a blank in URIs, but is not decoded here: "
+                                  "name the file with a blank"
+                                : ""),
+                     what.empty() ? why : what};
+  };
+  const fs::path folder = folder_of(robot);
   const std::string file = "file://", model = "model://";
   const std::string package = reference.starts_with(model) ? model : "package://";
   if (!reference.starts_with(package)) {
@@ -142,7 +260,7 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
     fs::path path =
         reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
     if (path.is_relative()) path = folder / path;
-    if (is_file(path)) return {path};
+    if (is_file(path)) return {{path}, {}, {}};
     return fail("there is no file " + path.string());
   }
   // package:///NAME/FILE can only mean the same: no package is without a name.
@@ -153,34 +271,23 @@ std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& ro
       uri.substr(std::min(uri.find_first_not_of('/', name.size()), uri.size()));
   if (name.empty() || rest.empty()) return fail("it is not of the form package://NAME/FILE");
 
-  constexpr int kDepth = 5;
-  PackageSearch search(name);
-  const std::vector<fs::path> given(packages.begin(), packages.end());
-  const std::vector<fs::path> ros = places_of("ROS_PACKAGE_PATH");
-  const std::vector<fs::path> ament = places_of("AMENT_PREFIX_PATH");
-  for (const fs::path& place : given) search.place(place, kDepth);
-  for (const fs::path& place : ros) search.place(place, kDepth);
-  for (const fs::path& place : ament) search.add(place / "share" / name);
-  for (const char* gazebo : {"GZ_SIM_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH"})
-    for (const fs::path& place : places_of(gazebo)) search.add(place / name);
-  std::error_code error;
-  std::vector<fs::path> above;
-  for (fs::path up = fs::absolute(folder, error).lexically_normal();; up = up.parent_path()) {
-    search.place(up, 1);
-    above.push_back(up);
-    if (up == up.root_path() || up.empty()) break;
-  }
+  const PackagePlaces looked(name, folder, packages);
   std::vector<fs::path> found;
-  for (const fs::path& place : search.found())
+  for (const fs::path& place : looked.found())
     if (is_file(place / rest)) found.push_back(place / rest);
-  if (!found.empty()) return found;
-  if (!search.found().empty())
-    return fail("the package is " + listed(search.found()) + ", without a file " + rest);
-  return fail("no folder called " + name + ", or with a package.xml of that <name>, is in or is " +
-              said("one of «package-path»", given) + ", " + said("$ROS_PACKAGE_PATH", ros) + ", " +
-              said("share/ of $AMENT_PREFIX_PATH", ament) + ", " +
-              said("the robot's folder and those above", above) +
-              "; name it, or the folder that holds it, by «package-path»");
+  if (!found.empty()) return {std::move(found), {}, {}};
+  if (!looked.found().empty())
+    return fail("the package is " + listed(looked.found()) + ", without a file " + rest);
+  return fail(looked.why_none(), "there is no package or folder " + name);
+}
+
+std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& robot,
+                                const std::vector<std::string>& packages) {
+  FoundMesh found = look_for_mesh(reference, robot, packages);
+  if (found.files.empty())
+    throw Error(ErrorCode::InvalidInput,
+                robot.string() + ": no mesh file for '" + reference + "': " + found.why);
+  return std::move(found.files);
 }
 
 fs::path resolve_mesh(const std::string& reference, const fs::path& robot,

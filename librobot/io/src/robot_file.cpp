@@ -6,11 +6,13 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/io/xml_kind.h>
+#include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/mjcf.h>
 #include <kaboum/robot/sdf.h>
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 
 #include "is_file.h"
 #include "xacro.h"
@@ -39,8 +41,8 @@ void find_meshes(Robot& robot, const fs::path& folder) {
 }
 
 /// What to do with a document of this kind where a robot is to come; empty for robots, and for
-/// None.
-std::string route_to_robot(io::XmlKind kind) {
+/// damaged XML.
+std::string route_to_robot(io::XmlKind kind, std::string_view text) {
   const std::string urdf =
       "; give the robot as URDF, MJCF or SDF, or as rlkin or rlmdl (Robotics Library)";
   switch (kind) {
@@ -49,16 +51,32 @@ std::string route_to_robot(io::XmlKind kind) {
     case io::XmlKind::RlScene:
       return describe(kind) + "; give the rlkin or rlmdl that moves it";
     case io::XmlKind::Other:
-      return describe(kind) + urdf;
+      return "no robot, but " + io::describe_other(text) + urdf;
+    case io::XmlKind::None:
+      // Where it is XML, its parser says where it is damaged.
+      if (const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+          first != std::string_view::npos && text[first] != '<')
+        return "no robot, but " + io::describe_other(text) + urdf;
+      break;
     case io::XmlKind::Urdf:
     case io::XmlKind::Xacro:  // its parser names the line
     case io::XmlKind::Mjcf:
     case io::XmlKind::Sdf:
     case io::XmlKind::RlRobot:
-    case io::XmlKind::None:
       break;
   }
   return {};
+}
+
+/// What an SDF robot includes. @param took  gets the file of each
+ModelSource models_of(const RobotFile& robot, std::function<void(const std::string&)> took) {
+  return [packages = robot.packages, took = std::move(took)](const std::string& uri,
+                                                             const std::string& from) {
+    const fs::path file = fs::absolute(find_model(uri, from, packages)).lexically_normal();
+    took(file.string());
+    const std::vector<char> bytes = io::read_file(file);
+    return IncludedModel{file.string(), {bytes.begin(), bytes.end()}};
+  };
 }
 
 }  // namespace
@@ -86,24 +104,26 @@ Dynamics dynamics_of(const RobotFile& robot) {
 }
 
 RobotFile read_robot(const std::string& path, Motions motions,
-                     const std::vector<std::string>& xacro_arguments) {
+                     const std::vector<std::string>& xacro_arguments,
+                     const std::vector<std::string>& packages) {
   RobotFile out;
   out.path = path;
   out.xacro_arguments = xacro_arguments;
+  out.packages = packages;
   if (!xacro_arguments.empty() && !is_xacro(path))
     throw Error(ErrorCode::InvalidArgument,
                 path + ": arguments of xacro are for files called NAME.xacro");
   std::string name = path;
   const std::vector<char> bytes = io::read_file(path);
   if (is_xacro(path)) {
-    out.text = expand_xacro(path, xacro_arguments);
+    out.text = expand_xacro(path, xacro_arguments, {}, packages);
     name += " (expanded)";  // whose lines are others
   } else {
     out.text.assign(bytes.begin(), bytes.end());
   }
   out.sha256 = io::sha256(out.text);
   const io::XmlKind kind = io::xml_kind(out.text);
-  if (const std::string route = route_to_robot(kind); !route.empty())
+  if (const std::string route = route_to_robot(kind, out.text); !route.empty())
     throw Error(ErrorCode::InvalidInput, name + ": " + route);
   if (kind == io::XmlKind::RlRobot) {
     out.robot = robot::parse_rl(out.text, name);
@@ -111,10 +131,13 @@ RobotFile read_robot(const std::string& path, Motions motions,
     find_meshes(out.robot, out.path.parent_path());
   } else if (kind == io::XmlKind::Mjcf) {
     out.format = RobotFile::Format::Mjcf;
-    const std::string whole = expand_mjcf(out.text, name, [&](const std::string& file) {
+    const auto read = [&](const std::string& file) {
       const std::vector<char> included = io::read_file(out.path.parent_path() / file);
       return std::string(included.begin(), included.end());
-    });
+    };
+    const std::string expanded = expand_mjcf(out.text, name, read);
+    const std::string whole =
+        attach_mjcf(expanded, expanded == out.text ? name : name + " (expanded)", read);
     std::string stated = state_fitted_sizes(
         whole, whole == out.text ? name : name + " (expanded)",
         [&](const std::string& file) { return io::read_mesh(out.path.parent_path() / file).mesh; });
@@ -124,6 +147,14 @@ RobotFile read_robot(const std::string& path, Motions motions,
     out.robot = parse_mjcf(out.text, name).robot;
   } else if (kind == io::XmlKind::Sdf) {
     out.format = RobotFile::Format::Sdf;
+    std::string whole =
+        include_sdf(out.text, name, fs::absolute(out.path).lexically_normal().string(),
+                    models_of(out, [](const std::string&) {}));
+    if (whole != out.text) {
+      name += " (expanded)";
+      out.text = std::move(whole);
+      out.sha256 = io::sha256(out.text);
+    }
     out.robot = parse_sdf(out.text, name).robot;
   } else {
     out.robot = robot::parse_urdf(out.text, name);
@@ -133,22 +164,33 @@ RobotFile read_robot(const std::string& path, Motions motions,
 }
 
 std::vector<std::string> included_files(const RobotFile& robot) {
-  if (is_xacro(robot.path)) return xacro_includes(robot.path, robot.xacro_arguments);
+  if (is_xacro(robot.path))
+    return xacro_includes(robot.path, robot.xacro_arguments, {}, robot.packages);
   std::vector<std::string> files;
   if (robot.format == RobotFile::Format::Mjcf) {
     const std::vector<char> bytes = io::read_file(robot.path);
     const fs::path folder = robot.path.parent_path();
     const std::string name = robot.path.string();
+    const auto read = [&](const std::string& file) {
+      files.push_back((folder / file).string());
+      const std::vector<char> included = io::read_file(folder / file);
+      return std::string(included.begin(), included.end());
+    };
     const std::string text =
-        expand_mjcf(std::string(bytes.begin(), bytes.end()), name, [&](const std::string& file) {
-          files.push_back((folder / file).string());
-          const std::vector<char> included = io::read_file(folder / file);
-          return std::string(included.begin(), included.end());
-        });
+        attach_mjcf(expand_mjcf(std::string(bytes.begin(), bytes.end()), name, read), name, read);
     static_cast<void>(state_fitted_sizes(text, name, [&](const std::string& file) {
       files.push_back((folder / file).string());
       return io::read_mesh(folder / file).mesh;
     }));
+  }
+  if (robot.format == RobotFile::Format::Sdf) {
+    const std::vector<char> bytes = io::read_file(robot.path);
+    static_cast<void>(include_sdf(std::string(bytes.begin(), bytes.end()), robot.path.string(),
+                                  fs::absolute(robot.path).lexically_normal().string(),
+                                  models_of(robot, [&](const std::string& file) {
+                                    if (std::ranges::find(files, file) == files.end())
+                                      files.push_back(file);
+                                  })));
   }
   return files;
 }

@@ -31,4 +31,20 @@ const std::vector<Option<ShapeChoice>>& shape_options() {
   return options;
 }
 
+const std::vector<Option<ShapeChoice>>& held_shape_options() {
+  static constexpr std::array<std::pair<const char*, bool>, 2> kMissing{
+      {{"error", false}, {"skip", true}}};
+  static const std::vector<Option<ShapeChoice>> options = [] {
+    std::vector<Option<ShapeChoice>> out = shape_options();
+    out.push_back(choice<ShapeChoice>(
+        {.name = "missing-meshes",
+         .text = "What meshes without a file do: refuse the robot, or leave out their shapes, and "
+                 "name their links as not verified",
+         .unrecorded = true},
+        [](auto& r) -> auto& { return r.skip_missing; }, kMissing));
+    return out;
+  }();
+  return options;
+}
+
 }  // namespace kaboum::robot

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "is_file.h"
+#include "xacro_packages.h"
 
 namespace kaboum::robot {
 namespace {
@@ -77,8 +78,8 @@ class Pipe {
 };
 
 /// Between fork and exec: calls of the system only.
-[[noreturn]] void become(char* const* command, int out, int messages, const XacroLimits& limits,
-                         pid_t parent) {
+[[noreturn]] void become(char* const* command, char* const* environment, int out, int messages,
+                         const XacroLimits& limits, pid_t parent) {
   ::setpgid(0, 0);  // with all that it starts
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -96,7 +97,7 @@ class Pipe {
   ::dup2(in, STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(messages, STDERR_FILENO);
-  ::execv(command[0], command);
+  ::execve(command[0], command, environment);
   ::dprintf(STDERR_FILENO, "%s: cannot be run: %s\n", command[0], std::strerror(errno));
   ::_exit(127);
 }
@@ -163,13 +164,27 @@ std::string last_words(std::string text) {
   return text.empty() ? "" : ": " + text;
 }
 
-void require_success(const fs::path& file, int status, const std::string& said, bool bare) {
+/// Packages that are not found, where what xacro said names them, or what it finds them with.
+std::string packages_in_words(const XacroPackages& packages, const std::string& said) {
+  std::string out;
+  for (const auto& [name, place] : packages.missing)
+    if (said.find(name) != std::string::npos ||
+        said.find("ament_index_python") != std::string::npos)
+      out += "; $(find " + name + ") of " + place +
+             " is no package that is found: name it, or the folder that holds it, by "
+             "«package-path»";
+  return out;
+}
+
+void require_success(const fs::path& file, int status, const std::string& said, bool bare,
+                     const XacroPackages& packages) {
   if (WIFSIGNALED(status))
     fail(file, "xacro was ended by a signal, " + std::string(::strsignal(WTERMSIG(status))) +
                    ", or at a limit of time or memory" + last_words(said));
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     fail(file,
          "xacro fails, exit code " + std::to_string(WEXITSTATUS(status)) + last_words(said) +
+             packages_in_words(packages, said) +
              (bare ? "; arguments that it wants are stated by --xacro-args NAME:=VALUE" : ""));
 }
 
@@ -184,7 +199,8 @@ void require_arguments(const XacroArguments& arguments) {
 
 /// What the program prints. @param option  before the file's name; empty: none
 std::string run_xacro(const fs::path& file, const std::string& option,
-                      const XacroArguments& arguments, const XacroLimits& limits) {
+                      const XacroArguments& arguments, const XacroLimits& limits,
+                      const std::vector<std::string>& places) {
   require_arguments(arguments);
   const std::string program = find_on_path("xacro");
   if (program.empty())
@@ -203,13 +219,20 @@ std::string run_xacro(const fs::path& file, const std::string& option,
   command.reserve(words.size() + 1);
   for (std::string& word : words) command.push_back(word.data());
   command.push_back(nullptr);
+  const XacroPackages packages = packages_of_xacro(file, places);
+  const PackageView view(packages);
+  std::vector<std::string> variables = view.environment();
+  std::vector<char*> environment;
+  environment.reserve(variables.size() + 1);
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
   Pipe out, messages;
   const pid_t parent = ::getpid();
   const pid_t id = out.is_open() && messages.is_open() ? ::fork() : -1;
   if (id < 0)
     throw Error(ErrorCode::LimitReached, file.string() + ": no process for xacro (" +
                                              std::strerror(errno) + "); close other programs");
-  if (id == 0) become(command.data(), out.to(), messages.to(), limits, parent);
+  if (id == 0) become(command.data(), environment.data(), out.to(), messages.to(), limits, parent);
   Process process(id);
   out.close(1);
   messages.close(1);
@@ -222,7 +245,7 @@ std::string run_xacro(const fs::path& file, const std::string& option,
     fail(file, "xacro was ended: it takes more than " + std::to_string(2 * limits.seconds) +
                    " s, or writes more than " + std::to_string(limits.output >> 20U) + " MiB" +
                    last_words(text[1]));
-  require_success(file, status, text[1], arguments.empty());
+  require_success(file, status, text[1], arguments.empty(), packages);
   if (text[0].empty() && option.empty())
     fail(file, "xacro makes nothing of it" + last_words(text[1]));
   return std::move(text[0]);
@@ -231,13 +254,14 @@ std::string run_xacro(const fs::path& file, const std::string& option,
 }  // namespace
 
 std::string expand_xacro(const fs::path& file, const XacroArguments& arguments,
-                         const XacroLimits& limits) {
-  return run_xacro(file, "", arguments, limits);
+                         const XacroLimits& limits, const std::vector<std::string>& packages) {
+  return run_xacro(file, "", arguments, limits, packages);
 }
 
 std::vector<std::string> xacro_includes(const fs::path& file, const XacroArguments& arguments,
-                                        const XacroLimits& limits) {
-  std::istringstream printed(run_xacro(file, "--deps", arguments, limits));
+                                        const XacroLimits& limits,
+                                        const std::vector<std::string>& packages) {
+  std::istringstream printed(run_xacro(file, "--deps", arguments, limits, packages));
   std::vector<std::string> files;
   std::string name;  // of a file: as many words as it takes
   for (std::string word; printed >> word;) {

@@ -26,14 +26,18 @@ struct XacroLimits {
 ///   takes for an argument's value.
 /// @throws Error{InvalidArgument} for an argument that is not NAME:=VALUE.
 /// @throws Error{LimitReached} when no process can be started.
+/// @param packages  folders that $(find NAME) is looked up in, as packages of meshes are; what is
+///   found nowhere is named in the message where xacro fails
 std::string expand_xacro(const std::filesystem::path& file, const XacroArguments& arguments = {},
-                         const XacroLimits& limits = {});
+                         const XacroLimits& limits = {},
+                         const std::vector<std::string>& packages = {});
 
 /// The files that it includes, sorted, as `xacro --deps FILE` prints them: with blanks between them
 /// and in them, so that as many words are taken for a name as it takes to be that of a file.
 /// @throws as expand_xacro; Error{InvalidInput} where words are left.
 std::vector<std::string> xacro_includes(const std::filesystem::path& file,
                                         const XacroArguments& arguments = {},
-                                        const XacroLimits& limits = {});
+                                        const XacroLimits& limits = {},
+                                        const std::vector<std::string>& packages = {});
 
 }  // namespace kaboum::robot

@@ -39,7 +39,7 @@ std::vector<Option<RobotVerdictOptions>> robot_table() {
       option<R>(
           max_work_option(), [](auto& r) -> auto& { return r.max_work; })};
   for (auto& one : options_of_part<R>(
-           robot::shape_options(), [](auto& r) -> auto& { return r.shapes; }))
+           robot::held_shape_options(), [](auto& r) -> auto& { return r.shapes; }))
     out.push_back(std::move(one));
   return out;
 }

@@ -19,9 +19,10 @@ enum class Outcome {
   Undecided,  ///< whether every triangle is inside
   Outside,    ///< not every triangle is inside
   Kept,       ///< a mesh could not be held: it stays as it was, and nothing is said about it
+  Missing,    ///< a mesh has no file (ShapeChoice::skip_missing): it is left out, likewise
 };
 
-/// "held", "work ended", "epsilon not reached", "undecided", "not held", "kept".
+/// "held", "work ended", "epsilon not reached", "undecided", "not held", "kept", "missing".
 const char* name_of(Outcome outcome);
 
 /// One answer to one question: is every triangle of the link inside?

@@ -25,6 +25,7 @@ struct SweptSetOptions {
   SetOptions bodies;
   bool visual = false;  ///< shapes for drawing, not those for collisions
   std::vector<std::string> links, packages;
+  bool skip_missing = false;  ///< robot::ShapeChoice::skip_missing
 
   // The motion.
   std::vector<std::string> joints;  ///< "finger=0.04": those that the path has no column for

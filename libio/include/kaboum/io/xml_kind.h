@@ -22,4 +22,8 @@ XmlKind xml_kind(std::string_view text);
 /// "a robot or a world (SDF, Gazebo)"; empty for kinds that speak for themselves.
 std::string describe(XmlKind kind);
 
+/// Words for a file that is no robot and no scene: "XML with the root <svg>", "no XML: it begins
+/// with 'solid cube'".
+std::string describe_other(std::string_view text);
+
 }  // namespace kaboum::io

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,18 @@ namespace kaboum::robot {
 /// @param read  gives the text of a file, named relative to the model
 /// @throws Error{InvalidInput} naming the line: not well-formed, a file included twice
 std::string expand_mjcf(std::string_view text, const std::string& name,
+                        const std::function<std::string(const std::string& file)>& read);
+
+/// The text of a model with what it attaches put in the place of each <attach>, as MuJoCo 4.0 does;
+/// as it is where it attaches nothing. Files of assets are named relative to the model then. Key
+/// frames of attached models are left out.
+/// @param text  without includes
+/// @param name  of the file, for messages
+/// @param read  gives the text of a file, named relative to the model
+/// @throws Error{InvalidInput} naming the line: as expand_mjcf; models, bodies, frames that are not
+///   there; models attached to themselves; compilers that contradict each other;
+///   Error{LimitReached}
+std::string attach_mjcf(std::string_view text, const std::string& name,
                         const std::function<std::string(const std::string& file)>& read);
 
 /// Gives the mesh of a file, named relative to the model.
@@ -54,7 +67,7 @@ struct MjcfRobot {
 /// @param name  appears in messages.
 /// @throws Error{InvalidInput} naming the line where known: not well-formed; unknown classes and
 ///   meshes; geoms fitted to meshes (state_fitted_sizes), signed distance fields, meshes without a
-///   file, composites, flexible bodies and attached models.
+///   file, composites, flexible bodies, and attached models (attach_mjcf).
 MjcfRobot parse_mjcf(std::string_view text, const std::string& name);
 
 /// Files of meshes that stand for one shape of a link, named as the text is to name them; none: the
@@ -66,6 +79,9 @@ struct ShapeEdit {
   bool visual = false;  ///< they stand for the shapes for drawing
   /// By link, those that stand for its shapes; an empty list leaves the link as it is.
   std::vector<std::vector<ShapeMeshes>> links;
+  /// Files of meshes that do not exist, as Geometry::mesh: MJCF loses all that needs them, since
+  /// MuJoCo reads no model with one.
+  std::set<std::string> left_out = {};
   /// A name of a file, relative to the robot's folder, as it is in the new document.
   std::function<std::string(const std::string& file)> moved;
   /// By link, what stands for all of its shapes together, in its frame; such links have nothing in

@@ -31,10 +31,11 @@ struct PageLink {
 
 /// What a robot that was made consists of: terminal, report and page give these numbers.
 struct RobotCounts {
-  std::size_t links = 0;             ///< with shapes
-  std::size_t meshes = 0, kept = 0;  ///< of the robot; of these, that stay as they were
-  std::size_t bodies = 0;            ///< that were made, of primitive shapes too; of meshes: meshes
-  std::size_t vertices = 0;          ///< of what was made
+  std::size_t links = 0;  ///< with shapes
+  /// Of the robot; of these, that stay as they were, and that have no file.
+  std::size_t meshes = 0, kept = 0, missing = 0;
+  std::size_t bodies = 0;    ///< that were made, of primitive shapes too; of meshes: meshes
+  std::size_t vertices = 0;  ///< of what was made
 
   /// "4 meshes", or "4 meshes, of which 1 stays as it was".
   [[nodiscard]] std::string of_meshes() const;

@@ -17,7 +17,7 @@ namespace kaboum::robot_folder {
 /// The replacement of a shape of a link.
 struct NewShape {
   /// Names of its meshes' files, relative to the new robot's; none: the shape itself, a box,
-  /// cylinder or sphere, or a mesh that nothing could be made of.
+  /// cylinder or sphere, or a mesh that nothing could be made of. An empty list: it is left out.
   std::optional<std::vector<std::string>> meshes;
   std::size_t first = 0;  ///< number in the names of its <collision> elements, and on
 };
@@ -25,11 +25,14 @@ struct NewShape {
 /// By link; links without stay as they are.
 using NewShapes = std::vector<std::vector<NewShape>>;
 
+/// A link of which all shapes for drawing are left out stays as it is, where what collided has its
+/// files.
 /// @param meshes_of  names of the files that stand for the mesh of a shape, given by its index;
-///   none: it stays
-NewShapes new_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
-                     const std::vector<robot::LinkShape>& shapes,
-                     const std::function<std::vector<std::string>(std::size_t shape)>& meshes_of);
+///   none: it stays; an empty list: it is left out
+NewShapes new_shapes(
+    const robot::RobotFile& robot, const robot::ShapeChoice& choice,
+    const std::vector<robot::LinkShape>& shapes,
+    const std::function<std::optional<std::vector<std::string>>(std::size_t shape)>& meshes_of);
 
 /// A name of a file relative to the robot's folder as it is relative to a new one; any other as it
 /// is.

@@ -20,6 +20,29 @@ std::vector<std::filesystem::path> find_mesh(const std::string& reference,
                                              const std::filesystem::path& robot,
                                              const std::vector<std::string>& packages);
 
+/// Mesh files that a reference may stand for, or why there are none.
+struct FoundMesh {
+  std::vector<std::filesystem::path> files;
+  std::string why;   ///< one clause, with what helps; where there are files, empty
+  std::string what;  ///< the same in few words, without what helps
+};
+
+/// As find_mesh, without an error.
+FoundMesh look_for_mesh(const std::string& reference, const std::filesystem::path& robot,
+                        const std::vector<std::string>& packages);
+
+/// The file of the model that an SDF <include> names: a file, or that of a folder which its
+/// model.config names for the newest version up to 1.12, or model.sdf. Looked up as meshes are.
+/// @param from  the file that has the <include>
+/// @throws Error{InvalidInput} saying where it was looked for.
+std::filesystem::path find_model(const std::string& uri, const std::filesystem::path& from,
+                                 const std::vector<std::string>& packages);
+
+/// A folder of a package, as find_mesh looks for it; empty: there is none.
+/// @param robot  the file that asks for it
+std::filesystem::path find_package(const std::string& name, const std::filesystem::path& robot,
+                                   const std::vector<std::string>& packages);
+
 /// The first of them.
 /// @throws as find_mesh
 std::filesystem::path resolve_mesh(const std::string& reference, const std::filesystem::path& robot,

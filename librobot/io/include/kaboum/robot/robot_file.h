@@ -20,6 +20,7 @@ struct RobotFile {
   std::string sha256;  ///< of the text
   Format format = Format::Urdf;
   std::vector<std::string> xacro_arguments = {};  ///< that it was expanded with
+  std::vector<std::string> packages = {};         ///< that what it includes was looked up in
 };
 
 /// What is said of a robot's motions.
@@ -37,11 +38,15 @@ bool is_xacro(const std::filesystem::path& path);
 ///
 /// Of a file called NAME.xacro, what the program `xacro` makes of it; its names of files are
 /// relative to NAME.xacro. The program is run: such a file is trusted as a script is.
+/// What an SDF robot includes is looked up as meshes are (find_model).
 /// @param xacro_arguments  NAME:=VALUE each
+/// @param packages  folders that package:// and model:// of what it includes, and $(find NAME) of
+///   xacro, are looked up in
 /// @throws Error{InvalidInput}, also where `xacro` is not installed, fails or takes too long;
 ///   Error{InvalidArgument} for arguments where there is no xacro, or that are none.
 RobotFile read_robot(const std::string& path, Motions motions = Motions::All,
-                     const std::vector<std::string>& xacro_arguments = {});
+                     const std::vector<std::string>& xacro_arguments = {},
+                     const std::vector<std::string>& packages = {});
 
 /// @throws Error{InvalidInput} naming a joint that Robot does not model.
 void require_modelled(const RobotFile& robot);
@@ -49,7 +54,7 @@ void require_modelled(const RobotFile& robot);
 /// What a robot's file says of masses and forces.
 Dynamics dynamics_of(const RobotFile& robot);
 
-/// Files that read_robot read beside the robot's own: what xacro and MJCF include.
+/// Files that read_robot read beside the robot's own: what xacro, MJCF and SDF include or attach.
 /// @throws as read_robot
 std::vector<std::string> included_files(const RobotFile& robot);
 
