@@ -12,7 +12,11 @@ namespace {
 using geom::Vec3;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr int kSteps = 24;         ///< of a ball in a sweep
+constexpr int kSteps = 4;                          ///< of a ball in a sweep, in random directions
+constexpr int kConvexSteps = 6, kFailedSteps = 3;  ///< before them
+constexpr std::size_t kLimits = 24;                ///< that a ball knows
+constexpr double kMargin = 1e-3;   ///< of the square of the radius, by which points are to be held
+constexpr double kLongest = 0.5;   ///< of the radius, of a step
 constexpr int kPlaces = 30;        ///< tried for a ball that is put elsewhere
 constexpr int kSweepsInVain = 10;  ///< before one is
 /// Points this share of a ball's radius beyond it count as near.
@@ -25,15 +29,23 @@ constexpr double kRadiusWork = 15e3, kPairWork = 3;
 
 }  // namespace
 
-BallRelaxation::BallRelaxation(RadiusAbout radius_about, const std::vector<Vec3>& points,
-                               double spare, std::uint64_t seed)
-    : radius_about_(std::move(radius_about)), points_(points), spare_(spare), random_(seed) {}
+BallRelaxation::BallRelaxation(RoomAbout room_about, const std::vector<Vec3>& points, double spare,
+                               std::uint64_t seed)
+    : room_about_(std::move(room_about)), points_(points), spare_(spare), random_(seed) {}
 
 void BallRelaxation::begin(const std::vector<Ball>& balls) {
   balls_ = balls;
   weight_.assign(points_.size(), 1);
   step_.clear();
   for (const Ball& b : balls) step_.push_back(kFirstStep * b.radius);
+  limits_.assign(balls.size(), {});
+}
+
+Ball BallRelaxation::ball_at(const Vec3& c) {
+  work_ += kRadiusWork;
+  const ParallelBody::Room room = room_about_(c);
+  limit_found_ = room.limit;
+  return {c, room.radius};
 }
 
 /// Points within `reach` of a place that balls other than this one leave.
@@ -59,7 +71,7 @@ void BallRelaxation::ask(std::size_t ball, const Vec3& about, double reach) {
 
 double BallRelaxation::cost(const Ball& ball) {
   double out = 0;
-  work_ += kRadiusWork + kPairWork * static_cast<double>(asked_.size());
+  work_ += kPairWork * static_cast<double>(asked_.size());
   for (const Asked& a : asked_) {
     const double left = std::min(a.other, gap(ball, points_[a.point]));
     if (left > 0) out += weight_[a.point] * left * left;
@@ -75,16 +87,106 @@ Vec3 BallRelaxation::direction() {
   }
 }
 
+/// The centre of the ball that has the limits outside and leaves the least sum of the weighted
+/// squares of powers of what is asked, nearly.
+Vec3 BallRelaxation::convex_step(const Ball& now, const std::vector<Vec3>& limits) {
+  constexpr int kTurns = 12, kHalvings = 5;
+  constexpr double kFirm = 30;  // weight of limits beside all points
+  using Vec4 = Eigen::Vector4d;
+  // Powers are row · (c, |c|² − r²) + square, in units of the radius from the centre.
+  struct Row {
+    Vec4 row;
+    double square, weight;
+  };
+  const double unit = 1 / now.radius, margin = 2 * spare_ + kMargin;
+  double sum = 0;
+  std::vector<Row> rows;
+  const auto add = [&](const Vec3& p, double sign, double more, double weight) {
+    const Vec3 y = unit * (p - now.center);
+    Vec4 row;
+    row << -2 * sign * y, sign;
+    rows.push_back({row, sign * y.squaredNorm() + more, weight});
+  };
+  for (const Asked& a : asked_) {
+    if (a.other < gap(now, points_[a.point])) continue;  // rather another ball's
+    add(points_[a.point], 1, margin, weight_[a.point]);
+    sum += weight_[a.point];
+  }
+  for (const Vec3& b : limits) add(b, -1, 0, kFirm * sum);
+  work_ += kPairWork * kTurns * static_cast<double>(rows.size());
+  const auto value = [&](const Vec4& x) {
+    double out = 0;
+    for (const Row& r : rows) {
+      const double f = r.row.dot(x) + r.square;
+      if (f > 0) out += r.weight * f * f;
+    }
+    return out;
+  };
+  Vec4 x(0, 0, 0, -1);
+  double least = value(x);
+  for (int turn = 0; turn < kTurns && least > 0; ++turn) {
+    Eigen::Matrix4d h = Eigen::Matrix4d::Zero();
+    Vec4 g = Vec4::Zero();
+    for (const Row& r : rows) {
+      const double f = r.row.dot(x) + r.square;
+      if (!(f > 0)) continue;
+      h.noalias() += r.weight * r.row * r.row.transpose();
+      g += r.weight * f * r.row;
+    }
+    h.diagonal().array() += 1e-6 * h.trace() + 1e-300;
+    Vec4 step = -h.ldlt().solve(g);
+    if (!step.allFinite()) break;
+    bool is_better = false;
+    for (int half = 0; half < kHalvings; ++half, step *= 0.5) {
+      const double then = value(x + step);
+      if (!(then < least * (1 - 1e-6))) continue;
+      x += step;
+      least = then;
+      is_better = true;
+      break;
+    }
+    if (!is_better) break;
+  }
+  Vec3 way = x.head<3>() * now.radius;
+  if (const double length = way.norm(); length > kLongest * now.radius)
+    way *= kLongest * now.radius / length;
+  return now.center + way;
+}
+
 void BallRelaxation::move(std::size_t ball) {
   Ball& now = balls_[ball];
   ask(ball, now.center, (1 + kNear) * now.radius);
-  double least = cost(now), step = std::max(step_[ball], kAgain * now.radius);
+  double least = cost(now);
+  std::vector<Vec3>& limits = limits_[ball];
+  const auto learn = [&] {
+    if (!limit_found_) return;
+    if (limits.size() >= kLimits) limits.erase(limits.begin());
+    limits.push_back(*limit_found_);
+  };
+  if (least > 0 && limits.empty()) {
+    ball_at(now.center);
+    learn();
+  }
+  int failed = 0;
+  for (int turn = 0; turn < kConvexSteps && least > 0 && failed < kFailedSteps; ++turn) {
+    const Vec3 at = convex_step(now, limits);
+    if ((at - now.center).norm() < kShortestStep * now.radius) break;
+    const Ball next = ball_at(at);
+    learn();
+    const double then = next.radius > 0 ? cost(next) : kFar;
+    if (!(then < least)) {
+      ++failed;
+      continue;
+    }
+    least = then;
+    now = next;
+  }
+  double step = std::max(step_[ball], kAgain * now.radius);
   for (int turn = 0; turn < kSteps && least > 0; ++turn) {
     const Vec3 along = step * direction();
     bool is_better = false;
     for (const double sign : {1.0, -1.0}) {
-      const Vec3 at = now.center + sign * along;
-      const Ball next{at, radius_about_(at)};
+      const Ball next = ball_at(now.center + sign * along);
       if (!(next.radius > 0)) continue;
       const double then = cost(next);
       if (!(then < least)) continue;
@@ -135,6 +237,7 @@ bool BallRelaxation::leave_out(std::size_t count) {
     const Ball gone = balls_[static_cast<std::size_t>(b)];
     balls_.erase(balls_.begin() + b);
     step_.erase(step_.begin() + b);
+    limits_.erase(limits_.begin() + b);
     losses.erase(losses.begin() + b);
     for (std::size_t i = 0; i < balls_.size(); ++i) {
       if (!(work() < limit_)) return false;
@@ -169,11 +272,10 @@ void BallRelaxation::relocate() {
   const double reach = balls_[b].radius;
   const Vec3 at = points_[point];
   ask(b, at, 2 * reach);
-  Ball best{at, radius_about_(at)};
+  Ball best = ball_at(at);
   double least = cost(best);
   for (int k = 0; k < kPlaces; ++k) {
-    const Vec3 c = at + random_.between(0, reach) * direction();
-    const Ball next{c, radius_about_(c)};
+    const Ball next = ball_at(at + random_.between(0, reach) * direction());
     if (!(next.radius > 0)) continue;
     const double then = cost(next);
     if (!(then < least)) continue;
@@ -181,6 +283,7 @@ void BallRelaxation::relocate() {
     best = next;
   }
   balls_[b] = best;
+  limits_[b].clear();
   step_[b] = kFirstStep * best.radius;
 }
 

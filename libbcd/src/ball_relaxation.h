@@ -6,23 +6,30 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <span>
+#include <optional>
 #include <vector>
+
+#include "parallel_body.h"
 
 namespace kaboum::bcd {
 
 /// Search of places for a given number of balls that hold given points. One ball after the other
-/// moves, by steps in random directions, to where it leaves less of what the others leave: the sum
-/// of the squares of the points' distances, with weights. Points that stay free gain weight. Now
-/// and then the ball that is needed least is put to a free point.
+/// moves to where it leaves less of what the others leave: the sum of the squares of the points'
+/// distances, with weights. Points that stay free gain weight. Now and then the ball that is needed
+/// least is put to a free point.
+///
+/// Where a ball goes is found in terms of the power |x − c|² − r² of points x, which is linear in c
+/// and |c|² − r². So the ball that leaves the least weighted squares of powers of some points, and
+/// has limits outside, is the solution of a convex problem of four variables. Limits are points
+/// that were found to end a ball's radius near the place.
 class BallRelaxation {
  public:
-  /// The radius that a ball about a point has; ≤ 0: there is none. [length]
-  using RadiusAbout = std::function<double(const geom::Vec3&)>;
+  /// The radius that a ball about a point has, and what it ends at; ≤ 0: there is none. [length]
+  using RoomAbout = std::function<ParallelBody::Room(const geom::Vec3&)>;
 
   /// @param points  referred to; may become more between calls
   /// @param spare  share of the radius by which points are to be held [1]
-  BallRelaxation(RadiusAbout radius_about, const std::vector<geom::Vec3>& points, double spare,
+  BallRelaxation(RoomAbout room_about, const std::vector<geom::Vec3>& points, double spare,
                  std::uint64_t seed);
 
   /// Moves the balls until they hold all points.
@@ -56,6 +63,9 @@ class BallRelaxation {
   }
   void ask(std::size_t ball, const geom::Vec3& about, double reach);
   [[nodiscard]] double cost(const Ball& ball);
+  /// The ball about a place; sets limit_found_.
+  Ball ball_at(const geom::Vec3& c);
+  [[nodiscard]] geom::Vec3 convex_step(const Ball& now, const std::vector<geom::Vec3>& limits);
   [[nodiscard]] geom::Vec3 direction();
   void move(std::size_t ball);
   [[nodiscard]] double loss_without(std::size_t ball);
@@ -64,15 +74,17 @@ class BallRelaxation {
   void find_free();
   void relocate();
 
-  RadiusAbout radius_about_;
+  RoomAbout room_about_;
   const std::vector<geom::Vec3>& points_;
   double spare_;
   std::vector<Ball> balls_;
-  std::vector<double> step_;         ///< of each ball, the next one's length
-  std::vector<double> weight_;       ///< of each point
-  std::vector<std::uint32_t> free_;  ///< points that no ball holds
-  std::vector<Asked> asked_;         ///< of one ball
-  std::vector<std::uint32_t> near_;  ///< balls near it
+  std::vector<double> step_;                     ///< of each ball, the next one's length
+  std::vector<std::vector<geom::Vec3>> limits_;  ///< of each ball, those found near it
+  std::optional<geom::Vec3> limit_found_;        ///< by the last call of ball_at
+  std::vector<double> weight_;                   ///< of each point
+  std::vector<std::uint32_t> free_;              ///< points that no ball holds
+  std::vector<Asked> asked_;                     ///< of one ball
+  std::vector<std::uint32_t> near_;              ///< balls near it
   Random random_;
   double work_ = 0;  ///< [ns]
   double limit_ = std::numeric_limits<double>::infinity();

@@ -38,7 +38,7 @@ constexpr double kReducing = 0.3;
 constexpr int kPatchRounds = 150;                              ///< of points added where no ball is
 constexpr std::size_t kAddedAtOnce = 150, kAddedAtLast = 600;  ///< while balls move, and after it
 constexpr int kPieceCuts = 24;                                 ///< of a triangle
-constexpr std::size_t kMostPoints = 12'000, kMostCandidates = 6'000;
+constexpr std::size_t kMostPoints = 12'000, kMostSeeds = 6'000, kMostCandidates = 12'000;
 
 /// Amounts of work of a search.
 struct SearchEffort {
@@ -50,13 +50,13 @@ struct SearchEffort {
 SearchEffort effort_of(Effort effort) {
   switch (effort) {
     case Effort::Fast:
-      return {1200, 400, 300, 20, 1, 12};
+      return {1200, 400, 3'000, 60, 1, 12};
     case Effort::Normal:
       break;
     case Effort::Best:
-      return {4000, 2000, 5000, 300, 4, 400};
+      return {4000, 2000, 30'000, 300, 6, 400};
   }
-  return {2000, 700, 1000, 60, 2, 50};
+  return {2000, 800, 10'000, 120, 3, 50};
 }
 
 class BallSearch {
@@ -68,8 +68,7 @@ class BallSearch {
         query_(mesh),
         winding_(mesh),
         box_(geom::bounding_box(mesh)),
-        relaxation_([this](const Vec3& c) { return body_->radius_about(geom::to_float32(c)); },
-                    points_, kPointSlack, 1) {
+        relaxation_([this](const Vec3& c) { return room_about(c); }, points_, kPointSlack, 1) {
     CoverPoints points =
         sample_cover_points(mesh, winding_, options.epsilon, effort_.points, kMostPoints);
     surface_ = std::move(points.surface);
@@ -138,36 +137,53 @@ class BallSearch {
 
   // --- points and candidates ---
 
-  /// Two balls that hold a point of the surface and have their centres inwards of it: the one whose
-  /// centre is farthest from it, and the largest one.
-  [[nodiscard]] std::pair<Ball, Ball> balls_at(const SurfacePoint& p) const {
+  /// Balls that hold a point of the surface and have their centres inwards of it: about the one
+  /// whose centre is farthest from it, and between.
+  [[nodiscard]] std::vector<Ball> balls_at(const SurfacePoint& p) const {
     constexpr double kHeld = 0.98;
     constexpr int kHalvings = 9, kPlaces = 6;
-    const auto ball = [&](double depth) {
+    std::vector<Ball> out;
+    // @return whether it holds the point
+    const auto look = [&](double depth) {
       const Vec3 at = geom::to_float32(p.at + depth * p.inwards);
-      return Ball{at, body_->radius_about(at)};
+      const Ball ball{at, body_->radius_about(at)};
+      if (!(kHeld * ball.radius >= depth)) return false;
+      if (ball.radius > 0) out.push_back(ball);
+      return true;
     };
     // The radius grows by no more than the way, so those that hold the point come first.
     double low = 0, high = 0.5 * box_.diagonal() + 2 * body_->distance();
     for (int turn = 0; turn < kHalvings; ++turn) {
       const double middle = 0.5 * (low + high);
-      (kHeld * ball(middle).radius >= middle ? low : high) = middle;
+      (look(middle) ? low : high) = middle;
     }
-    const Ball farthest = ball(low);
-    Ball largest = farthest;
-    for (int k = 0; k < kPlaces; ++k)
-      if (const Ball one = ball(low * k / kPlaces); one.radius > largest.radius) largest = one;
-    return {farthest, largest};
+    for (int k = 0; k < kPlaces; ++k) look(low * k / kPlaces);
+    return out;
   }
 
+  /// Some of the balls at each of the points: all of them where the points are few.
   void add_candidates(const std::vector<SurfacePoint>& at) {
-    std::vector<std::pair<Ball, Ball>> found(at.size());
-    kaboum::parallel_for(std::size_t{0}, at.size(),
-                         [&](std::size_t i) { found[i] = balls_at(at[i]); });
-    for (const auto& [farthest, largest] : found) {
-      if (farthest.radius > 0) candidates_.push_back(farthest);
-      if (largest.radius > 0) candidates_.push_back(largest);
-    }
+    std::vector<std::vector<Ball>> found(at.size());
+    const std::size_t most = std::max<std::size_t>(2, kMostCandidates / (at.size() + 1));
+    kaboum::parallel_for(std::size_t{0}, at.size(), [&](std::size_t i) {
+      found[i] = balls_at(at[i]);
+      thin_out(at[i].at, most, found[i]);
+    });
+    for (const std::vector<Ball>& some : found)
+      candidates_.insert(candidates_.end(), some.begin(), some.end());
+  }
+
+  /// Leaves `most` balls: the largest one, and of the others some from the one about the place that
+  /// is farthest from p on, evenly.
+  static void thin_out(const Vec3& p, std::size_t most, std::vector<Ball>& balls) {
+    if (balls.size() <= most) return;
+    std::iter_swap(balls.begin(), std::ranges::max_element(balls, {}, &Ball::radius));
+    std::sort(balls.begin() + 1, balls.end(), [&](const Ball& a, const Ball& b) {
+      return (a.center - p).squaredNorm() > (b.center - p).squaredNorm();
+    });
+    const std::size_t others = balls.size() - 1;
+    for (std::size_t k = 1; k < most; ++k) balls[k] = balls[1 + (k - 1) * others / (most - 1)];
+    balls.resize(most);
   }
 
   void set_distance(double epsilon) {
@@ -188,7 +204,7 @@ class BallSearch {
     // Some for each piece of the surface that a ball can hold.
     std::size_t count = effort_.candidates;
     if (options_.epsilon) count = std::max(count, surface_.size() / 4);
-    count = std::min(count, kMostCandidates);
+    count = std::min(count, kMostSeeds);
     std::vector<SurfacePoint> some;
     const std::size_t stride = std::max<std::size_t>(1, surface_.size() / count);
     for (std::size_t i = 0; i < surface_.size(); i += stride) some.push_back(surface_[i]);
@@ -249,11 +265,15 @@ class BallSearch {
   void reduce(std::vector<Ball>& balls, std::size_t enough) {
     enough = std::max<std::size_t>(enough, 1);
     std::size_t fewer = std::max<std::size_t>(1, balls.size() / 12);
+    int failed = 0;
     while (balls.size() > enough && may_move()) {
       fewer = std::min(fewer, balls.size() - enough);
       show("moving balls", 1 - (end_of_work_ - relaxation_.work()) / (kReducing * effort_.work));
-      if (relaxation_.hold_with_fewer(balls, fewer, effort_.sweeps)) continue;
-      if (fewer == 1) break;
+      if (relaxation_.hold_with_fewer(balls, fewer, effort_.sweeps)) {
+        failed = 0;
+        continue;
+      }
+      if (fewer == 1 && ++failed >= effort_.attempts) break;
       fewer = (fewer + 1) / 2;
     }
   }
@@ -434,30 +454,66 @@ class BallSearch {
 
   /// A cover by as many balls within less than ε, where one is found.
   void bring_nearer(std::vector<Ball>& best) {
-    constexpr int kTurns = 4;
-    double high = body_->distance() / (1 - kBallSlack), low = 0.4 * high;
-    for (int turn = 0; turn < kTurns; ++turn) {
-      const double tried = 0.5 * (low + high);
+    constexpr int kTurns = 3;
+    constexpr double kWorth = 0.004;  // of epsilon
+    double high = body_->distance() / (1 - kBallSlack), low = 0;
+    for (int turn = 0; turn < kTurns && low < (1 - kWorth) * high; ++turn) {
       show("bringing balls nearer", static_cast<double>(turn) / kTurns);
-      set_distance(tried);
+      // Where the points known are held by balls that are smaller by that, so may all be.
+      std::vector<Ball> balls = best;
       allow_work(kReducing * effort_.work);
-      std::vector<Ball> balls = resized(best);
-      if (!balls.empty() && relaxation_.hold(balls, effort_.sweeps))
+      const double tried = std::max(high - shrunk(balls, high - low), 0.5 * (low + high));
+      if (!(tried < (1 - 0.5 * kWorth) * high)) break;
+      set_distance(tried);
+      balls = resized(balls);
+      if (balls.size() == best.size() && relaxation_.hold(balls, effort_.sweeps))
         balls = completed(std::move(balls), best.size());
       else
         balls.clear();
       (balls.empty() ? low : high) = tried;
-      if (!balls.empty()) best = std::move(balls);
+      if (!balls.empty())
+        best = std::move(balls);
+      else
+        set_distance(high);
     }
     set_distance(high);
+  }
+
+  /// Moves balls so that they hold all points known with less than the radii that they may have.
+  /// @return by how much, less than `most` [length]
+  [[nodiscard]] double shrunk(std::vector<Ball>& balls, double most) {
+    constexpr int kTurns = 6;
+    double least = 0, less = 0.3 * most;
+    most *= 0.6;
+    for (int turn = 0; turn < kTurns && may_move(); ++turn) {
+      less_ = less;
+      std::vector<Ball> moved = resized(balls);
+      const bool is_held = moved.size() == balls.size() && relaxation_.hold(moved, effort_.sweeps);
+      (is_held ? least : most) = less;
+      if (is_held) balls = std::move(moved);
+      less = 0.5 * (least + most);
+    }
+    less_ = 0;
+    return least;
   }
 
   /// Balls with the radii that ε allows.
   [[nodiscard]] std::vector<Ball> resized(const std::vector<Ball>& balls) const {
     std::vector<Ball> out;
     for (const Ball& b : balls)
-      if (const double radius = body_->radius_about(b.center); radius > 0)
+      if (const double radius = body_->radius_about(b.center) - less_; radius > 0)
         out.push_back({b.center, radius});
+    return out;
+  }
+
+  /// The largest radius about a point, less what is to be left of it.
+  [[nodiscard]] ParallelBody::Room room_about(const Vec3& c) const {
+    ParallelBody::Room out = body_->room_about(geom::to_float32(c));
+    if (less_ > 0) {
+      const double rest = std::max(0.0, out.radius - less_);
+      if (out.limit && out.radius > 0) out.limit = c + rest / out.radius * (*out.limit - c);
+      out.radius = rest;
+    }
     return out;
   }
 
@@ -621,8 +677,8 @@ class BallSearch {
 
   /// The least ε found with so many balls.
   std::vector<Ball> within_count(std::size_t count) {
-    constexpr double kNear = 1.02;
-    constexpr int kTurns = 14;
+    constexpr double kNear = 1.05;
+    constexpr int kTurns = 12;
     double high = 0.6 * box_.diagonal(), low = 0, tried = high;
     std::vector<Ball> best;
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -640,6 +696,7 @@ class BallSearch {
       if (low > 0 && high < kNear * low) break;
     }
     set_distance(high);
+    if (!best.empty()) bring_nearer(best);
     return best;
   }
 
@@ -674,6 +731,7 @@ class BallSearch {
   std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
   std::vector<Ball> candidates_;
   std::vector<Ball> written_;  ///< the last ones
+  double less_ = 0;            ///< than what is allowed, of radii while balls move [length]
   BallRelaxation relaxation_;
   double end_of_work_ = 0;  ///< of the relaxation, for this distance [s]
 };

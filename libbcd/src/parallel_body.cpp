@@ -57,11 +57,21 @@ ParallelBody::ParallelBody(const geom::DistanceQuery& surface, const geom::Windi
 }
 
 ParallelBody::SignedDistance ParallelBody::signed_distance(const Vec3& p) const {
-  const geom::TriangleSearch::Nearest near = surface_.nearest(p);
+  return signed_distance(p, surface_.nearest(p));
+}
+
+ParallelBody::SignedDistance ParallelBody::signed_distance(
+    const Vec3& p, const geom::TriangleSearch::Nearest& near) const {
   const double lower = near.lower * (1 - kRounding), upper = near.upper * (1 + kRounding);
   const std::optional<int> winding = winding_(p);
   if (winding && *winding >= 1) return {-upper, -lower};
   return {winding ? lower : -0.0, upper};
+}
+
+ParallelBody::Around ParallelBody::look_around(const Vec3& c) const {
+  const geom::TriangleSearch::Nearest near = surface_.nearest(c);
+  const auto& [p, q, r] = surface_.corners(near.triangle);
+  return {signed_distance(c, near), (geom::closest_point(c, p, q, r) - c).normalized()};
 }
 
 ParallelBody::Look ParallelBody::look_at(const Cell& cell, double h) const {
@@ -140,6 +150,18 @@ double distance_from_cap(const Vec3& center, const Vec3& normal, double height, 
   return std::max(std::sqrt(up * up + aside * aside), std::sqrt(square) - h);
 }
 
+/// The point that is as near to c as distance_from_cap says.
+Vec3 nearest_of_cap(const Vec3& center, const Vec3& normal, double height, double h,
+                    const Vec3& c) {
+  const Vec3 to = c - center;
+  const double along = normal.dot(to), width = std::sqrt(std::max(0.0, h * h - height * height));
+  const Vec3 aside = to - along * normal;
+  const double away = aside.norm();
+  const double up = std::clamp(along, height, h);
+  const double out = std::min(away, height > 0 ? width : h);
+  return center + up * normal + (away > 0 ? out / away : 0) * aside;
+}
+
 }  // namespace
 
 void ParallelBody::visit_near(const Vec3& c, double& limit,
@@ -173,23 +195,38 @@ void ParallelBody::visit_near(const Vec3& c, double& limit,
 
 /// Whether no radius about c is larger than that of the ball in the solid and the distance, but for
 /// a share of it: there is a point beyond the nearest triangle that is not in the body.
-bool ParallelBody::is_nearest_deciding(const Vec3& c, double s, double share) const {
-  if (!(s < 0)) return false;
-  const auto& [p, q, r] = surface_.corners(surface_.nearest(c).triangle);
-  const Vec3 along = geom::closest_point(c, p, q, r) - c;
-  const double length = along.norm();
-  if (!(length > 0)) return false;
+/// @param along  of length 1, to the nearest point of the surface
+bool ParallelBody::is_nearest_deciding(const Vec3& c, const Vec3& along, double s,
+                                       double share) const {
+  if (!(s < 0) || !along.allFinite()) return false;
   const double reach = distance_ * (1 + 0.5 * share * share) - s;
-  return signed_distance(c + reach / length * along).lower > distance_;
+  return signed_distance(c + reach * along).lower > distance_;
 }
 
-double ParallelBody::radius_about(const Vec3& c) const {
-  const double s = signed_distance(c).upper;
-  if (!(s < distance_)) return 0;
-  if (caps_.empty() || is_nearest_deciding(c, s, share_)) return distance_ - s;
+double ParallelBody::radius_about(const Vec3& c) const { return room_about(c).radius; }
+
+ParallelBody::Room ParallelBody::room_about(const Vec3& c) const {
+  const Around around = look_around(c);
+  const double s = around.signed_distance.upper;
+  if (!(s < distance_)) return {};
+  const double known = distance_ - s;
   double best = std::numeric_limits<double>::infinity();
-  visit_near(c, best, [&](const Cap&, double away) { best = std::min(best, away); });
-  return std::max(best * (1 - kRounding), distance_ - s);
+  const Cap* nearest = nullptr;
+  if (!caps_.empty() && !is_nearest_deciding(c, around.along, s, share_))
+    visit_near(c, best, [&](const Cap& cap, double away) {
+      if (!(away < best)) return;
+      best = away;
+      nearest = &cap;
+    });
+  if (nearest == nullptr) {  // it ends beyond the nearest point of the surface
+    if (!around.along.allFinite()) return {known, std::nullopt};
+    return {known, c + (s < 0 ? known : -known) * around.along};
+  }
+  const double radius = std::max(best * (1 - kRounding), known);
+  const Vec3 along =
+      (nearest_of_cap(nearest->center, nearest->normal, nearest->height, h_, c) - c).normalized();
+  if (!along.allFinite()) return {radius, std::nullopt};
+  return {radius, c + radius * along};
 }
 
 std::optional<Vec3> ParallelBody::boundary_near(const Vec3& c) const {
@@ -206,7 +243,8 @@ std::optional<Vec3> ParallelBody::boundary_near(const Vec3& c) const {
 double ParallelBody::refined_radius_about(const Vec3& c, double share) const {
   const double known = radius_about(c);
   if (!(known > 0) || caps_.empty()) return known;
-  if (const double s = signed_distance(c).upper; is_nearest_deciding(c, s, share))
+  const Around around = look_around(c);
+  if (const double s = around.signed_distance.upper; is_nearest_deciding(c, around.along, s, share))
     return std::max(known, distance_ - s);
   struct Open {
     double away;

@@ -33,6 +33,15 @@ class ParallelBody {
   /// for certain. [length]
   [[nodiscard]] double radius_about(const geom::Vec3& c) const;
 
+  /// The same radius, and what it ends at.
+  struct Room {
+    double radius = 0;
+    /// A point about as far from c as the radius says that a ball may not reach beyond, as far as
+    /// is known. Not given where the radius is 0.
+    std::optional<geom::Vec3> limit;
+  };
+  [[nodiscard]] Room room_about(const geom::Vec3& c) const;
+
   /// A larger one, if there is one: caps are cut until they have another size, a smaller share of
   /// the distance, or some thousand were.
   [[nodiscard]] double refined_radius_about(const geom::Vec3& c, double share) const;
@@ -90,7 +99,16 @@ class ParallelBody {
 
   [[nodiscard]] Look look_at(const Cell& cell, double h) const;
   [[nodiscard]] std::optional<Cap> cap_of(const Cell& cell, const Look& look, double h) const;
-  [[nodiscard]] bool is_nearest_deciding(const geom::Vec3& c, double s, double share) const;
+  /// What is nearest to a point: its signed distance, and the direction to it, of length 1.
+  struct Around {
+    SignedDistance signed_distance;
+    geom::Vec3 along;  ///< not finite for a point of the surface
+  };
+  [[nodiscard]] Around look_around(const geom::Vec3& c) const;
+  [[nodiscard]] SignedDistance signed_distance(const geom::Vec3& p,
+                                               const geom::TriangleSearch::Nearest& near) const;
+  [[nodiscard]] bool is_nearest_deciding(const geom::Vec3& c, const geom::Vec3& along, double s,
+                                         double share) const;
   void find_caps();
   /// Calls visit(cap, distance) for caps that may be nearer than `limit`, which it may change.
   void visit_near(const geom::Vec3& c, double& limit,

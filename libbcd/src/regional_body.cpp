@@ -39,6 +39,18 @@ double RegionalBody::radius_about(const geom::Vec3& c) const {
   return least_radius(*this, c, [&](const ParallelBody& body) { return body.radius_about(c); });
 }
 
+ParallelBody::Room RegionalBody::room_about(const geom::Vec3& c) const {
+  if (parts_.empty()) return whole_.room_about(c);
+  ParallelBody::Room out{radius_about(c), std::nullopt};
+  if (!(out.radius > 0)) return out;
+  // A distance falls fastest towards what is nearest.
+  const double step = 1e-4 * out.radius;
+  geom::Vec3 along;
+  for (int k = 0; k < 3; ++k) along[k] = radius_about(c - step * geom::Vec3::Unit(k)) - out.radius;
+  if (along.norm() > 0) out.limit = c + out.radius * along.normalized();
+  return out;
+}
+
 double RegionalBody::refined_radius_about(const geom::Vec3& c, double share) const {
   return least_radius(
       *this, c, [&](const ParallelBody& body) { return body.refined_radius_about(c, share); });

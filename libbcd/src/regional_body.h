@@ -23,6 +23,7 @@ class RegionalBody {
 
   /// As of ParallelBody. [length]
   [[nodiscard]] double radius_about(const geom::Vec3& c) const;
+  [[nodiscard]] ParallelBody::Room room_about(const geom::Vec3& c) const;
   [[nodiscard]] double refined_radius_about(const geom::Vec3& c, double share) const;
   [[nodiscard]] std::optional<geom::Vec3> boundary_near(const geom::Vec3& c) const {
     return whole_.boundary_near(c);

@@ -8,7 +8,7 @@
 namespace kaboum::bcd {
 namespace {
 
-/// Pairs of a set and a free point that a search looks at, at most.
+/// Pairs of a set and a point that a search looks at, at most.
 constexpr std::uint64_t kMostPairs = 200'000'000;
 constexpr std::uint32_t kNoSet = std::numeric_limits<std::uint32_t>::max();
 
@@ -126,6 +126,7 @@ std::vector<std::uint32_t> SetCover::search(std::size_t steps, std::size_t enoug
       drop(chosen_[i]);
     }
     if (step > steps || pairs > kMostPairs) break;
+    for (const std::uint32_t s : chosen_) pairs += sets_[s].size();
     if (const std::size_t i = cheapest(last); i < chosen_.size()) {
       const std::uint32_t set = chosen_[i];
       drop(set);

@@ -12,9 +12,9 @@ inline constexpr std::string_view kDecisions = "decisions 3";
 /// Bodies of sets.
 inline constexpr std::string_view kSets = "planes 30";
 /// Sets of spheres, beside it.
-inline constexpr std::string_view kBalls = "parallel bodies 2";
+inline constexpr std::string_view kBalls = "parallel bodies 3";
 /// Sets of capsules and boxes, beside it.
-inline constexpr std::string_view kSimple = "capsules and boxes 1";
+inline constexpr std::string_view kSimple = "capsules and boxes 2";
 /// Bytes of their containers.
 inline constexpr std::string_view kContainers = "coloured";
 /// Polytopes of links' bodies, and the bytes of their containers.

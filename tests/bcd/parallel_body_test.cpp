@@ -60,6 +60,30 @@ TEST(ParallelBody, WallsAndCracksInsideDoNotCount) {
   }
 }
 
+// What a radius ends at is as far away as it says, and no point of the body but for the caps' size.
+TEST(ParallelBody, LimitsAreBeyondTheBody) {
+  const Solid solid(
+      merged({kaboum::test::torus(1, 0.3, 40, 20), translated(box({0.5, 0.7, 1}, 2), {1, 0, 0})}));
+  const double distance = 0.1, share = 0.1;
+  const ParallelBody body(solid.surface, solid.winding, distance, share);
+  Random random(7);
+  int known = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 c(random.between(-1.4, 1.6), random.between(-1.4, 1.4), random.between(-0.4, 1.1));
+    const ParallelBody::Room room = body.room_about(c);
+    EXPECT_EQ(room.radius, body.radius_about(c));
+    if (!(room.radius > 0)) {
+      EXPECT_FALSE(room.limit);
+      continue;
+    }
+    if (!room.limit) continue;
+    ++known;
+    EXPECT_NEAR((*room.limit - c).norm(), room.radius, 0.02 * distance);
+    EXPECT_GT(body.signed_distance(*room.limit).upper, distance * (1 - 2 * share)) << i;
+  }
+  EXPECT_GT(known, 40);
+}
+
 // No point of a ball is farther; of one that is a little larger, some are.
 TEST(ParallelBody, BallsAreAsLargeAsTheyMayBe) {
   const Solid solid(
