@@ -113,6 +113,10 @@ BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction directi
                        0x1p-50 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
     box_.extend(Box3{box.min - reach, box.max + reach});
   }
+  constexpr std::size_t kFew = 64;
+  is_cloud_ = size() > kFew && std::ranges::all_of(bodies_, [&](const geom::ConvexBody& body) {
+                return body.core.vertices.size() == 1 && body.radius == bodies_.front().radius;
+              });
   ball_ = ball_of(bodies_, box_);
   rows_.resize(10 * stride());
   for (std::size_t i = 0; i < stride() && !bodies_.empty(); ++i) {
@@ -131,9 +135,32 @@ BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction directi
 BoundingSet::BoundingSet(const geom::ConvexSet& set)
     : BoundingSet(bodies_of(set), direction_of(set), epsilon_of(set)) {}
 
-PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error)
-    : set_(&set), boxes_(6 * set.stride()) {
+PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error) : set_(&set) {
+  std::size_t size = 6 * set.stride();
+  for (std::size_t count = set.size(); count > kBlock;) {
+    count = (count + kBlock - 1) / kBlock;
+    levels_.push_back({size, count});
+    size += 6 * count;
+  }
+  boxes_ = std::make_shared<std::vector<double>>(size);
   place(pose, error);
+}
+
+void PosedSet::place_blocks() {
+  const double* below = boxes_->data();
+  std::size_t stride = set_->stride(), many = set_->size();
+  for (const Level& level : levels_) {
+    double* at = boxes_->data() + level.from;
+    for (std::size_t row = 0; row < 6; ++row)
+      for (std::size_t i = 0; i < level.count; ++i) {
+        const double* first = below + row * stride + i * kBlock;
+        const double* last = first + std::min(kBlock, many - i * kBlock);
+        at[row * level.count + i] =
+            row < 3 ? *std::min_element(first, last) : *std::max_element(first, last);
+      }
+    below = at;
+    stride = many = level.count;
+  }
 }
 
 void PosedSet::place(const geom::Transform& pose, double error) {
@@ -147,6 +174,7 @@ void PosedSet::place(const geom::Transform& pose, double error) {
   defect_ = bound_of_defect(pose.linear, defect);
   box_ = {};
   if (set_->size() == 0) return;
+  if (boxes_.use_count() > 1) boxes_ = std::make_shared<std::vector<double>>(boxes_->size());
   const std::size_t stride = set_->stride();
   const Twos radius{set_->row(9)};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -158,7 +186,7 @@ void PosedSet::place(const geom::Transform& pose, double error) {
     const Twos middle[3] = {{set_->row(0)}, {set_->row(1)}, {set_->row(2)}},
                half[3] = {{set_->row(3)}, {set_->row(4)}, {set_->row(5)}},
                magnitude[3] = {{set_->row(6)}, {set_->row(7)}, {set_->row(8)}};
-    double *low = boxes_.data() + k * stride, *high = low + 3 * stride;
+    double *low = boxes_->data() + k * stride, *high = low + 3 * stride;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Two least = Two{} + kInfinity, most = Two{} - kInfinity;
     for (std::size_t i = 0; i < stride; i += 2) {
@@ -178,6 +206,7 @@ void PosedSet::place(const geom::Transform& pose, double error) {
     box_.min[k] = std::min(least[0], least[1]);
     box_.max[k] = std::max(most[0], most[1]);
   }
+  place_blocks();
 }
 
 }  // namespace kaboum::collide

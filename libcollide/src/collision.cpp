@@ -78,36 +78,81 @@ std::optional<Polytope> shrunk(const geom::Mesh& hull, double by) {
 
 }  // namespace
 
-/// Pairs of bodies whose boxes meet, 64 bodies of b after the other.
+/// Pairs of bodies whose boxes meet, 64 bodies of b after the other. Boxes round 64 bodies, and
+/// round 64 of such boxes, leave out most of a set of very many.
 struct BoxPairs {
   const PosedSet &a, &b;
   double slack;
 
-  static constexpr std::size_t kBlock = 64;
+  static constexpr std::size_t kBlock = PosedSet::kBlock;
 
   /// Calls visit(i, j) for them until it is true.
   template <typename Visit>
   [[nodiscard]] bool any(const Visit& visit) const {
+    // Only b is looked at by blocks.
+    if (a.set().size() > kVeryMany && b.set().size() < a.set().size())
+      return BoxPairs{b, a, slack}.any_in_order(
+          [&](std::size_t j, std::size_t i) { return visit(i, j); });
+    return any_in_order(visit);
+  }
+
+ private:
+  static constexpr std::size_t kVeryMany = 4096;
+
+  template <typename Visit>
+  [[nodiscard]] bool any_in_order(const Visit& visit) const {
     const std::size_t n = a.set().size(), m = b.set().size();
     const Box3 all = enlarged(b.box(), slack), whole = enlarged(a.box(), slack);
     if (n == 0 || m == 0 || !overlap(whole, b.box())) return false;
-    const detail::BoxRows rows{{b.low(0), b.low(1), b.low(2)}, {b.high(0), b.high(1), b.high(2)}};
-    for (std::size_t from = 0; from < m; from += kBlock) {
-      // Most are far from all of a.
-      const std::uint64_t near =
-          detail::meeting_boxes(rows, from, std::min(m - from, kBlock), whole);
-      for (std::size_t i = 0; i < n && near != 0; ++i) {
+    const Query<Visit> query{*this, all, whole, visit};
+    return query.any_of_level(b.levels_.size(), 0, b.levels_.empty() ? m : b.levels_.back().count);
+  }
+
+  template <typename Visit>
+  struct Query {
+    const BoxPairs& pairs;
+    const Box3 &all, &whole;
+    const Visit& visit;
+
+    /// @param level  0: of bodies. @param from, count  of the boxes that are looked at
+    [[nodiscard]] bool any_of_level(std::size_t level, std::size_t from, std::size_t count) const {
+      const PosedSet& b = pairs.b;
+      if (level == 0) {
+        const detail::BoxRows rows{{b.low(0), b.low(1), b.low(2)},
+                                   {b.high(0), b.high(1), b.high(2)}};
+        // Most are far from all of a.
+        const std::uint64_t near = detail::meeting_boxes(rows, from, count, whole);
+        return near != 0 && any_of_bodies(from, near);
+      }
+      const PosedSet::Level& here = b.levels_[level - 1];
+      const double* at = b.boxes_->data() + here.from;
+      const auto row = [&](std::size_t k) { return at + k * here.count; };
+      const detail::BoxRows rows{{row(0), row(1), row(2)}, {row(3), row(4), row(5)}};
+      const std::size_t below = level == 1 ? b.set().size() : b.levels_[level - 2].count;
+      for (std::uint64_t left = detail::meeting_boxes(rows, from, count, whole); left != 0;
+           left &= left - 1) {
+        const std::size_t first =
+            kBlock * (from + static_cast<std::size_t>(std::countr_zero(left)));
+        if (any_of_level(level - 1, first, std::min(below - first, kBlock))) return true;
+      }
+      return false;
+    }
+
+    /// @param near  a bit for each body of b from `from` on that is looked at
+    [[nodiscard]] bool any_of_bodies(std::size_t from, std::uint64_t near) const {
+      const PosedSet &a = pairs.a, &b = pairs.b;
+      for (std::size_t i = 0; i < a.set().size(); ++i) {
         const Box3 one = a.box(i);
         if (!overlap(one, all)) continue;
-        const Box3 own = enlarged(one, slack);
+        const Box3 own = enlarged(one, pairs.slack);
         for (std::uint64_t left = near; left != 0; left &= left - 1) {
           const std::size_t j = from + static_cast<std::size_t>(std::countr_zero(left));
           if (overlap(own, b.box(j)) && visit(i, j)) return true;
         }
       }
+      return false;
     }
-    return false;
-  }
+  };
 };
 
 /// Boxes of two sets' bodies along the axes of both sets
@@ -200,18 +245,33 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
     double least;
     BodyPair pair;
   };
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < a.set().size(); ++i) {
-    for (std::size_t j = 0; j < b.set().size(); ++j) {
-      const Vec3 apart = (a.box(i).min - b.box(j).max)
-                             .cwiseMax(b.box(j).min - a.box(i).max)
-                             .cwiseMax(Vec3::Zero());
-      // The boxes hold the margins; rounding of the difference is relative to what it is of.
-      const double scale = a.box(i).min.cwiseAbs().sum() + a.box(i).max.cwiseAbs().sum() +
-                           b.box(j).min.cwiseAbs().sum() + b.box(j).max.cwiseAbs().sum();
-      candidates.push_back({apart.norm() / kSumUp - 0x1p-48 * scale, {i, j}});
-    }
+  const auto least_of = [&](std::size_t i, std::size_t j) {
+    const Vec3 apart =
+        (a.box(i).min - b.box(j).max).cwiseMax(b.box(j).min - a.box(i).max).cwiseMax(Vec3::Zero());
+    // The boxes hold the margins; rounding of the difference is relative to what it is of.
+    const double scale = a.box(i).min.cwiseAbs().sum() + a.box(i).max.cwiseAbs().sum() +
+                         b.box(j).min.cwiseAbs().sum() + b.box(j).max.cwiseAbs().sum();
+    return apart.norm() / kSumUp - 0x1p-48 * scale;
+  };
+  const auto upper_of = [&](const Gap& gap, std::size_t i, std::size_t j) {
+    return std::max((gap.upper + a.error() + b.error()) * kSumUp - margins(a, i, b, j), 0.0);
+  };
+  // Of very many pairs, only those are kept that may be nearer than the one whose boxes are
+  // nearest.
+  constexpr std::size_t kMany = 1 << 16;
+  double most = std::numeric_limits<double>::infinity();
+  if (a.set().size() * b.set().size() > kMany) {
+    Candidate best{most, {}};
+    for (std::size_t i = 0; i < a.set().size(); ++i)
+      for (std::size_t j = 0; j < b.set().size(); ++j)
+        if (const double least = least_of(i, j); least < best.least) best = {least, {i, j}};
+    const auto [i, j] = best.pair;
+    most = upper_of(gap_between(a.body(i), b.body(j)), i, j);
   }
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < a.set().size(); ++i)
+    for (std::size_t j = 0; j < b.set().size(); ++j)
+      if (const double least = least_of(i, j); least <= most) candidates.push_back({least, {i, j}});
   if (candidates.empty()) return std::nullopt;
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.least < y.least; });
@@ -222,8 +282,7 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
     const Gap gap = gap_between(a.body(pair.a), b.body(pair.b));
     const double reach = reach_of(a, pair.a, b, pair.b, 0);
     out.lower = std::min(out.lower, std::max((gap.lower - reach) / kSumUp, 0.0));
-    const double upper =
-        std::max((gap.upper + a.error() + b.error()) * kSumUp - margins(a, pair.a, b, pair.b), 0.0);
+    const double upper = upper_of(gap, pair.a, pair.b);
     if (upper >= out.upper) continue;
     out.upper = upper;
     out.bodies = pair;

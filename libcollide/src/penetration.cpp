@@ -153,9 +153,17 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
   const auto meet = [](const geom::Box3& x, const geom::Box3& y) {
     return (x.min.array() <= y.max.array()).all() && (y.min.array() <= x.max.array()).all();
   };
+  const auto overlap_of = [](const geom::Box3& x, const geom::Box3& y) {
+    return (x.max.cwiseMin(y.max) - x.min.cwiseMax(y.min)).minCoeff();
+  };
+  constexpr std::size_t kVeryMany = 1 << 16;
+  const bool very_many = a.set().size() * b.set().size() > kVeryMany;
   for (std::size_t i = 0; i < a.set().size(); ++i) {
     for (std::size_t j = 0; j < b.set().size(); ++j) {
       if (!meet(a.box(i), b.box(j))) continue;
+      // No pair is deeper than its boxes: of very many pairs, only those are looked at that may be
+      // deeper than the deepest so far.
+      if (very_many && out && overlap_of(a.box(i), b.box(j)) <= out->depth.lower) continue;
       const Posed body_a = a.body(i), body_b = b.body(j);
       const double above = (a.radius_above(i) + b.radius_above(j)) * kSumUp,
                    below = (a.radius_below(i) + b.radius_below(j)) / kSumUp;
@@ -176,6 +184,15 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
   }
   if (!out) return out;
   out->depth.upper = std::numeric_limits<double>::infinity();
+  // Each direction is looked along by all bodies: of sets of very many, few are tried.
+  constexpr std::size_t kMostWork = 20'000'000;
+  const std::size_t fewest = 16,
+                    few = std::max(fewest, kMostWork / (a.set().size() + b.set().size()));
+  if (directions.size() > few) {
+    std::vector<Vec3> some;
+    for (std::size_t i = 0; i < few; ++i) some.push_back(directions[i * directions.size() / few]);
+    directions = std::move(some);
+  }
   for (int k = 0; k < 3; ++k)
     for (const double sign : {1.0, -1.0}) directions.emplace_back(sign * Vec3::Unit(k));
   for (const Vec3& d : directions) {

@@ -172,12 +172,14 @@ class MotionBatch {
  public:
   using Answer = BatchChecker::Answer;
 
+  /// @param slack  as of detail::filter_rows
   MotionBatch(const detail::Model& model, Instructions set, const double* from, const double* to,
-              std::size_t count)
+              std::size_t count, float slack)
       : model_(model),
         set_(set),
         from_(from),
         to_(to),
+        slack_(slack),
         result_(count, Answer::Free),
         memory_(model) {
     for (std::size_t i = 0; i < count; ++i) stretches_.push_back({i});
@@ -249,18 +251,27 @@ class MotionBatch {
     }
     answers_.resize(stretches_.size());
     detail::filter_rows(model_, set_, rows_.data(), widths_.data(), answers_.size(), memory_,
-                        answers_.data());
+                        answers_.data(), slack_);
   }
 
   const detail::Model& model_;
   Instructions set_;
   const double *from_, *to_;
+  float slack_;
   std::vector<Answer> result_;
   std::vector<Stretch> stretches_;
   std::vector<double> rows_, widths_;
   std::vector<Answer> answers_;
   detail::LaneMemory memory_;
 };
+
+/// A resolution as motions are looked at with it: rounded up, as sums of floats need it, with what
+/// check_motion allows for the rounding of instants.
+/// @param size  of the robot
+float slack_of(double resolution, double size) {
+  return std::nextafter(static_cast<float>((resolution + 0x1p-29 * size) * (1 + 0x1p-20)),
+                        HUGE_VALF);
+}
 
 bool is_within(const detail::Model& model, std::span<const double> row) {
   for (std::size_t k = 0; k < row.size(); ++k)
@@ -275,6 +286,7 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
                                          const world::MotionOptions& options,
                                          const std::function<void()>& progress) const {
   constexpr std::size_t kPart = 64;
+  constexpr double kLargestResolution = 1e6;  // lengths that errors of floats are bounded for
   struct Worker {
     const Impl& impl;
     std::span<const double> from, to;
@@ -287,14 +299,16 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
     void filter(std::size_t first, std::span<Answer> answers) const {
       const detail::Model& model = impl.model;
       const std::size_t n = model.variables;
-      bool usable = !model.unusable && !model.always_contact && n > 0;
+      bool usable = !model.unusable && !model.always_contact && n > 0 &&
+                    options.resolution < kLargestResolution;
       for (std::size_t i = first; usable && i < first + answers.size(); ++i)
         usable = is_within(model, row(from, i)) && is_within(model, row(to, i));
       if (usable)
-        std::ranges::copy(MotionBatch(model, impl.instructions, from.data() + first * n,
-                                      to.data() + first * n, answers.size())
-                              .run(),
-                          answers.begin());
+        std::ranges::copy(
+            MotionBatch(model, impl.instructions, from.data() + first * n, to.data() + first * n,
+                        answers.size(), slack_of(options.resolution, model.size))
+                .run(),
+            answers.begin());
       else
         std::ranges::fill(answers, Answer::Open);
     }
@@ -308,6 +322,8 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
   };
   require_rows(from, free.size(), variables());
   require_rows(to, free.size(), variables());
+  if (!(options.resolution > 0))
+    throw Error(ErrorCode::InvalidArgument, "a resolution must be above 0");
   world::MotionOptions exact = options;
   exact.where = false;
   exact.progress = {};

@@ -28,11 +28,14 @@ struct View {
   const Witness* witness;
   const Obstacle* obstacle;
   const Plane* plane;
+  const CloudPoint* cloud_point;
+  const CloudNode* cloud_node;
   const ObstacleGroup* group;
   const ShapePair* shape_pair;
   const ObstaclePair* obstacle_pair;
   float* memory;         // of one pack
   unsigned char* ready;  // of each shape: which of its balls are placed
+  float slack;           // that free ones are apart by, besides margins
 };
 
 namespace baseline {
@@ -91,7 +94,7 @@ float* LaneMemory::floats() {
 
 namespace {
 
-View view_of(const Model& model, LaneMemory& memory) {
+View view_of(const Model& model, LaneMemory& memory, float slack = 0) {
   return {model.variables,
           model.steps.size(),
           model.shapes.size(),
@@ -109,19 +112,22 @@ View view_of(const Model& model, LaneMemory& memory) {
           model.witnesses.data(),
           model.obstacles.data(),
           model.planes.data(),
+          model.cloud_points.data(),
+          model.cloud_nodes.data(),
           model.groups.data(),
           model.shape_pairs.data(),
           model.obstacle_pairs.data(),
           memory.floats(),
-          memory.ready()};
+          memory.ready(),
+          slack};
 }
 
 }  // namespace
 
 void filter_rows(const Model& model, [[maybe_unused]] Instructions set, const double* rows,
                  const double* widths, std::size_t count, LaneMemory& memory,
-                 BatchChecker::Answer* answers) {
-  const View view = view_of(model, memory);
+                 BatchChecker::Answer* answers, float slack) {
+  const View view = view_of(model, memory, slack);
 #ifdef KABOUM_AVX2
   if (set == Instructions::Avx512) return avx512::filter_rows(view, rows, widths, count, answers);
   if (set == Instructions::Avx2) return avx2::filter_rows(view, rows, widths, count, answers);

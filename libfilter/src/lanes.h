@@ -25,8 +25,10 @@ class LaneMemory {
 /// Decides rows of values, several at a time. @pre the processor has the instructions.
 /// @param widths  null; or for each row how far every variable goes from its value, to both sides:
 ///   free is then what is so at all these values, in contact what is so at the row's own
+/// @param slack  free is what is apart by more than that besides the margin; rounded up [length]
 void filter_rows(const Model& model, Instructions set, const double* rows, const double* widths,
-                 std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers);
+                 std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers,
+                 float slack = 0);
 
 /// Centres of the outer balls for each row, x, y, z; for tests.
 void place_outer_balls(const Model& model, Instructions set, const double* rows, std::size_t count,

@@ -199,6 +199,39 @@ inline unsigned must_meet(const Point& p, float radius, const Obstacle& o) {
   return bits_of(near);
 }
 
+/// Squared distance from a box along the axes.
+inline Floats distance_of_box(const Point& p, const CloudNode& box) {
+  const Floats at[3] = {p.x, p.y, p.z};
+  Floats sum{};
+  for (int k = 0; k < 3; ++k) {
+    const Floats below = box.low[k] - at[k], above = at[k] - box.high[k];
+    const Floats beyond = below > above ? below : above;
+    const Floats positive = beyond > 0 ? beyond : Floats{};
+    sum += positive * positive;
+  }
+  return sum;
+}
+
+/// Those of the lanes in which meet(point) is not 0 for a point of a cloud within reach.
+template <typename Reach, typename Meet>
+inline unsigned any_point(const View& m, const CloudModel& cloud, const Point& p,
+                          const Reach& reach, unsigned lanes, const Meet& meet) {
+  const Floats most = Floats{} + reach * reach * kAbove;
+  unsigned found = 0;
+  for (std::uint32_t i = cloud.nodes.begin; i < cloud.nodes.end && found != lanes;) {
+    const CloudNode& node = m.cloud_node[i];
+    const Ints apart = distance_of_box(p, node) > most;
+    if ((lanes & ~found & bits_of(~apart)) == 0) {
+      i = node.next;
+      continue;
+    }
+    for (std::uint32_t k = node.points.begin; k < node.points.end && found != lanes; ++k)
+      found |= lanes & ~found & meet(m.cloud_point[k].at);
+    ++i;
+  }
+  return found;
+}
+
 /// Configurations that are looked at at once, and what is known of them; with Moving, stretches of
 /// values round them: free is what is so in all of a stretch, in contact what is so at its
 /// configuration.
@@ -237,8 +270,10 @@ class Pack {
     const Point& whole = whole_[pair.shape];
     const ObstacleGroup& group = m_.group[pair.group];
     const auto motion = whole_motion(shape.frame, 0);
-    const auto radius = radius_of(motion, shape.whole, pair.margin);
+    const auto radius = radius_of(motion, shape.whole, pair.margin + m_.slack);
     const unsigned near = may_meet(whole, group.center, radius + group.radius);
+    if (group.cloud.nodes.begin != group.cloud.nodes.end)
+      return look_at(pair, shape, group.cloud, near & all_ & ~contact_);
     for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
       const unsigned left = near & all_ & ~contact_;
       if (left == 0) return;
@@ -253,12 +288,42 @@ class Pack {
     const auto motion = whole_motion(shape.frame, 0);
     unsigned doubt = 0;
     for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
-      doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], pair.margin), o);
+      doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], pair.margin + m_.slack), o);
     if (doubt == 0) return;
     place_inner(pair.shape);
     unsigned meet = 0;
     for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k)
       meet |= doubt & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
+    note(doubt, meet);
+  }
+
+  void look_at(const ObstaclePair& pair, const ShapeModel& shape, const CloudModel& cloud,
+               unsigned near) {
+    if (near == 0) return;
+    const auto motion = whole_motion(shape.frame, 0);
+    const float margin = pair.margin + m_.slack;
+    const auto may_touch = [&](const Point& p, const FrameBall& ball, unsigned lanes) {
+      const auto reach = radius_of(motion, ball, margin) + cloud.radius;
+      return any_point(m_, cloud, p, reach, lanes,
+                       [&](const float* point) { return may_meet(p, point, reach); });
+    };
+    near = may_touch(whole_[pair.shape], shape.whole, near);
+    if (near == 0) return;
+    place_outer(pair.shape);
+    unsigned doubt = 0;
+    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
+      doubt |= may_touch(outer_[k], m_.outer[k], near & ~doubt);
+    if (doubt == 0) return;
+    place_inner(pair.shape);
+    unsigned meet = 0;
+    for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k) {
+      const float reach = m_.inner[k].radius + cloud.inner_radius + pair.least_margin;
+      if (!(cloud.inner_radius > 0) || !(reach > 0)) continue;
+      const Point& p = inner_[k];
+      meet |= any_point(m_, cloud, p, reach, doubt & ~meet, [&](const float* point) {
+        return must_meet(p, {Floats{} + point[0], Floats{} + point[1], Floats{} + point[2]}, reach);
+      });
+    }
     note(doubt, meet);
   }
 
@@ -270,7 +335,8 @@ class Pack {
     unsigned near =
         all_ & ~contact_ &
         may_meet(whole_a, whole_b,
-                 radius_of(motion_a, a.whole, pair.margin) + radius_of(motion_b, b.whole, 0));
+                 radius_of(motion_a, a.whole, pair.margin + m_.slack) +
+                     radius_of(motion_b, b.whole, 0));
     for (std::uint32_t i = pair.witnesses.begin; i < pair.witnesses.end && near != 0; ++i) {
       const Witness& w = m_.witness[i];
       near &= w.of_first ? not_separated(w, a, motion_a, b, motion_b)
@@ -281,7 +347,7 @@ class Pack {
     place_outer(pair.b);
     unsigned doubt = 0;
     for (std::uint32_t i = a.outer.begin; i < a.outer.end && doubt != near; ++i) {
-      const auto reach = radius_of(motion_a, m_.outer[i], pair.margin);
+      const auto reach = radius_of(motion_a, m_.outer[i], pair.margin + m_.slack);
       const unsigned left =
           near & ~doubt & may_meet(outer_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
       if (left == 0) continue;
@@ -325,9 +391,9 @@ class Pack {
       const Floats moves =
           (motion_a.shift + motion_a.turn * a.reach + motion_b.shift + motion_b.turn * b.reach) *
           (1 + kMoves);
-      return bits_of(~(beyond > moves + w.offset));
+      return bits_of(~(beyond > moves + (w.offset + m_.slack)));
     } else {
-      return bits_of(~(beyond > w.offset));
+      return bits_of(~(beyond > w.offset + m_.slack));
     }
   }
 

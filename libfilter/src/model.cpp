@@ -307,6 +307,74 @@ void add_obstacle(const PosedSet& at, std::size_t body, const Vec3& origin, Mode
   model.obstacles.push_back(out);
 }
 
+/// A tree over points of a cloud, halved across the longest side of their box.
+class CloudTree {
+ public:
+  explicit CloudTree(Model& model) : model_(model) {}
+
+  /// Nodes of points from `begin` to `end`, which it puts in order.
+  void add(std::uint32_t begin, std::uint32_t end) {
+    const auto at = static_cast<std::uint32_t>(model_.cloud_nodes.size());
+    CloudNode node;
+    const auto first = model_.cloud_points.begin() + begin,
+               last = model_.cloud_points.begin() + end;
+    int longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax_element(
+          first, last, [&](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
+      node.low[k] = low->at[k];
+      node.high[k] = high->at[k];
+      if (node.high[k] - node.low[k] > node.high[longest] - node.low[longest]) longest = k;
+    }
+    const bool leaf = end - begin <= kLeaf;
+    if (leaf) node.points = {begin, end};
+    model_.cloud_nodes.push_back(node);
+    if (!leaf) {
+      const std::uint32_t middle = begin + (end - begin) / 2;
+      // Of equal coordinates the others decide, so that the order is the same everywhere.
+      std::nth_element(first, model_.cloud_points.begin() + middle, last,
+                       [&](const auto& a, const auto& b) {
+                         if (a.at[longest] != b.at[longest]) return a.at[longest] < b.at[longest];
+                         return std::ranges::lexicographical_compare(a.at, b.at);
+                       });
+      add(begin, middle);
+      add(middle, end);
+    }
+    model_.cloud_nodes[at].next = static_cast<std::uint32_t>(model_.cloud_nodes.size());
+  }
+
+ private:
+  static constexpr std::uint32_t kLeaf = 8;
+  Model& model_;
+};
+
+/// @param at  of a set that is a cloud
+CloudModel add_cloud(const PosedSet& at, const Vec3& origin, Model& model) {
+  CloudModel out;
+  const auto begin = static_cast<std::uint32_t>(model.cloud_points.size());
+  double farthest = 0, size = 0, above = 0, below = HUGE_VAL;
+  for (std::size_t i = 0; i < at.set().size(); ++i) {
+    const Vec3& local = at.set().body(i).core.vertices.front();
+    const Vec3 p = at.pose() * local - origin;
+    CloudPoint point;
+    put(p, point.at);
+    model.cloud_points.push_back(point);
+    farthest = std::max(farthest, p.norm());
+    size = std::max(size, local.norm());
+    above = std::max(above, at.radius_above(i));
+    below = std::min(below, at.radius_below(i));
+  }
+  size += farthest + at.pose().translation.norm() + origin.norm();
+  const double floats = 10 * kUnit * farthest + kDoubles * size;
+  out.radius = rounded_up((above + 2.5 * at.error() + floats) * kSums);
+  out.inner_radius = rounded_down((below - floats) / kSums);
+  out.nodes.begin = static_cast<std::uint32_t>(model.cloud_nodes.size());
+  CloudTree(model).add(begin, static_cast<std::uint32_t>(model.cloud_points.size()));
+  out.nodes.end = static_cast<std::uint32_t>(model.cloud_nodes.size());
+  model.unusable = model.unusable || !(farthest + above < kLargest);
+  return out;
+}
+
 void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   ObstacleGroup out;
   const Vec3 center = at.pose() * at.set().ball().center - origin;
@@ -316,7 +384,10 @@ void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
        kDoubles * (at.pose().translation.norm() + origin.norm() + at.set().ball().center.norm())) *
       kSums);
   out.obstacles.begin = size_of(model.obstacles);
-  for (std::size_t i = 0; i < at.set().size(); ++i) add_obstacle(at, i, origin, model);
+  if (at.set().is_cloud())
+    out.cloud = add_cloud(at, origin, model);
+  else
+    for (std::size_t i = 0; i < at.set().size(); ++i) add_obstacle(at, i, origin, model);
   out.obstacles.end = size_of(model.obstacles);
   model.groups.push_back(out);
 }

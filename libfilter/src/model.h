@@ -77,11 +77,31 @@ struct Plane {
   float offset = 0;
 };
 
+/// A point of a cloud.
+struct CloudPoint {
+  float at[3] = {};
+};
+
+/// A box along the world's axes that holds points of a cloud; nodes below one follow it.
+struct CloudNode {
+  float low[3] = {}, high[3] = {};
+  Range points;            ///< of a leaf; else empty
+  std::uint32_t next = 0;  ///< the node after all that are below this one
+};
+
+/// Balls of one radius round very many points, by a tree.
+struct CloudModel {
+  Range nodes;
+  float radius = 0;        ///< and all errors, rounded up
+  float inner_radius = 0;  ///< without them, rounded down; not above 0: none
+};
+
 /// The obstacles of one thing, and a ball round them.
 struct ObstacleGroup {
   float center[3] = {};
   float radius = 0;
-  Range obstacles;
+  Range obstacles;   ///< none of a cloud
+  CloudModel cloud;  ///< nodes: empty where it is none
 };
 
 /// A shape and a thing that are to be apart by more than the margin.
@@ -109,6 +129,8 @@ struct Model {
   std::vector<Witness> witnesses;
   std::vector<Obstacle> obstacles;
   std::vector<Plane> planes;
+  std::vector<CloudPoint> cloud_points;
+  std::vector<CloudNode> cloud_nodes;
   std::vector<ObstacleGroup> groups;
   std::vector<ObstaclePair> obstacle_pairs;
   std::vector<ShapePair> shape_pairs;

@@ -8,6 +8,7 @@
 #include "bytes.h"
 #include "formats.h"
 #include "output.h"
+#include "point_formats.h"
 #include "text.h"
 
 namespace kaboum::io {
@@ -208,6 +209,10 @@ class AsciiValues {
     scan_.seek(source.begin() + header.size);
   }
   double coordinate(Scalar /*type*/) { return scan_.coordinate(); }
+  /// The same, which may be NaN.
+  double number(const Source& source, Scalar /*type*/) {
+    return PointBuilder::value_of(source, scan_.need("a coordinate"));
+  }
   std::int64_t integer(Scalar /*type*/) { return scan_.integer("an integer"); }
   void skip(Scalar /*type*/, std::uint64_t count) {
     for (; count > 0; --count) scan_.need("a value");
@@ -230,6 +235,7 @@ class BinaryValues {
       : source_(source), order_(header.order), at_(source.begin() + header.size) {}
 
   double coordinate(Scalar type) { return load_scalar(take(type, 1), type, order_); }
+  double number(const Source& /*source*/, Scalar type) { return coordinate(type); }
   std::int64_t integer(Scalar type) {
     const char* const from = take(type, 1);
     if (type == Scalar::Int32) return load<std::int32_t>(from, order_);
@@ -264,6 +270,62 @@ class BinaryValues {
   std::endian order_;
   const char* at_;
 };
+
+/// More records than the file has room for are refused before anything is reserved.
+template <typename Values>
+void check_room(const Source& source, const Values& values, const Element& element) {
+  std::uint64_t bytes = 0;
+  for (const Property& p : element.properties) bytes += size_of(p.count.value_or(p.type));
+  if (element.properties.empty() || element.count == 0) return;
+  if (element.count > values.room(element.properties.size(), bytes))
+    fail(source, "the PLY header states " + std::to_string(element.count) + " records of element " +
+                     in_quotes(element.name) + ", more than a file of " +
+                     std::to_string(source.bytes.size()) +
+                     " bytes holds; it is truncated or damaged");
+}
+
+/// The axis of a property of points: 0, 1, 2, else −1.
+int axis_of(const Property& p) {
+  const bool is_one = !p.count && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z';
+  return is_one ? p.name[0] - 'x' : -1;
+}
+
+/// The vertices of a file without faces.
+template <typename Values>
+void read_points(const Source& source, const Header& header, PointBuilder& to) {
+  Values values(source, header);
+  bool found = false;
+  for (const Element& element : header.elements) {
+    const bool vertices = element.name == "vertex";
+    check_room(source, values, element);
+    if (!vertices && element.count > 0)
+      fail(source, "the PLY element " + in_quotes(element.name) +
+                       " is no point: a file with faces is a mesh, which is an object of a scene; "
+                       "export points alone");
+    if (!vertices) continue;
+    found = true;
+    std::array<int, 3> axes{};
+    for (const Property& p : element.properties) {
+      if (p.count) fail(source, "a list in element 'vertex' cannot be read; export points alone");
+      if (const int axis = axis_of(p); axis >= 0) ++axes[static_cast<std::size_t>(axis)];
+    }
+    if (axes != std::array<int, 3>{1, 1, 1})
+      fail(source, "element 'vertex' needs each of the properties x, y and z once; export again");
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      geom::Vec3 point;
+      for (const Property& p : element.properties)
+        if (const int axis = axis_of(p); axis >= 0)
+          point[axis] = values.number(source, p.type);
+        else
+          values.skip(p.type, 1);
+      to.add(point);
+    }
+  }
+  if (!found) fail(source, "the PLY header has no element 'vertex'; the file holds no points");
+  if (const char* const rest = values.rest(); rest != nullptr)
+    fail(source, rest,
+         "the file goes on after the elements that its header states; it is damaged, get it again");
+}
 
 template <typename Values>
 class DataReader {
@@ -311,17 +373,7 @@ class DataReader {
     return nullptr;
   }
 
-  /// More records than the file has room for are refused before anything is reserved.
-  void check_room(const Element& element) {
-    std::uint64_t bytes = 0;
-    for (const Property& p : element.properties) bytes += size_of(p.count.value_or(p.type));
-    if (element.properties.empty() || element.count == 0) return;
-    if (element.count > values_.room(element.properties.size(), bytes))
-      fail(source_, "the PLY header states " + std::to_string(element.count) +
-                        " records of element " + in_quotes(element.name) +
-                        ", more than a file of " + std::to_string(source_.bytes.size()) +
-                        " bytes holds; it is truncated or damaged");
-  }
+  void check_room(const Element& element) { io::check_room(source_, values_, element); }
 
   void skip(const Property& p) {
     if (p.count) {
@@ -357,9 +409,7 @@ class DataReader {
     std::array<int, 3> found{};
     std::vector<int> axes;  // 0, 1, 2 for coordinates, else −1
     for (const Property& p : element.properties) {
-      int axis = -1;
-      if (!p.count && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z')
-        axis = p.name[0] - 'x';
+      const int axis = axis_of(p);
       if (axis >= 0) ++found[static_cast<std::size_t>(axis)];
       axes.push_back(axis);
       if (p.count && p.type != Scalar::Float32 && p.type != Scalar::Float64)
@@ -491,6 +541,14 @@ ReadResult read_ply(Source source) {
   source.text = header.ascii;
   if (header.ascii) return DataReader<AsciiValues>(source, header).read();
   return DataReader<BinaryValues>(source, header).read();
+}
+
+void read_ply_points(const Source& given, PointBuilder& to) {
+  Source source = given;
+  const Header header = HeaderReader(source).read();
+  source.text = header.ascii;
+  if (header.ascii) return read_points<AsciiValues>(source, header, to);
+  read_points<BinaryValues>(source, header, to);
 }
 
 std::vector<char> write_ply_binary(const geom::Mesh& mesh, const WriteOptions& options) {

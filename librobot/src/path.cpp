@@ -198,6 +198,7 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
         if (field.text.empty()) fail(name, place + ": a joint without a name");
         path.joints.push_back(field.text);
       }
+      path.joints_at = place;
     } else {
       append(path, std::move(values), name, place);
       path.lines.push_back(line_number);
@@ -208,44 +209,237 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name) {
   return path;
 }
 
+namespace {
+
+/// A trajectory in JSON as other programs have it. Of their members those are looked at that say
+/// where joints are, and when.
+class TrajectoryReader {
+ public:
+  explicit TrajectoryReader(const std::string& name) : name_(name) {}
+
+  /// @param at  where the value is, for messages; empty: all of the file
+  NamedPath read(const Json& value, const std::string& at) {
+    if (value.is_array()) {
+      if (value.empty() || !value.front().is_object()) return read_rows(value, at);
+      if (value.size() > 1)
+        refuse(at, std::to_string(value.size()) + " trajectories; put each into a file of its own");
+      return read(value.front(), at);
+    }
+    if (!value.is_object()) refuse(at, "a trajectory is expected");
+    if (value.contains("waypoints")) return read_waypoints(value, at);
+    if (value.contains("points")) return read_points(value, at);
+    for (const char* position : {"position", "positions"})
+      if (value.contains(position)) return read_positions(value, position, at);
+    return read_within(value, at);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& at, const std::string& what) const {
+    fail(name_, (at.empty() ? "" : at + ": ") + what);
+  }
+  static std::string member(const std::string& at, const std::string& name) {
+    return at.empty() ? name : at + "." + name;
+  }
+
+  std::vector<double> numbers(const Json& row, const std::string& at) const {
+    const char* what = "not a list of numbers";
+    if (!row.is_array()) refuse(at, what);
+    std::vector<double> out;
+    for (const Json& x : row) {
+      if (x.is_string() && x.get<std::string>() == "...")
+        refuse(at,
+               "it was cut short when it was printed: print the message with all of its values");
+      if (!x.is_number()) refuse(at, what);
+      out.push_back(x.get<double>());
+    }
+    return out;
+  }
+
+  NamedPath read_rows(const Json& rows, const std::string& at) const {
+    NamedPath out;
+    add_rows(rows, at, out);
+    return out;
+  }
+
+  void add_rows(const Json& rows, const std::string& at, NamedPath& out) const {
+    if (!rows.is_array()) refuse(at, "the waypoints are not a list");
+    for (const Json& row : rows) {
+      const std::string place =
+          (at.empty() ? "" : at + ": ") + "waypoint " + std::to_string(out.waypoints.size() + 1);
+      append(out, numbers(row, place), name_, place);
+    }
+    if (out.waypoints.empty()) refuse(at, "no waypoint");
+  }
+
+  std::vector<std::string> names(const Json& value, const std::string& at) const {
+    std::vector<std::string> out;
+    if (!value.is_array()) refuse(at, "not a list of names");
+    for (const Json& joint : value) {
+      if (!joint.is_string()) refuse(at, "not a list of names");
+      out.push_back(joint.get<std::string>());
+    }
+    return out;
+  }
+
+  /// What this project writes.
+  NamedPath read_waypoints(const Json& value, const std::string& at) const {
+    NamedPath out;
+    if (value.contains("joints")) {
+      out.joints_at = member(at, "joints");
+      out.joints = names(value["joints"], out.joints_at);
+    }
+    add_rows(value["waypoints"], at, out);
+    return out;
+  }
+
+  /// A trajectory or more in a message of ROS or MoveIt.
+  NamedPath read_within(const Json& value, const std::string& at) {
+    require_no_other_joints(value, at);
+    if (value.contains("trajectory_start")) note_start(value["trajectory_start"]);
+    for (const char* inner : {"joint_trajectory", "trajectory", "goal", "planned_trajectory"})
+      if (value.contains(inner) && !value[inner].is_null())
+        return read(value[inner], member(at, inner));
+    refuse(
+        at,
+        "no \"waypoints\", \"points\" or \"position\" (a path, a JointTrajectory or a JointState)");
+  }
+
+  /// Of MoveIt's trajectories: planar and floating joints.
+  void require_no_other_joints(const Json& value, const std::string& at) const {
+    const char* key = "multi_dof_joint_trajectory";
+    if (!value.contains(key) || !value[key].is_object()) return;
+    const Json& other = value[key];
+    for (const char* part : {"points", "joint_names"})
+      if (other.contains(part) && other[part].is_array() && !other[part].empty())
+        refuse(member(at, key),
+               "joints of several degrees of freedom move; only such of one are known here");
+  }
+
+  void note_start(const Json& start) {
+    if (!start.is_object()) return;
+    const char* key = "attached_collision_objects";
+    if (start.contains(key) && start[key].is_array() && !start[key].empty())
+      notes_.push_back("WARNING: " + name_ +
+                       ": \"trajectory_start\" has objects that are carried; they are passed over, "
+                       "and what the scene has is looked at");
+  }
+
+  /// ROS's JointTrajectory.
+  NamedPath read_points(const Json& value, const std::string& at) {
+    NamedPath out;
+    out.joints_at = member(at, "joint_names");
+    if (!value.contains("joint_names"))
+      refuse(at, "no \"joint_names\" beside \"points\": whose values they are is not known");
+    out.joints = names(value["joint_names"], out.joints_at);
+    const Json& points = value["points"];
+    if (!points.is_array()) refuse(member(at, "points"), "not a list");
+    if (points.empty()) refuse(member(at, "points"), "no points: the trajectory is empty");
+    const bool timed = points.front().is_object() && points.front().contains("time_from_start");
+    if (timed) out.joints.emplace_back("time_from_start");
+    bool moves = false;
+    std::size_t number = 0;
+    for (const Json& point : points) {
+      const std::string place = member(at, "points") + ": point " + std::to_string(++number);
+      if (!point.is_object() || !point.contains("positions"))
+        refuse(place, "no \"positions\"; an effort or a velocity alone is no place");
+      std::vector<double> row = numbers(point["positions"], place + ", positions");
+      if (row.size() + (timed ? 1 : 0) != out.joints.size())
+        refuse(place + ", positions", std::to_string(row.size()) + " numbers instead of " +
+                                          std::to_string(out.joints.size() - (timed ? 1 : 0)) +
+                                          ", one for each of " + out.joints_at);
+      if (point.contains("time_from_start") != timed)
+        refuse(place, "some points have a \"time_from_start\", others have none");
+      if (timed) row.push_back(seconds(point["time_from_start"], place + ", time_from_start"));
+      for (const char* key : {"velocities", "accelerations"})
+        if (point.contains(key) && point[key].is_array())
+          for (const Json& x : point[key]) moves = moves || (x.is_number() && x != 0);
+      append(out, std::move(row), name_, place);
+    }
+    out.notes = std::move(notes_);
+    if (moves)
+      out.notes.push_back(name_ +
+                          ": velocities and accelerations are passed over: between points, joints "
+                          "move straight; a controller that makes splines of them leaves that");
+    return out;
+  }
+
+  /// A duration of ROS, or seconds.
+  double seconds(const Json& value, const std::string& at) const {
+    if (value.is_number()) return value.get<double>();
+    if (value.is_object())
+      for (const auto& [whole, nano] : {std::pair("sec", "nanosec"), std::pair("secs", "nsecs")})
+        if (value.contains(whole) && value[whole].is_number()) {
+          const bool has_part = value.contains(nano);
+          if (has_part && !value[nano].is_number()) break;
+          return value[whole].get<double>() + (has_part ? 1e-9 * value[nano].get<double>() : 0);
+        }
+    refuse(at, "a number of seconds, or \"sec\" and \"nanosec\", are expected");
+  }
+
+  /// A JointState of which positions are rows, as cuRobo's plans.
+  NamedPath read_positions(const Json& value, const char* key, const std::string& at) const {
+    NamedPath out;
+    const std::string place = member(at, key);
+    for (const char* label : {"joint_names", "name"})
+      if (out.joints.empty() && value.contains(label) && value[label].is_array()) {
+        out.joints_at = member(at, label);
+        out.joints = names(value[label], out.joints_at);
+      }
+    const Json* rows = &value[key];
+    const auto is_list_of_lists = [](const Json& x) {
+      return x.is_array() && !x.empty() && x.front().is_array();
+    };
+    if (is_list_of_lists(*rows) && is_list_of_lists(rows->front())) {
+      if (rows->size() > 1)
+        refuse(place,
+               std::to_string(rows->size()) + " trajectories; put each into a file of its own");
+      rows = &rows->front();
+    }
+    if (rows->is_array() && !rows->empty() && rows->front().is_number())
+      append(out, numbers(*rows, place), name_, place);
+    else
+      add_rows(*rows, place, out);
+    add_steps(value, at, out);
+    return out;
+  }
+
+  /// Times of rows that are equally long apart.
+  void add_steps(const Json& value, const std::string& at, NamedPath& out) const {
+    for (const char* key : {"interpolation_dt", "dt"}) {
+      if (!value.contains(key) || value[key].is_null()) continue;
+      const Json* step = &value[key];
+      while (step->is_array() && step->size() == 1) step = &step->front();
+      if (!step->is_number() || !(step->get<double>() > 0) || out.joints.empty())
+        refuse(member(at, key), out.joints.empty()
+                                    ? "a time, but no \"joint_names\" to tell columns apart by"
+                                    : "a number of seconds above 0 is expected");
+      out.joints.emplace_back("time_from_start");
+      for (std::size_t i = 0; i < out.waypoints.size(); ++i)
+        out.waypoints[i].push_back(static_cast<double>(i) * step->get<double>());
+      return;
+    }
+  }
+
+  const std::string& name_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
 NamedPath parse_path_json(std::string_view text, const std::string& name) {
   // Depth is limited before anything is built.
+  constexpr int kDeepest = 12;
   Json json;
   try {
-    json = Json::parse(text, [](int depth, Json::parse_event_t, Json&) { return depth <= 8; });
+    json =
+        Json::parse(text, [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; });
   } catch (const Json::parse_error& e) {
     fail(name, describe_json_damage(text, e.byte) + "; mend the path there");
   } catch (const Json::exception&) {
     fail(name, "a number in it is out of range");
   }
   if (json.is_discarded()) fail(name, "it is nested too deep; write a list of waypoints");
-  NamedPath path;
-  const Json* waypoints = &json;
-  if (json.is_object()) {
-    if (!json.contains("waypoints")) fail(name, "no \"waypoints\"");
-    waypoints = &json["waypoints"];
-    if (json.contains("joints")) {
-      const Json& joints = json["joints"];
-      if (!joints.is_array()) fail(name, "\"joints\" is not a list of names");
-      for (const Json& joint : joints) {
-        if (!joint.is_string()) fail(name, "\"joints\" is not a list of names");
-        path.joints.push_back(joint.get<std::string>());
-      }
-    }
-  }
-  if (!waypoints->is_array()) fail(name, "the waypoints are not a list");
-  for (const Json& row : *waypoints) {
-    const std::string place = "waypoint " + std::to_string(path.waypoints.size() + 1);
-    if (!row.is_array()) fail(name, place + " is not a list of numbers");
-    std::vector<double> values;
-    for (const Json& x : row) {
-      if (!x.is_number()) fail(name, place + " is not a list of numbers");
-      values.push_back(x.get<double>());
-    }
-    append(path, std::move(values), name, place);
-  }
-  if (path.waypoints.empty()) fail(name, "no waypoint");
-  return path;
+  return TrajectoryReader(name).read(json, "");
 }
 
 std::string csv_field(const std::string& joint) {
@@ -267,6 +461,15 @@ std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot)
          {"time", "%time", "__time", "timestamp", "stamp", "time_from_start", "t"})
       if (name == time) out.push_back(i);
   }
+  return out;
+}
+
+std::vector<double> times_of(const NamedPath& path, const Robot& robot) {
+  const std::vector<std::size_t> columns = time_columns(path, robot);
+  if (columns.empty()) return {};
+  std::vector<double> out;
+  for (const std::vector<double>& row : path.waypoints) out.push_back(row[columns.front()]);
+  if (!(out.back() > out.front())) out.clear();
   return out;
 }
 
@@ -309,12 +512,13 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (!fixed.contains(robot.variables[i].name)) column[i] = next++;
   } else {
     const std::vector<std::size_t> times = time_columns(path, robot);
+    const std::string at = path.joints_at.empty() ? "" : path.joints_at + ": ";
     for (std::size_t j = 0; j < path.joints.size(); ++j) {
       const std::string& joint = path.joints[j];
       if (std::find(times.begin(), times.end(), j) != times.end()) continue;
       if (std::count(path.joints.begin(), path.joints.end(), joint) > 1)
-        fail(name, "joint '" + joint + "' is named twice");
-      if (!has_variable(robot, joint)) fail(name, none(joint));
+        fail(name, at + "joint '" + joint + "' is named twice");
+      if (!has_variable(robot, joint)) fail(name, at + none(joint));
     }
     require_times_in_order(path, times, name);
     for (std::size_t i = 0; i < count; ++i) {
@@ -322,7 +526,8 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (fixed.contains(joint)) continue;
       const auto it = std::find(path.joints.begin(), path.joints.end(), joint);
       if (it == path.joints.end())
-        fail(name, std::string("no column for joint '")
+        fail(name, std::string(at)
+                       .append("no column for joint '")
                        .append(joint)
                        .append("'; where it does not move, give its value instead («joint=")
                        .append(joint)

@@ -33,6 +33,16 @@ double radius_of(const BoundingSet& set) {
 }
 
 std::vector<Vec3> hull_points(const BoundingSet& set) {
+  constexpr std::size_t kVeryMany = 4096;
+  if (set.is_cloud() && set.size() > kVeryMany) {
+    const geom::Box3& box = set.box();
+    std::vector<Vec3> corners;
+    for (unsigned k = 0; k < 8; ++k)
+      corners.emplace_back((k & 1U) != 0 ? box.max.x() : box.min.x(),
+                           (k & 2U) != 0 ? box.max.y() : box.min.y(),
+                           (k & 4U) != 0 ? box.max.z() : box.min.z());
+    return corners;
+  }
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < set.size(); ++i)
     points.insert(points.end(), set.body(i).core.vertices.begin(), set.body(i).core.vertices.end());

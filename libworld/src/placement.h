@@ -18,7 +18,8 @@ double attachment_error(const Transform& pose, double radius);
 /// Largest distance of a point of the set from its frame's origin, rounded up, margins included.
 double radius_of(const BoundingSet& set);
 
-/// Vertices of the hull of the set's bodies, which bounds of motions need only.
+/// Vertices of the hull of the set's bodies, which bounds of motions need only; of a cloud of very
+/// many points the corners of its box, which hold the hull.
 std::vector<Vec3> hull_points(const BoundingSet& set);
 
 /// How far the computed place of a body on a link may be from the exact one: of kinematics with

@@ -19,6 +19,11 @@ const char* name_of(AllowedPair::Reason reason) {
   }
 }
 
+std::optional<std::uint32_t> World::point_of(const Item& item, std::size_t body) const {
+  if (item.robot != Item::kObject || objects[item.index].point_numbers.empty()) return std::nullopt;
+  return objects[item.index].point_numbers.at(body);
+}
+
 std::string World::name_of(const Item& item) const {
   if (item.robot == Item::kObject) return objects[item.index].name;
   const RobotModel& robot = robots[item.robot];

@@ -504,6 +504,16 @@ class World:
     def are_free(
         self, q: ArrayLike, *, robot: str | None = None, progress: _Progress | None = None
     ) -> NDArray[np.bool_]: ...
+    def with_cloud(
+        self,
+        points: ArrayLike | _Path,
+        radius: float,
+        *,
+        name: str = "cloud",
+        pose: ArrayLike | None = None,
+        allow: Sequence[str] = [],
+        drop_invalid: bool = False,
+    ) -> World: ...
     def check_motion(
         self,
         path: ArrayLike | Mapping[str, ArrayLike],
@@ -519,6 +529,18 @@ class World:
         # end of options
         progress: _Progress | None = None,
     ) -> MotionCheck: ...
+    def motions_are_free(
+        self,
+        starts: ArrayLike,
+        goals: ArrayLike,
+        *,
+        robot: str | None = None,
+        # options of check_motion
+        resolution: float = 1e-05,
+        max_intervals: int = 1000000,
+        # end of options
+        progress: _Progress | None = None,
+    ) -> NDArray[np.bool_]: ...
     def find_path(
         self,
         start: ArrayLike,

@@ -2,12 +2,14 @@
 
 #include <kaboum/engines/engine_options.h>
 #include <kaboum/filter/batch_checker.h>
+#include <kaboum/io/point_cloud.h>
 #include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
 #include <kaboum/motion/sampled_path.h>
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/cloud.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
@@ -131,6 +133,11 @@ py::dict dict_of(const world::World& world, const world::Contact& contact) {
   out["epsilon"] = contact.epsilon;
   out["margin"] = contact.margin;
   out["place"] = array_of(contact.place);
+  const auto point = contact.substituted ? std::nullopt : [&] {
+    const auto first = world.point_of(contact.items[0], contact.bodies.a);
+    return first ? first : world.point_of(contact.items[1], contact.bodies.b);
+  }();
+  out["point"] = point ? py::object(py::int_(*point)) : py::object(py::none());
   out["depth"] = contact.depth
                      ? py::object(py::make_tuple(contact.depth->lower, contact.depth->upper))
                      : py::object(py::none());
@@ -158,6 +165,66 @@ WorldValue read_world(const py::object& scene, const py::kwargs& given) {
     read->world.margins = world::margins_of(read->world, margin);
     out.scene = std::move(read);
     out.margins = words_of(margin);
+    out.checker = std::make_shared<const world::Checker>(out.scene->world);
+    return out;
+  });
+}
+
+/// Points of a file or of an array; such as are none are refused, or left out.
+io::PointCloud cloud_of(const py::object& points, bool drop_invalid) {
+  io::PointCloud out;
+  const auto file = path_of(points);
+  if (file) {
+    out = run(0, [&] { return io::read_point_cloud(*file); });
+    if (out.has_viewpoint)
+      throw Error(ErrorCode::InvalidInput,
+                  *file +
+                      ": its VIEWPOINT is not applied, and says not in which frame the points "
+                      "are; read them, place them and give the array");
+  } else {
+    const py::array given = array_from(points);
+    if (!given) PyErr_Clear();
+    if (!given || given.ndim() != 2 || given.shape(1) != 3)
+      throw Error(ErrorCode::InvalidArgument, "points must be the name of a file or n x 3 numbers");
+    require_doubles(given, "points");
+    const auto array =
+        py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!array) throw py::error_already_set();
+    const double* p = array.data();
+    for (py::ssize_t i = 0; i < array.shape(0); ++i, p += 3) {
+      const geom::Vec3 point(p[0], p[1], p[2]);
+      if (!point.allFinite()) {
+        if (out.invalid++ == 0) out.first_invalid = static_cast<std::size_t>(i + 1);
+        continue;
+      }
+      out.points.push_back(point);
+      out.numbers.push_back(static_cast<std::uint32_t>(i + 1));
+    }
+  }
+  if (out.invalid > 0 && !drop_invalid)
+    throw Error(file ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,
+                (file ? *file : std::string("points")) + ": point " +
+                    std::to_string(out.first_invalid) +
+                    " has a coordinate that is NaN or infinite; drop_invalid=True leaves such out");
+  return out;
+}
+
+WorldValue with_cloud(const WorldValue& in, const py::object& points, double radius,
+                      const std::string& name, const py::object& pose,
+                      const std::vector<std::string>& allow, bool drop_invalid) {
+  io::PointCloud read = cloud_of(points, drop_invalid);
+  const geom::Transform place = pose.is_none() ? geom::Transform() : pose_from(pose);
+  return run(0, [&] {
+    WorldValue out;
+    auto scene = std::make_shared<world::SceneFile>(*in.scene);
+    add_cloud(scene->world, {.name = name,
+                             .points = std::move(read.points),
+                             .numbers = std::move(read.numbers),
+                             .radius = radius,
+                             .pose = place,
+                             .allow = allow});
+    out.scene = std::move(scene);
+    out.margins = in.margins;
     out.checker = std::make_shared<const world::Checker>(out.scene->world);
     return out;
   });
@@ -252,12 +319,44 @@ py::object contact_pairs(const WorldValue& in, const py::object& q,
 constexpr std::size_t kFewRows = 20000;
 constexpr std::size_t kFewRowsAtOnce = 1U << 12, kRowsAtOnce = 1U << 18;
 
-/// Null for few rows, where none was made before.
+/// Rows one after the other; a single one is repeated.
+std::vector<double> joined(const robot::Path& rows, std::size_t first, std::size_t count) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<double>& row = rows[rows.size() == 1 ? 0 : first + i];
+    out.insert(out.end(), row.begin(), row.end());
+  }
+  return out;
+}
+
+/// Calls decide(first, how_many) for parts of `count` things. Ctrl-C is seen between parts, so
+/// these take about a tenth of a second.
+template <class Decide>
+void for_parts(std::size_t count, std::size_t few, const Decide& decide) {
+  std::size_t at_once = few;
+  for (std::size_t first = 0; first < count;) {
+    const std::size_t some = std::min(at_once, count - first);
+    const auto begin = std::chrono::steady_clock::now();
+    decide(first, some);
+    first += some;
+    const bool quick = std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(50);
+    at_once = quick ? std::min(2 * at_once, kRowsAtOnce) : std::max(at_once / 2, few);
+  }
+}
+
+py::array_t<bool> bools_of(const std::vector<std::uint8_t>& free) {
+  py::array_t<bool> out = row_of<bool>(free.size());
+  for (std::size_t i = 0; i < free.size(); ++i)
+    out.mutable_at(static_cast<py::ssize_t>(i)) = free[i] != 0;
+  return out;
+}
+
+/// Null for less than `few` rows, where none was made before.
 std::shared_ptr<const filter::BatchChecker> batch_checker(const WorldValue& in, std::size_t robot,
-                                                          std::size_t rows) {
+                                                          std::size_t rows, std::size_t few) {
   const std::scoped_lock lock(in.batches->mutex);
   auto& made = in.batches->of[robot];
-  if (!made && rows >= kFewRows)
+  if (!made && rows >= few)
     made = std::make_shared<const filter::BatchChecker>(*in.checker, initial_state(in.world()),
                                                         robot, filter::BatchChecker::Options{});
   return made;
@@ -272,7 +371,7 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
   Watch watch(progress);
   std::vector<std::uint8_t> free(rows.size());
   run(0, [&] {
-    const auto batch = batch_checker(in, index, rows.size());
+    const auto batch = batch_checker(in, index, rows.size(), kFewRows);
     if (!batch) {
       world::Scratch scratch;
       std::size_t i = 0;
@@ -281,26 +380,63 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
       });
       return;
     }
-    std::vector<double> values;
-    std::size_t at_once = kFewRowsAtOnce;
-    for (std::size_t first = 0; first < rows.size();) {
+    for_parts(rows.size(), kFewRowsAtOnce, [&](std::size_t first, std::size_t count) {
       watch(std::to_string(first) + " of " + std::to_string(rows.size()) + " configurations");
-      const std::size_t count = std::min(at_once, rows.size() - first);
-      values.clear();
-      for (std::size_t i = 0; i < count; ++i)
-        values.insert(values.end(), rows[first + i].begin(), rows[first + i].end());
-      const auto begin = std::chrono::steady_clock::now();
-      batch->decide(values, {free.data() + first, count});
-      first += count;
-      // Ctrl-C is seen between parts, so these take about a tenth of a second.
-      const bool quick = std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(50);
-      at_once = quick ? std::min(2 * at_once, kRowsAtOnce) : std::max(at_once / 2, kFewRowsAtOnce);
-    }
+      batch->decide(joined(rows, first, count), {free.data() + first, count});
+    });
   });
-  py::array_t<bool> out = row_of<bool>(free.size());
-  for (std::size_t i = 0; i < free.size(); ++i)
-    out.mutable_at(static_cast<py::ssize_t>(i)) = free[i] != 0;
-  return out;
+  return bools_of(free);
+}
+
+/// Below so many motions, making a batch checker takes longer than it saves.
+constexpr std::size_t kFewMotions = 1000;
+constexpr std::size_t kFewMotionsAtOnce = 1U << 8;
+
+py::array_t<bool> motions_are_free(const WorldValue& in, const py::object& starts,
+                                   const py::object& goals, const std::optional<std::string>& robot,
+                                   const py::kwargs& given) {
+  world::MotionOptions options;
+  const RunKeywords running =
+      take_keywords("motions_are_free", world::motion_options(), given, options, Runs::Alone);
+  const std::size_t index = robot_index(in.world(), robot);
+  const std::size_t variables = in.world().robots[index].kinematics.variables.size();
+  bool one_start = false, one_goal = false;
+  const robot::Path from = rows_of(starts, variables, "starts", one_start),
+                    to = rows_of(goals, variables, "goals", one_goal);
+  if (!one_start && !one_goal && from.size() != to.size())
+    throw Error(ErrorCode::InvalidArgument,
+                "starts and goals must have equally many rows, not " + std::to_string(from.size()) +
+                    " and " + std::to_string(to.size()) + "; one of them may be a single row");
+  const std::size_t count = one_start ? to.size() : from.size();
+  Watch watch(running.progress);
+  std::vector<std::uint8_t> free(count);
+  run(0, [&] {
+    const auto tell = [&](std::size_t done) {
+      watch(std::to_string(done) + " of " + std::to_string(count) + " motions");
+    };
+    const auto batch = batch_checker(in, index, count, kFewMotions);
+    if (!batch) {
+      world::Scratch scratch;
+      options.where = false;
+      options.scratch = &scratch;
+      options.progress = watch.hook();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (i % 16 == 0) tell(i);
+        const robot::Path path{from[one_start ? 0 : i], to[one_goal ? 0 : i]};
+        free[i] = world::check_motion(*in.checker, initial_state(in.world()), index, path, options)
+                              .outcome == world::MotionAnswer::Outcome::Free
+                      ? 1
+                      : 0;
+      }
+      return;
+    }
+    for_parts(count, kFewMotionsAtOnce, [&](std::size_t first, std::size_t some) {
+      tell(first);
+      batch->decide_motions(joined(from, first, some), joined(to, first, some),
+                            {free.data() + first, some}, options);
+    });
+  });
+  return bools_of(free);
 }
 
 /// The path of a robot, or those of a dict by the robots' names.
@@ -871,6 +1007,19 @@ robot : str, optional
 {keywords}
 )";
 
+constexpr const char* kMotionsDoc =
+    R"(Of n straight motions in joint space, n bools: whether each is free at every instant, for certain.
+
+The answers are those of `check_motion`. Limits of joints are not looked at.
+
+Parameters
+----------
+starts, goals : array
+    n x k, a row for each motion; k values stand for n equal rows.
+robot : str, optional
+{keywords}
+)";
+
 constexpr const char* kPathDoc =
     R"(A path from a configuration to one of several, certified free at every instant.
 
@@ -883,6 +1032,31 @@ goals : array
 robot : str, optional
 {keywords}
 )";
+
+constexpr const char* kCloudDoc =
+    R"(The world with points of a sensor as one more object, a ball for each.
+
+What is free of it is apart from every ball, for certain; contacts have the number of a point, as
+`kaboum-check --cloud`.
+
+Parameters
+----------
+points : array or path
+    n x 3, or a file (.ply, .pcd, .npy, .xyz, .txt, .asc, .csv). [length]
+radius : float
+    How far from a point what the sensor saw may be. > 0 [length]
+name : str
+    Of the object.
+pose : array, optional
+    Where the points' frame is, as of `pose_goals`.
+allow : list of str
+    Links, as 'ROBOT/LINK', whose contacts with points are none.
+drop_invalid : bool
+    Leave out points with coordinates that are NaN or infinite; else they are refused.
+
+Returns
+-------
+World)";
 
 constexpr const char* kInsideDoc =
     R"(Whether a thing is in a region of the scene, as `kaboum-check --inside`.
@@ -1042,6 +1216,9 @@ void bind_questions_with_options(WorldClass& world) {
   const std::string motion_text =
       document("check_motion", "self: object, path: object, " + robot_text, motion_keywords(),
                "kaboum.MotionCheck", kMotionDoc, Runs::Alone);
+  const std::string motions_text =
+      document("motions_are_free", "self: object, starts: object, goals: object, " + robot_text,
+               keywords_of(world::motion_options()), "numpy.ndarray", kMotionsDoc, Runs::Alone);
   const std::string path_text =
       document("find_path", "self: object, start: object, goals: object, " + robot_text,
                path_keywords(), "kaboum.Path", kPathDoc, Runs::Alone);
@@ -1055,6 +1232,8 @@ void bind_questions_with_options(WorldClass& world) {
   world.def("check", &check, py::arg("q"), py::kw_only(), robot, check_text.c_str())
       .def("check_motion", &check_motion, py::arg("path"), py::kw_only(), robot,
            motion_text.c_str())
+      .def("motions_are_free", &motions_are_free, py::arg("starts"), py::arg("goals"),
+           py::kw_only(), robot, motions_text.c_str())
       .def("find_path", &find_path, py::arg("start"), py::arg("goals"), py::kw_only(), robot,
            path_text.c_str())
       .def("stays_inside", &stays_inside, py::arg("what"), py::arg("region"), py::arg("path"),
@@ -1072,6 +1251,10 @@ void bind_questions(WorldClass& world) {
       .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
            py::arg("progress") = py::none(),
            "Of n x k values, n bools: whether each configuration is free, for certain.")
+      .def("with_cloud", &with_cloud, py::arg("points"), py::arg("radius"), py::kw_only(),
+           py::arg("name") = "cloud", py::arg("pose") = py::none(),
+           py::arg("allow") = std::vector<std::string>(), py::arg("drop_invalid") = false,
+           kCloudDoc)
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
            kInsideDoc)

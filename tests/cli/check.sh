@@ -68,7 +68,7 @@ expect 3 'bad.npy: 3 columns, and 2 are expected: j1, j2, in this order' "$BIN/k
 npy bad.npy '(3, 2)' "'<f8'" '0 0 0 0 nan 0'
 expect 3 'bad.npy: row 3: a number that is not finite' "$BIN/kaboum-check" near.json --batch bad.npy
 npy bad.npy '(0, 2)' "'<f8'" ''
-expect 3 'bad.npy: no configurations: the array has no rows' "$BIN/kaboum-check" near.json --batch bad.npy
+expect 3 'bad.npy: the array has no rows' "$BIN/kaboum-check" near.json --batch bad.npy
 cp bad.npy bad.npz
 expect 3 'numpy.save' "$BIN/kaboum-check" near.json --batch bad.npz
 # Whole numbers, and columns one after the other.
@@ -88,12 +88,70 @@ cmp -s free.txt verdicts.txt || fail "more than verdicts: $(cat verdicts.txt)"
 grep -q '^2 of 3 configurations' said.txt || fail "no summary beside verdicts: $(cat said.txt)"
 shows 0 'are not, with margins kept: ' "$BIN/kaboum-check" free.json --batch rows.npy --margin 0.01
 expect 2 'needs --batch' "$BIN/kaboum-check" near.json --verdicts v.npy
+# Motions between rows: from 0,0 to 1.57,0 into the box, and on to 0.5,0 out of it; or two and two.
+shows 1 '^0 of 2 motions are free at every instant, 2 are not' "$BIN/kaboum-check" near.json --batch rows.npy --motions consecutive
+printf 'j1,j2\n0,0\n0.5,0.1\n0.5,0\n3,0\n' >pairs.csv
+shows 1 '^1 of 2 motions' "$BIN/kaboum-check" near.json --batch pairs.csv --motions pairs --verdicts motions.txt --report batch.json
+[ "$(tr -d '\n' <motions.txt)" = 10 ] || fail "verdicts of motions: $(cat motions.txt)"
+json batch.json 'r["batch"]["motions"] == 2 and r["batch"]["free"] == 1'
+shows 0 '^2 of 2 motions' "$BIN/kaboum-check" free.json --batch rows.npy --motions consecutive --resolution 0.5
+expect 3 'pairs.csv: .*even' sh -c "echo 0,0 >>pairs.csv; '$BIN/kaboum-check' near.json --batch pairs.csv --motions pairs"
+expect 3 'one.csv: one row; a motion needs two' sh -c "echo 0,0 >one.csv; '$BIN/kaboum-check' near.json --batch one.csv --motions consecutive"
+expect 2 'needs --batch' "$BIN/kaboum-check" near.json --motions pairs
+expect 2 'motions' "$BIN/kaboum-check" near.json --batch rows.npy --motions every
+expect 2 'resolution needs --path' "$BIN/kaboum-check" near.json --batch rows.npy --resolution 0.1
 expect 2 'not for --batch' "$BIN/kaboum-check" near.json --batch rows.npy --distance
 printf 'j1,j2\n0,0\n3,0\n' >through.csv
 shows 1 'free until waypoint 1 + 0\.[34]' "$BIN/kaboum-check" near.json --path through.csv --report motion.json
 grep -q '"outcome": "contact"' motion.json || fail "no outcome in the report"
 # Waypoints are counted from 1 everywhere.
 [ "$(grep -c '"waypoint": 1' motion.json)" = 2 ] || fail "waypoints in the report: $(cat motion.json)"
+# Paths as others have them: ROS's and MoveIt's in YAML and JSON, cuRobo's, arrays; with times, when it touches.
+cat >through.yaml <<'END'
+header:
+  stamp: {sec: 0, nanosec: 0}
+  frame_id: ''
+joint_names:
+- j2
+- j1
+points:
+- positions: [0.0, 0.0]
+  velocities: []
+  time_from_start: {sec: 1, nanosec: 0}
+- positions:
+  - 0
+  - 3.0
+  velocities: [0.0, 0.5]
+  time_from_start:
+    sec: 4
+    nanosec: 0
+---
+END
+shows 1 'free until waypoint 1 + 0\.[34].*arm/tip and box .* (free until 2\.[0-9]* s, in contact at 2\.[0-9]* s)' "$BIN/kaboum-check" near.json --path through.yaml --report motion.json
+grep -q 'splines' err.txt || fail "no word of velocities: $(cat err.txt)"
+json motion.json '2 < r["motion"]["free_until"]["time"] <= r["motion"]["contact"]["time"] < 3'
+sed -n '/^joint_names/,/^---/p' through.yaml | sed '/---/d' | sed 's/^/  /' | sed '1i joint_trajectory:' >moveit.yml
+cp moveit.yml moveit.txt
+python3 -c 'import json
+json.dump({"trajectory": [{"joint_trajectory": {"joint_names": ["j1", "j2"], "points": [
+  {"positions": [0, 0], "time_from_start": 0.0}, {"positions": [3, 0], "time_from_start": 1.5}]}}]}, open("moveit.json", "w"))
+json.dump({"position": [[[0, 0], [3, 0]]], "joint_names": ["j1", "j2"], "interpolation_dt": 0.02}, open("curobo.json", "w"))'
+npy vamp.npy '(2, 2)' "'<f4'" '0 0 3 0'
+npy batch.npy '(1, 2, 2)' "'<f8'" '0 0 3 0'
+printf 'time,j1,j2\n0,0,0\n1.5,3,0\n' >timed.csv
+for file in moveit.yml moveit.txt moveit.json curobo.json vamp.npy batch.npy timed.csv; do
+  shows 1 'free until waypoint 1 + 0\.[34]' "$BIN/kaboum-check" near.json --path $file
+  shows 0 'free at every instant' "$BIN/kaboum-check" free.json --path $file
+done
+expect 3 'through.yaml: joint_names: the robot has no joint .k1.' sh -c "sed -i 's/^- j1/- k1/' through.yaml; '$BIN/kaboum-check' near.json --path through.yaml"
+expect 3 'through.yaml: joint_names: no column for joint .j1.' sh -c "sed -i '/^- k1/d; /3.0/d; s/0.0, 0.0/0.0/' through.yaml; '$BIN/kaboum-check' near.json --path through.yaml"
+expect 3 'bad.yaml: line [0-9]*, column [0-9]*: not YAML' sh -c "printf 'points:\n- [\n' >bad.yaml; '$BIN/kaboum-check' near.json --path bad.yaml"
+expect 3 'bad.yaml: 2 documents' sh -c "cat moveit.yml >bad.yaml; echo --- >>bad.yaml; cat moveit.yml >>bad.yaml; '$BIN/kaboum-check' near.json --path bad.yaml"
+python3 -c 'names = "abcdefgh"
+print("a: &a [1]", *(f"{y}: &{y} [" + ",".join(["*" + x] * 9) + "]" for x, y in zip(names, names[1:])), sep="\n")' >bad.yaml
+expect 3 'bad.yaml: line [0-9]*: aliases stand for' "$BIN/kaboum-check" near.json --path bad.yaml
+npy bad.npy '(2, 2, 2)' "'<f8'" '0 0 3 0 0 0 3 0'
+expect 3 'bad.npy: an array of three dimensions: 2 paths' "$BIN/kaboum-check" near.json --path bad.npy
 printf 'j1,j2\n1.57,0\n3,0\n' >inside.csv
 shows 1 'not free from the first waypoint on; at waypoint 1' "$BIN/kaboum-check" near.json --path inside.csv
 for how in '--path through.csv' '--configuration 1.57,0' '--configuration 1.57,0 --distance'; do
@@ -107,6 +165,48 @@ expect 2 'not 3' "$BIN/kaboum-check" near.json --configuration 0,0,0
 expect 2 'joint needs --path, --configuration' "$BIN/kaboum-check" near.json --joint j2=1.5
 expect 2 'degrees needs' "$BIN/kaboum-check" near.json --degrees
 expect 2 'resolution needs --path' "$BIN/kaboum-check" near.json --configuration 0,0 --resolution 0.1
+# Points of a sensor: where the tip comes when the arm is turned by a quarter, point 3 of 200.
+python3 - <<'END'
+import struct
+points = [(30 + i, -40, 7) for i in range(200)]
+points[2] = (-0.5, 5.5, 2.5)
+lines = lambda ps: "".join("%r %r %r\n" % p for p in ps)
+open("scan.xyz", "w").write("x y z\n" + lines(points))
+open("far.xyz", "w").write(lines(points[3:]))
+header = "VERSION .7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 20\nHEIGHT 10\nVIEWPOINT 0 0 %d 1 0 0 0\nPOINTS 200\nDATA binary\n"
+body = b"".join(struct.pack("<fffI", *p, 7) for p in points)
+open("scan.pcd", "wb").write((header % 0).encode() + body)
+open("view.pcd", "wb").write((header % 1).encode() + body)
+open("cut.pcd", "wb").write((header % 0).encode() + body[:-1])
+open("hole.pcd", "wb").write((header % 0).encode() + struct.pack("<fffI", float("nan"), 0, 0, 0) + body[16:])
+open("scan.ply", "wb").write(b"ply\nformat binary_little_endian 1.0\nelement vertex 200\nproperty float x\nproperty float y\nproperty float z\nproperty uint c\nend_header\n" + body)
+END
+for cloud in scan.xyz scan.pcd scan.ply; do
+  shows 0 '^free$' "$BIN/kaboum-check" free.json --cloud $cloud --cloud-radius 0.1
+  shows 1 'arm/tip and scan (point 3) ' "$BIN/kaboum-check" free.json --cloud $cloud --cloud-radius 0.1 --configuration 1.57,0 --report cloud.json
+  shows 1 'free until waypoint 1 + 0\.[34].*arm/tip and scan (point 3)' "$BIN/kaboum-check" free.json --path through.csv --cloud $cloud --cloud-radius 0.1
+  shows 1 '^2 of 3 configurations' "$BIN/kaboum-check" free.json --batch some.csv --cloud $cloud --cloud-radius 0.1
+  shows 1 '^0 of 2 motions' "$BIN/kaboum-check" free.json --batch some.csv --motions consecutive --cloud $cloud --cloud-radius 0.1
+done
+json cloud.json 'r["clouds"][0]["points"] == 200 and r["configurations"][0]["contacts"][0]["point"] == 3'
+grep -q 'scan.ply: 200 points from \[-0.5, -40, 2.5\] to \[229, 5.5, 7\] m' err.txt || fail "no word of the cloud: $(cat err.txt)"
+shows 0 '^free$' "$BIN/kaboum-check" free.json --cloud far.xyz --cloud-radius 0.1 --configuration 1.57,0 --preview cloud.png
+shows 0 '^free$' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 0.1 --configuration 1.57,0 --cloud-allow arm/tip
+shows 0 '^free$' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 0.1 --configuration 1.57,0 --cloud-pose 0,0,9
+shows 1 'scan (point 3)' "$BIN/kaboum-check" free.json --cloud far.xyz --cloud scan.xyz --cloud-radius 0.1 --configuration 1.57,0
+shows 1 'arm/tip and scan (point 3) are within the margin' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 0.1 --configuration 1.57,0 --cloud-pose 0,0,3 --margin scan=4
+expect 2 'needs --cloud-radius' "$BIN/kaboum-check" free.json --cloud scan.xyz
+expect 2 'need --cloud' "$BIN/kaboum-check" free.json --cloud-radius 1
+expect 2 'cloud-radius' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 0
+expect 2 "no link of this name.*'arm/tip'" "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 1 --cloud-allow arm/tap
+expect 2 "cloud 'box': the scene has something of this name" sh -c "cp scan.xyz box.xyz; '$BIN/kaboum-check' free.json --cloud box.xyz --cloud-radius 1"
+expect 2 'own predicates' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 1 --engine fcl
+expect 3 'view.pcd: its VIEWPOINT' "$BIN/kaboum-check" free.json --cloud view.pcd --cloud-radius 0.1
+shows 1 'scan (point 3)\|view (point 3)' "$BIN/kaboum-check" free.json --cloud view.pcd --cloud-radius 0.1 --cloud-pose 0,0,0 --configuration 1.57,0
+expect 3 'cut.pcd: the PCD header states 200 points' "$BIN/kaboum-check" free.json --cloud cut.pcd --cloud-radius 0.1
+expect 3 'hole.pcd: point 1 has a coordinate that is NaN' "$BIN/kaboum-check" free.json --cloud hole.pcd --cloud-radius 0.1
+shows 1 'hole (point 3)' "$BIN/kaboum-check" free.json --cloud hole.pcd --cloud-radius 0.1 --cloud-drop-invalid --configuration 1.57,0
+grep -q '1 without finite coordinates are left out' err.txt || fail "no word of points left out: $(cat err.txt)"
 # Margins: the tip is 14 from the box.
 shows 0 '^free, with margins kept: 13.9$' "$BIN/kaboum-check" free.json --margin 13.9 --report margin.json
 grep -q '"margins": "13.9"' margin.json || fail "no margins in the report"

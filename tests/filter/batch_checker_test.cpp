@@ -6,6 +6,7 @@
 #include <kaboum/filter/batch_checker.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/robot.h>
+#include <kaboum/world/cloud.h>
 
 #include <array>
 #include <cmath>
@@ -403,6 +404,45 @@ TEST(BatchChecker, MotionsThatAreFreeAreFreeAtEveryInstant) {
   }
 }
 
+/// Batches of motions say what check_motion says, at resolutions that matter as well; vector code
+/// that knows no resolution would call some free that come too near.
+TEST(BatchChecker, MotionsAreAsCheckMotionHasThem) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const BatchChecker batch(checker, initial_state(world), 0, {});
+  const std::size_t n = batch.variables(), count = 500;
+  const std::vector<double> from = random_rows(world, count, 41),
+                            ends = random_rows(world, count, 42);
+  std::vector<double> to;
+  for (std::size_t i = 0; i < from.size(); ++i) to.push_back(from[i] + 0.1 * (ends[i] - from[i]));
+  world::MotionOptions fine;
+  fine.resolution = 1e-9;
+  std::vector<std::uint8_t> finest(count);
+  batch.decide_motions(from, to, finest, fine);
+  std::size_t nearer = 0;
+  for (const double resolution : {1e-5, 0.02, 0.2}) {
+    world::MotionOptions options;
+    options.resolution = resolution;
+    std::vector<std::uint8_t> free(count);
+    batch.decide_motions(from, to, free, options);
+    options.where = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto row = [&](const std::vector<double>& of) {
+        return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                   of.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+      };
+      const auto exact =
+          check_motion(checker, initial_state(world), 0, {row(from), row(to)}, options);
+      EXPECT_EQ(free[i] != 0, exact.outcome == world::MotionAnswer::Outcome::Free)
+          << i << " at " << resolution;
+      nearer += free[i] != finest[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(nearer, 5U);
+  fine.resolution = 0;
+  EXPECT_THROW(batch.decide_motions(from, to, finest, fine), Error);
+}
+
 /// What points move in a stretch is bounded; bounds that are too small are noticed.
 TEST(Lanes, StretchesHoldAllTheirConfigurations) {
   const World world = cell(true);
@@ -551,6 +591,125 @@ TEST(Lanes, WitnessesThatLieAreNoticed) {
   EXPECT_EQ(wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0], 0U);
   EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 5U);
   EXPECT_LT(open(model), open(none));
+}
+
+/// Points on a table and on a ball, and some that are apart from all others.
+std::vector<Vec3> scan(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 5 < 2)
+      out.emplace_back(3.7 + 0.4 * share(random), -2 + 0.6 * share(random), 0.95);
+    else if (i % 5 < 4)
+      out.push_back(Vec3(2.6, -1.5, 1.4) +
+                    0.25 * Vec3(normal(random), normal(random), normal(random)).normalized());
+    else
+      out.emplace_back(3 + 1.5 * share(random), -2 + 1.5 * share(random), 1 + 1.5 * share(random));
+  }
+  return out;
+}
+
+World cell_with_cloud(bool round, std::size_t count, double radius) {
+  World out = cell(round);
+  out.objects.clear();
+  out.attachments.clear();
+  add_cloud(out, {.name = "scan",
+                  .points = scan(count, 31),
+                  .radius = radius,
+                  .pose = pose(0.1, 0.05, {0.02, -0.03, 0.01})});
+  return out;
+}
+
+TEST(BatchChecker, AnswersAmongPointsAreThoseOfTheChecker) {
+  for (const auto& [count, radius] : {std::pair<std::size_t, double>{65, 0.05}, {3000, 0.01}}) {
+    for (const double margin : {0.0, 0.02}) {
+      World world = cell_with_cloud(false, count, radius);
+      world.margins.all = margin;
+      const world::Checker checker(world);
+      const BatchChecker batch(checker, initial_state(world), 0, {});
+      for (const std::vector<double>& rows :
+           {random_rows(world, 3000, 1),
+            rows_at_contact(checker, 600, 100, {1e-9, 1e-6, 1e-4, 1e-3})}) {
+        std::vector<std::uint8_t> free(rows.size() / batch.variables());
+        const BatchCounts counts = batch.decide(rows, free);
+        EXPECT_EQ(free, by_checker(checker, rows));
+        EXPECT_GT(counts.free, free.size() / 100);
+        EXPECT_LT(counts.exactly, free.size());
+      }
+      const std::size_t motions = 150;
+      const std::vector<double> from = random_rows(world, motions, 61),
+                                ends = random_rows(world, motions, 62);
+      std::vector<double> to;
+      for (std::size_t i = 0; i < from.size(); ++i)
+        to.push_back(from[i] + 0.05 * (ends[i] - from[i]));
+      std::vector<std::uint8_t> free(motions);
+      batch.decide_motions(from, to, free, {});
+      const std::size_t n = batch.variables();
+      for (std::size_t i = 0; i < motions; ++i) {
+        const auto row = [&](const std::vector<double>& of) {
+          return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                     of.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+        };
+        const auto exact = check_motion(checker, initial_state(world), 0, {row(from), row(to)}, {});
+        EXPECT_EQ(free[i] != 0, exact.outcome == world::MotionAnswer::Outcome::Free) << i;
+      }
+    }
+  }
+}
+
+/// Trees hold their points; and what is said with trees that do not, or radii that are too small or
+/// too large, is wrong next to contacts.
+TEST(Lanes, CloudsThatLieAreNoticed) {
+  constexpr double kRadius = 0.01;
+  const World world = cell_with_cloud(true, 2000, kRadius);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
+  ASSERT_EQ(model.cloud_points.size(), 2000);
+  ASSERT_EQ(model.groups.size(), 1);
+  const detail::CloudModel& cloud = model.groups[0].cloud;
+  std::size_t held = 0;
+  for (std::uint32_t i = cloud.nodes.begin; i < cloud.nodes.end; ++i) {
+    const detail::CloudNode& node = model.cloud_nodes[i];
+    EXPECT_GT(node.next, i);
+    for (std::uint32_t below = i; below < node.next; ++below)
+      for (std::uint32_t k = model.cloud_nodes[below].points.begin;
+           k < model.cloud_nodes[below].points.end; ++k)
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_LE(node.low[axis], model.cloud_points[k].at[axis]);
+          EXPECT_GE(node.high[axis], model.cloud_points[k].at[axis]);
+        }
+    held += node.points.end - node.points.begin;
+  }
+  EXPECT_EQ(held, 2000U);
+  const std::vector<double> rows =
+      rows_at_contact(checker, 3000, 50, {1e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6});
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  const std::vector<Answer> expected = answers_of(model, Instructions::Baseline, rows);
+  for (const Instructions set : instruction_sets())
+    EXPECT_EQ(answers_of(model, set, rows), expected) << name_of(set);
+  EXPECT_EQ(wrong_answers(expected, free), (std::array<std::size_t, 2>{0, 0}));
+  const auto wrong = [&](const detail::Model& m) {
+    return wrong_answers(answers_of(m, instruction_sets().back(), rows), free);
+  };
+  const std::array<float, 2> radii{0.08F, 0.05F};
+  detail::Model small = model, large = model, cut = model;
+  for (std::size_t b = 0; b < 2; ++b) {
+    small.outer[b].radius = radii[b];
+    large.inner[b].radius = radii[b];
+  }
+  for (detail::ShapeModel& s : small.shapes) s.whole.radius = small.outer[s.outer.begin].radius;
+  small.groups[0].cloud.radius = kRadius - 8e-6F;
+  large.groups[0].cloud.inner_radius = kRadius + 8e-6F;
+  for (detail::CloudNode& node : cut.cloud_nodes)
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis] += 0.05F;
+      node.high[axis] -= 0.05F;
+    }
+  EXPECT_GT(wrong(small)[0], 10U);
+  EXPECT_GT(wrong(large)[1], 10U);
+  EXPECT_GT(wrong(cut)[0], 10U);
 }
 
 TEST(BallCover, HoldsAndLiesInBodies) {

@@ -271,6 +271,69 @@ def test_contacts_by_libraries_of_others(cell):
         world.contact_pairs(home, engine="physx")
 
 
+def test_motions_in_batches_are_as_those_of_check_motion(cell, tmp_path):
+    world = kaboum.World(cell)
+    home = world.home()
+    rng = np.random.default_rng(9)
+    starts = home + rng.uniform(-2, 2, (1200, len(home)))
+    goals = starts + rng.uniform(-0.5, 0.5, starts.shape)
+    few = world.motions_are_free(starts[:60], goals[:60])  # by check_motion
+    many = world.motions_are_free(starts, goals)  # by the vector code first
+    assert few.tolist() == many[:60].tolist() and 0 < many.sum() < len(many)
+    for i in range(0, len(starts), 12):
+        assert bool(world.check_motion([starts[i], goals[i]])) == many[i]
+    coarse = world.motions_are_free(starts, goals, resolution=0.05)
+    for i in range(0, len(starts), 12):
+        assert bool(world.check_motion([starts[i], goals[i]], resolution=0.05)) == coarse[i]
+    # One start, and the same from files.
+    assert world.motions_are_free(home, goals).tolist() == world.motions_are_free(np.tile(home, (1200, 1)), goals).tolist()
+    rows = np.stack([starts, goals], axis=1).reshape(-1, len(home))
+    for name, how, expected in (("rows.npy", "pairs", many), ("chain.npy", "consecutive", world.motions_are_free(goals[:-1], goals[1:]))):
+        np.save(tmp_path / name, rows if how == "pairs" else goals)
+        code, text = run("kaboum-check", cell, "--batch", tmp_path / name, "--motions", how, "--ignore-limits", "--verdicts", tmp_path / "v.npy")
+        assert code == 1 and f"{expected.sum()} of {len(expected)} motions are free at every instant" in text, text
+        assert np.load(tmp_path / "v.npy").tolist() == expected.astype(int).tolist()
+    assert world.motions_are_free(starts[:0].reshape(0, len(home)), goals[:0]).shape == (0,)
+    for wrong in ((starts, goals[:5]), (starts[:, :1], goals), (starts * np.nan, goals)):
+        with pytest.raises(kaboum.Error):
+            world.motions_are_free(*wrong)
+
+
+def test_clouds_are_obstacles(cell, tmp_path):
+    world = kaboum.World(cell)
+    home = world.home()
+    rng = np.random.default_rng(11)
+    rows = home + rng.uniform(-2, 2, (60, len(home)))
+    before = world.are_free(rows)
+    points = rng.uniform(-1, 1, (3000, 3)) * [1, 1, 0.6] + [0, 0, 0.5]
+    seen = world.with_cloud(points, 0.01, name="scan")
+    assert seen.objects == world.objects + ["scan"] and "scan" not in world.objects
+    after = seen.are_free(rows)
+    assert (after <= before).all() and after.sum() < before.sum()
+    for q, free in zip(rows, after):
+        contacts = seen.check(q).pairs
+        assert free == (not contacts)
+        for contact in contacts:
+            assert (contact["point"] is None) == ("scan" not in contact["pair"])
+            if contact["point"] is not None:  # that point alone is in contact as well
+                alone = world.with_cloud(points[[contact["point"] - 1]], 0.01).check(q)
+                assert any("cloud" in c["pair"] for c in alone.pairs)
+    np.save(tmp_path / "scan.npy", points)
+    assert kaboum.World(cell).with_cloud(tmp_path / "scan.npy", 0.01).are_free(rows).tolist() == after.tolist()
+    holed = np.vstack([[[np.nan, 0, 0]], points])
+    with pytest.raises(kaboum.Error, match="point 1 .*drop_invalid"):
+        world.with_cloud(holed, 0.01)
+    assert world.with_cloud(holed, 0.01, drop_invalid=True).are_free(rows).tolist() == after.tolist()
+    for wrong in (points[:, :2], points.astype(str), "nothing.xyz"):
+        with pytest.raises(kaboum.Error):
+            world.with_cloud(wrong, 0.01)
+    for radius in (0, -1, np.nan):
+        with pytest.raises(kaboum.Error, match="radius"):
+            world.with_cloud(points, radius)
+    with pytest.raises(kaboum.Error, match="another one"):
+        seen.with_cloud(points, 0.01, name="scan")
+
+
 def test_paths_are_free_at_every_instant(cell):
     world = kaboum.World(cell)
     home = world.home()

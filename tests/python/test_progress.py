@@ -51,6 +51,7 @@ def calls(arm, world, tmp_path):
         "check": lambda **k: world.check(rows, **k),
         "nearest": lambda **k: world.nearest([0, 0], **k),
         "are_free": lambda **k: world.are_free(rows, **k),
+        "motions_are_free": lambda **k: world.motions_are_free(rows, rows + 0.1, **k),
         "contact_pairs": lambda **k: world.contact_pairs(rows, **k),
         "check_motion": lambda **k: world.check_motion([[0, 0], [1.5, 0]], **k),
         "find_path": lambda **k: world.find_path([0, 0], [1.8, 0.1], max_work=0.05, **k),

@@ -95,6 +95,7 @@ FRONT_ENDS = {
     "World.check": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.contact_pairs": (["engines"], {"robot", "progress"}, "kaboum-check"),
     "World.check_motion": (["check_motion", "keep"], {"robot", "progress"}, "kaboum-check"),
+    "World.motions_are_free": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.stays_inside": (["check_motion"], {"robot", "progress"}, "kaboum-check"),
     "World.nearest": (["check"], {"robot", "progress"}, "kaboum-check"),
     "World.draw": (["check"], {"robot"}, "kaboum-check"),

@@ -73,6 +73,99 @@ TEST(Path, Json) {
   EXPECT_EQ(parse_path_json("[[1, 2]]", "p").waypoints, (Path{{1, 2}}));
 }
 
+constexpr const char* kTrajectory =
+    R"({"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
+  "joint_names": ["b", "a"], "points": [
+    {"positions": [1, 2], "velocities": [0, 0], "time_from_start": {"sec": 0, "nanosec": 500000000}},
+    {"positions": [3, 4], "velocities": [], "effort": [9, 9], "time_from_start": {"secs": 2, "nsecs": 250000000}},
+    {"positions": [5, 6], "time_from_start": 3.5}]})";
+
+TEST(Path, TrajectoriesOfRosMoveItAndCuRobo) {
+  Robot robot;
+  robot.variables = {{"a", {}, {}}, {"b", {}, {}}};
+  const std::string plain = kTrajectory;
+  const Path expected{{2, 1}, {4, 3}, {6, 5}};
+  for (const std::string& text :
+       {plain,
+        "{\"joint_trajectory\": " + plain +
+            ", \"multi_dof_joint_trajectory\": {\"joint_names\": [], \"points\": []}}",
+        "{\"model_id\": \"arm\", \"trajectory\": [{\"joint_trajectory\": " + plain +
+            "}], \"trajectory_start\": {}}",
+        "{\"goal\": {\"trajectory\": " + plain + "}}"}) {
+    const NamedPath path = parse_path_json(text, "p");
+    EXPECT_EQ(arrange(path, robot, "p"), expected) << text;
+    EXPECT_EQ(times_of(path, robot), (std::vector<double>{0.5, 2.25, 3.5}));
+    EXPECT_TRUE(path.notes.empty());
+  }
+  const NamedPath rows = parse_path_json(
+      R"({"position": [[[1, 2], [3, 4]]], "joint_names": ["b", "a"], "interpolation_dt": 0.25})",
+      "p");
+  EXPECT_EQ(arrange(rows, robot, "p"), (Path{{2, 1}, {4, 3}}));
+  EXPECT_EQ(times_of(rows, robot), (std::vector<double>{0, 0.25}));
+  EXPECT_EQ(parse_path_json(R"({"positions": [[1, 2], [3, 4]]})", "p").waypoints,
+            (Path{{1, 2}, {3, 4}}));
+  EXPECT_EQ(parse_path_json(R"({"name": ["x"], "position": [1]})", "p").waypoints, (Path{{1}}));
+  // A spline is not what is looked at: that is said.
+  const NamedPath spline = parse_path_json(
+      R"({"joint_names": ["a"], "points": [{"positions": [1], "velocities": [0.5]}]})", "p");
+  ASSERT_EQ(spline.notes.size(), 1);
+  EXPECT_NE(spline.notes[0].find("splines"), std::string::npos);
+  // Times that are all the same are none.
+  EXPECT_TRUE(times_of(parse_path_json(R"({"joint_names": ["a"], "points": [
+      {"positions": [1], "time_from_start": 0}, {"positions": [2], "time_from_start": 0}]})",
+                                       "p"),
+                       robot)
+                  .empty());
+}
+
+TEST(Path, TrajectoriesThatMeanSomethingElseAreRefused) {
+  Robot robot;
+  robot.variables = {{"a", {}, {}}, {"b", {}, {}}};
+  const auto refused = [&](const std::string& text) {
+    return message([&] { arrange(parse_path_json(text, "p.json"), robot, "p.json"); });
+  };
+  const auto point = [](const std::string& members) {
+    return R"({"joint_names": ["a", "b"], "points": [{"positions": [0, 0]}, {)" + members + "}]}";
+  };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {R"({"points": [{"positions": [1]}]})", "no \"joint_names\""},
+      {R"({"joint_names": ["a"], "points": []})", "points: no points"},
+      {R"({"joint_names": "a", "points": [{"positions": [1]}]})",
+       "joint_names: not a list of names"},
+      {point(R"("positions": [0])"), "points: point 2, positions: 1 numbers instead of 2"},
+      {point(R"("velocities": [0, 0])"), "points: point 2: no \"positions\""},
+      {point(R"("positions": [0, "..."])"), "with all of its values"},
+      {point(R"("positions": [0, null])"), "point 2, positions: not a list of numbers"},
+      {point(R"("positions": [0, 0], "time_from_start": 1)"), "some points have"},
+      {R"({"joint_names": ["a", "c"], "points": [{"positions": [1, 2]}]})",
+       "joint_names: the robot has no joint 'c'"},
+      {R"({"joint_names": ["a"], "points": [{"positions": [1]}]})",
+       "joint_names: no column for joint 'b'"},
+      {R"({"joint_names": ["a", "a"], "points": [{"positions": [1, 2]}]})", "'a' is named twice"},
+      {R"({"joint_names": ["a", "b"], "points": [{"positions": [1, 2], "time_from_start": 2},
+          {"positions": [1, 2], "time_from_start": 1}]})",
+       "waypoint 2, column 3: time_from_start 1 is before 2"},
+      {R"({"trajectory": [{"points": []}, {"points": []}]})", "trajectory: 2 trajectories"},
+      {R"({"joint_trajectory": {"joint_names": [], "points": []},
+          "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{}]}})",
+       "several degrees of freedom"},
+      {R"({"position": [[[1, 2]], [[1, 2]]], "joint_names": ["a", "b"]})",
+       "position: 2 trajectories"},
+      {R"({"position": [[1, 2]], "dt": 0.1})", "dt: a time, but no \"joint_names\""},
+      {R"({"position": [[1, 2]], "joint_names": ["a", "b"], "dt": -0.1})",
+       "dt: a number of seconds above 0"},
+      {R"({"joint_names": ["a", "b"], "points": [{"positions": [1, 2], "time_from_start": {"sec": "x"}}]})",
+       "time_from_start: a number of seconds"}};
+  for (const auto& [text, words] : cases)
+    EXPECT_NE(refused(text).find(words), std::string::npos) << text << "\n" << refused(text);
+  const NamedPath carried = parse_path_json(
+      R"({"trajectory_start": {"attached_collision_objects": [{}]},
+          "trajectory": [{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]}}]})",
+      "p");
+  ASSERT_EQ(carried.notes.size(), 1);
+  EXPECT_NE(carried.notes[0].find("WARNING"), std::string::npos);
+}
+
 TEST(Path, BadFilesAreRefusedByPlace) {
   const auto csv = [](const char* text) { return message([&] { parse_path_csv(text, "p.csv"); }); };
   EXPECT_NE(csv("1,2\n3\n").find("p.csv: line 2"), std::string::npos);

@@ -3,12 +3,21 @@
 #include "check_report.h"
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <sstream>
 
 namespace kaboum::tools {
 namespace {
 
 Json to_json(const geom::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+/// The number of the point of a cloud that is in contact, if one is.
+std::optional<std::uint32_t> point_of(const world::World& world, const world::Contact& contact) {
+  if (contact.substituted) return std::nullopt;
+  const auto first = world.point_of(contact.items[0], contact.bodies.a);
+  return first ? first : world.point_of(contact.items[1], contact.bodies.b);
+}
 
 const char* answer_of(const world::Contact& contact) {
   return contact.certain ? "colliding" : "within epsilon";
@@ -20,6 +29,7 @@ std::string describe(const world::World& world, const world::Contact& contact) {
   std::ostringstream out;
   out.precision(4);
   out << world.name_of(contact.items[0]) << " and " << world.name_of(contact.items[1]);
+  if (const auto point = point_of(world, contact)) out << " (point " << *point << ")";
   if (contact.certain)
     out << " collide";
   else if (contact.margin > 0)
@@ -49,6 +59,7 @@ Json to_json(const world::World& world, const world::Contact& contact) {
               {"epsilon", contact.epsilon},
               {"margin", contact.margin},
               {"place", to_json(contact.place)}};
+  if (const auto point = point_of(world, contact)) out["point"] = *point;
   if (contact.depth)
     out["depth"] = {{"lower", contact.depth->lower},
                     {"upper", contact.depth->upper},

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "batch.h"
+#include "cloud.h"
 #include "common/check_report.h"
 #include "engine.h"
 #include "inside.h"
@@ -135,8 +136,27 @@ int check_wishes(const tools::CheckOptions& o, const world::Checker& checker,
                                                       : tools::kDone);
 }
 
+/// When a share of a segment is reached. @pre there are times
+double time_at(const std::vector<double>& times, std::size_t segment, double share) {
+  const double from = times[segment], to = times[std::min(segment + 1, times.size() - 1)];
+  return from + share * (to - from);
+}
+
+/// End of what is said of a motion whose file has times.
+std::string words_of_times(const world::MotionAnswer& answer, const std::vector<double>& times) {
+  if (times.empty() || answer.outcome == world::MotionAnswer::Outcome::Free) return "";
+  std::ostringstream out;
+  out << " (free until " << time_at(times, answer.segment, answer.share) << " s";
+  if (answer.contact)
+    out << ", in contact at " << time_at(times, answer.contact_segment, answer.contact_share)
+        << " s";
+  return out.str() + ")";
+}
+
+/// @param times  of the waypoints; empty: none are known
 int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
-                const std::vector<world::RobotPath>& paths, tools::Json& report) {
+                const std::vector<world::RobotPath>& paths, const std::vector<double>& times,
+                tools::Json& report) {
   const world::Checker checker(scene.world);
   // Errors come first.
   static_cast<void>(tools::parse_inside(scene.world, o.inside));
@@ -166,7 +186,12 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
     contacts.push_back(*answer.contact);
   }
   report["motion"] = tools::to_json(scene.world, answer);
-  say(o, tools::describe(scene.world, answer) +
+  if (!times.empty() && report["motion"].contains("free_until"))
+    report["motion"]["free_until"]["time"] = time_at(times, answer.segment, answer.share);
+  if (!times.empty() && report["motion"].contains("contact"))
+    report["motion"]["contact"]["time"] =
+        time_at(times, answer.contact_segment, answer.contact_share);
+  say(o, tools::describe(scene.world, answer) + words_of_times(answer, times) +
              (answer.outcome == world::MotionAnswer::Outcome::Free ? kept_apart(o) : ""));
   if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
   const int wishes = check_wishes(o, checker, paths, constraints, report);
@@ -266,21 +291,39 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
   return inside == Inclusion::Included ? tools::kDone : tools::kLimit;
 }
 
+/// Robots that move at once are at their waypoints at the same instants: files that say otherwise
+/// mean another motion.
+/// @param before  of the path before this one; empty: it has none, or this is the first
+void require_same_times(const std::vector<double>& before, const std::vector<double>& times,
+                        const std::string& first, const std::string& file) {
+  if (before.empty() || times.empty()) return;
+  for (std::size_t i = 0; i < std::min(before.size(), times.size()); ++i)
+    if (before[i] != times[i])
+      throw Error(ErrorCode::InvalidInput,
+                  file + ": waypoint " + std::to_string(i + 1) + " is at " +
+                      std::to_string(times[i]) + " s, that of " + first + " at " +
+                      std::to_string(before[i]) +
+                      " s; robots that move at once go from waypoint to waypoint together: give "
+                      "both paths waypoints at the same times");
+}
+
 int check(const tools::CheckOptions& o) {
   if (!o.paths.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
   world::SceneFile scene = world::read_scene(o.scene);
+  std::vector<std::string> notes = scene.notes;
+  tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
+  tools::add_clouds(o, scene.world, notes, report);
   scene.world.margins = world::margins_of(scene.world, o.margin);
   const std::vector<StatedPath> stated = stated_paths(o, scene.world);
   std::vector<std::string> inputs = scene.inputs;
   inputs.push_back(o.configurations);
   inputs.push_back(o.batch);
+  inputs.insert(inputs.end(), o.clouds.begin(), o.clouds.end());
   for (const StatedPath& path : stated) inputs.push_back(path.file);
   tools::require_apart(
       {{"--report", o.common.report}, {"--preview", o.preview}, {"--verdicts", o.verdicts}},
       inputs);
-  std::vector<std::string> notes = scene.notes;
-  tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   std::optional<std::size_t> robot;
   const bool moves =
       !o.paths.empty() || !o.configuration.empty() || !o.configurations.empty() || !o.batch.empty();
@@ -292,16 +335,20 @@ int check(const tools::CheckOptions& o) {
     report["robot"] = scene.world.robots[*robot].name;
   }
   std::vector<world::RobotPath> paths;
+  std::vector<double> times;
   for (const StatedPath& path : stated) {
     const std::size_t index = robot ? *robot : *path.robot;
     if (!robot) report["robots"].push_back(scene.world.robots[index].name);
-    paths.push_back({index, robot::read_path(path.file, scene.world.robots[index].kinematics,
-                                             o.reading, notes)});
+    robot::TimedPath read =
+        robot::read_timed_path(path.file, scene.world.robots[index].kinematics, o.reading, notes);
+    require_same_times(times, read.times, stated.front().file, path.file);
+    if (!read.times.empty()) times = std::move(read.times);
+    paths.push_back({index, std::move(read.waypoints)});
   }
   robot::Path values{{}};
   if (robot && paths.empty()) {
     const world::RobotModel& model = scene.world.robots[*robot];
-    values = !o.batch.empty() ? tools::read_batch(o.batch, model.kinematics, o.reading, notes)
+    values = !o.batch.empty() ? robot::read_path(o.batch, model.kinematics, o.reading, notes)
              : !o.configurations.empty()
                  ? robot::read_path(o.configurations, model.kinematics, o.reading, notes)
              : !o.configuration.empty() ? parse_configuration(o, model.kinematics)
@@ -314,7 +361,7 @@ int check(const tools::CheckOptions& o) {
   const int code =
       !o.batch.empty() ? tools::check_batch(o, scene, *robot, values, kept_apart(o), tell, report)
       : own            ? paths.empty() ? check_states(o, scene, robot, values, report)
-                                       : check_paths(o, scene, paths, report)
+                                       : check_paths(o, scene, paths, times, report)
                  : paths.empty() ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
                        : tools::check_paths_by_engine(o, scene, paths, tell, report);
   if (!notes.empty()) report["notes"] = notes;
@@ -337,7 +384,8 @@ void require_meaning(const tools::CheckOptions& o) {
       moves || !o.configuration.empty() || !o.configurations.empty() || !o.batch.empty();
   for (const auto& option : robot::path_options())
     require(option, given, "--path, --configuration, --configurations or --batch");
-  for (const auto& option : world::motion_options()) require(option, moves, "--path");
+  for (const auto& option : world::motion_options())
+    require(option, moves || !o.motions.empty(), "--path, or --batch with --motions");
   for (const auto& option : motion::keep_options()) require(option, moves, "--path");
 }
 
@@ -354,6 +402,7 @@ int main(int argc, char** argv) {
     require_meaning(options);
     tools::require_engine_meaning(options);
     tools::require_batch_meaning(options);
+    tools::require_cloud_meaning(options);
     return check(options);
   });
 }

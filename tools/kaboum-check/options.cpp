@@ -9,16 +9,49 @@
 
 #include <CLI/CLI.hpp>
 
+#include "batch.h"
 #include "common/request_options.h"
 
 namespace kaboum::tools {
+namespace {
+
+void describe_clouds(CLI::App& app, CheckOptions& o) {
+  app.add_option("--cloud", o.clouds,
+                 "Points of a sensor as one more obstacle, called as the file without its ending: "
+                 ".ply, .pcd, .npy, .xyz, .txt, .asc or .csv, in the scene's unit; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("FILE");
+  app.add_option(
+         "--cloud-radius", o.cloud_radius,
+         "How far from a point of --cloud what the sensor saw may be: free is what is apart "
+         "from all balls of this radius")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("LENGTH");
+  app.add_option("--cloud-pose", o.cloud_pose,
+                 "Where the frame of the points is, as X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or "
+                 "X,Y,Z,QX,QY,QZ,QW [the scene's]")
+      ->type_name("POSE");
+  app.add_option("--cloud-allow", o.cloud_allow,
+                 "Contacts of this link with points are none, as of a base on a table that the "
+                 "sensor sees; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("ROBOT/LINK");
+  app.add_flag("--cloud-drop-invalid", o.cloud_drop_invalid,
+               "Leave out points with coordinates that are NaN or infinite, as sensors have them "
+               "where they see nothing");
+}
+
+}  // namespace
 
 void describe(CLI::App& app, CheckOptions& o) {
   app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
   app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
   auto* path = app.add_option("--path", o.paths,
-                              "Decide a whole motion, at every instant: waypoints, CSV or JSON. "
-                              "Repeated, with the robots' names: of robots that move at once, from "
+                              "Decide a whole motion, at every instant: waypoints, CSV, JSON, YAML "
+                              "or .npy, also as MoveIt, VAMP and cuRobo have them. Repeated, with "
+                              "the robots' names: of robots that move at once, from "
                               "waypoint to waypoint together")
                    ->expected(1)
                    ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -39,10 +72,18 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->excludes(path)
       ->excludes(one)
       ->excludes(several);
-  app.add_option("--verdicts", o.verdicts,
-                 "With --batch: write 1 for each configuration that is free, else 0; an array of "
-                 "uint8 where the name ends in .npy, else lines")
+  app.add_option(
+         "--motions", o.motions,
+         "With --batch: decide straight motions in joint space, at every instant: from each "
+         "row to the next one, or from the first to the second of every two rows")
+      ->check(CLI::IsMember({kConsecutive, kPairs}).description(""))
+      ->type_name(std::string(kConsecutive) + "|" + kPairs);
+  app.add_option(
+         "--verdicts", o.verdicts,
+         "With --batch: write 1 for each configuration (motion) that is free, else 0; an array of "
+         "uint8 where the name ends in .npy, else lines")
       ->type_name("FILE");
+  describe_clouds(app, o);
   add_request_options(app, robot::path_options(), o.reading, o.stated);
   add_request_options(app, world::state_options(), o.state, o.stated);
   add_request_options(app, world::margin_options(), o.margin, o.stated);

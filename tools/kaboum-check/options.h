@@ -6,6 +6,7 @@
 #include <kaboum/world/margins.h>
 #include <kaboum/world/motion_check.h>
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,8 +21,11 @@ class App;
 namespace kaboum::tools {
 
 struct CheckOptions {
-  std::string scene, robot, configuration, configurations, batch, verdicts, preview;
-  std::vector<std::string> paths, inside;
+  std::string scene, robot, configuration, configurations, batch, motions, verdicts, preview;
+  std::vector<std::string> paths, inside, clouds, cloud_allow;
+  std::optional<double> cloud_radius;
+  std::string cloud_pose;
+  bool cloud_drop_invalid = false;
   robot::PathOptions reading;
   world::Checker::Options state;
   world::MotionOptions motion;

@@ -29,6 +29,24 @@ Colour colour_of(const Item& item, std::size_t body, const std::vector<world::Co
 
 }  // namespace
 
+namespace {
+
+/// A ball of which there are very many, drawn by few triangles.
+geom::Mesh octahedron(const geom::ConvexBody& ball) {
+  geom::Mesh out;
+  for (int k = 0; k < 6; ++k)
+    out.vertices.emplace_back(ball.core.vertices.front() +
+                              (k % 2 == 0 ? ball.radius : -ball.radius) * geom::Vec3::Unit(k / 2));
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    const std::uint32_t x = k & 1U, y = 2 + (k >> 1 & 1U), z = 4 + (k >> 2 & 1U);
+    const bool turned = (x + y + z) % 2 != 0;
+    out.triangles.push_back({x, turned ? z : y, turned ? y : z});
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<char> picture_of(const world::Checker& checker, const world::WorldState& state,
                              const std::vector<world::Contact>& contacts) {
   picture::Image image(kPanel, kPanel, Colour{1, 1, 1});
@@ -38,7 +56,8 @@ std::vector<char> picture_of(const world::Checker& checker, const world::WorldSt
     const world::BoundingSet& set = placed.place.set();
     for (std::size_t i = 0; i < set.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(all.vertices.size());
-      const geom::Mesh surface = geom::surface_of(set.body(i));
+      const geom::Mesh surface =
+          set.is_cloud() ? octahedron(set.body(i)) : geom::surface_of(set.body(i));
       for (const geom::Vec3& p : surface.vertices)
         all.vertices.emplace_back(placed.place.pose() * p);
       for (const geom::Triangle& t : surface.triangles) {

@@ -4,12 +4,19 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/number_array.h>
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
+
+#ifdef KABOUM_HAS_YAML
+#include <yaml-cpp/yaml.h>
+#endif
 
 namespace kaboum::robot {
 namespace {
@@ -99,23 +106,176 @@ void require_one_reading(std::string_view text, const NamedPath& path, const Rob
   }
 }
 
-}  // namespace
+/// Whether a text is YAML: by its file's name, or by a first line as trajectories begin with.
+bool is_yaml(std::string_view text, const std::string& file) {
+  if (file.ends_with(".yaml") || file.ends_with(".yml")) return true;
+  while (true) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    if (line == "---") return true;
+    const bool passed_over = line.empty() || line.starts_with('#');
+    if (!passed_over || end == text.size()) {
+      for (const std::string_view key :
+           {"header:", "joint_names:", "points:", "joint_trajectory:", "trajectory:", "model_id:",
+            "trajectory_start:", "goal:", "joints:", "waypoints:", "position:", "positions:"})
+        if (line.starts_with(key)) return true;
+      return false;
+    }
+    text.remove_prefix(end + 1);
+  }
+}
 
-Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
-               std::vector<std::string>& notes) {
-  const std::vector<char> bytes = io::read_file(file);
+#ifdef KABOUM_HAS_YAML
+
+using Json = nlohmann::json;
+
+/// What a plain scalar says: a number where all of it is one.
+Json scalar(const YAML::Node& node) {
+  const std::string& text = node.Scalar();
+  if (node.Tag() == "!") return text;  // in quotation marks
+  double number = 0;
+  const char *begin = text.data(), *end = begin + text.size();
+  if (text.starts_with('+')) ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  if (begin != end && error == std::errc() && stop == end && std::isfinite(number)) return number;
+  return text;
+}
+
+/// @param left  how many values there may be: aliases stand for what is elsewhere, again and again
+Json to_json(const YAML::Node& node, const std::string& name, std::size_t& left, int depth = 0) {
+  constexpr int kDeepest = 32;
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::InvalidInput,
+                name + ": line " + std::to_string(node.Mark().line + 1) + ": " + what);
+  };
+  if (depth > kDeepest) refuse("nested too deep");
+  if (left-- == 0) refuse("aliases stand for far more than is written out");
+  if (node.IsSequence()) {
+    Json out = Json::array();
+    for (const YAML::Node& item : node) out.push_back(to_json(item, name, left, depth + 1));
+    return out;
+  }
+  if (node.IsMap()) {
+    Json out = Json::object();
+    for (const auto& member : node) {
+      if (!member.first.IsScalar()) refuse("a name is expected");
+      const std::string& key = member.first.Scalar();
+      if (out.contains(key)) refuse("'" + key + "' is there twice");
+      out[key] = to_json(member.second, name, left, depth + 1);
+    }
+    return out;
+  }
+  if (node.IsScalar()) return scalar(node);
+  return {};
+}
+
+/// A path in YAML, by the JSON that says the same. Documents without anything in them, as
+/// `ros2 topic echo` ends messages with, are passed over.
+NamedPath parse_path_yaml(std::string_view text, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::InvalidInput, name + ": " + what);
+  };
+  const std::string whole(text);
+  std::vector<YAML::Node> documents;
+  try {
+    for (YAML::Node& node : YAML::LoadAll(whole))
+      if (!node.IsNull()) documents.push_back(node);
+  } catch (const YAML::Exception& error) {
+    refuse("line " + std::to_string(error.mark.line + 1) + ", column " +
+           std::to_string(error.mark.column + 1) + ": not YAML: " + error.msg);
+  }
+  if (documents.empty()) refuse("nothing is in it; a path is expected");
+  if (documents.size() > 1)
+    refuse(std::to_string(documents.size()) +
+           " documents (messages with --- between); put each into a file of its own");
+  std::string json;
+  try {
+    std::size_t left = 16 * text.size();
+    json = to_json(documents.front(), name, left).dump();
+  } catch (const Json::exception&) {
+    refuse("text that is not UTF-8");
+  }
+  return parse_path_json(json, name);
+}
+
+#else
+
+NamedPath parse_path_yaml(std::string_view /*text*/, const std::string& /*name*/) {
+  throw Error(ErrorCode::NotBuilt, "paths in YAML need a build with yaml-cpp");
+}
+
+#endif
+
+/// Rows of an array, a value for each joint that moves.
+NamedPath path_of_array(const std::vector<char>& bytes, const Robot& robot,
+                        const FixedJoints& fixed, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::InvalidInput, name + ": " + what);
+  };
+  const io::NumberArray array = io::parse_number_array(bytes, name);
+  std::vector<std::size_t> shape = array.shape;
+  // A batch of one, as planners on many problems have it.
+  if (shape.size() == 3 && shape[0] == 1) shape.erase(shape.begin());
+  if (shape.size() != 2)
+    refuse(shape.size() == 3 ? "an array of three dimensions: " + std::to_string(shape[0]) +
+                                   " paths; save each by itself: numpy.save(\"path.npy\", array[0])"
+                             : "an array with a row for each configuration is expected");
+  std::string names;
+  std::size_t expected = 0;
+  for (const Variable& v : robot.variables) {
+    if (fixed.contains(v.name)) continue;
+    names += (expected++ == 0 ? "" : ", ") + v.name;
+  }
+  if (shape[1] != expected)
+    refuse(std::to_string(shape[1]) + " columns, and " + std::to_string(expected) +
+           " are expected: " + names + ", in this order");
+  NamedPath out;
+  out.waypoints.reserve(shape[0]);
+  for (std::size_t row = 0; row < shape[0]; ++row) {
+    const auto begin = array.values.begin() + static_cast<std::ptrdiff_t>(row * shape[1]);
+    const auto end = begin + static_cast<std::ptrdiff_t>(shape[1]);
+    if (!std::all_of(begin, end, [](double x) { return std::isfinite(x); }))
+      refuse("row " + std::to_string(row + 1) + ": a number that is not finite");
+    out.waypoints.emplace_back(begin, end);
+  }
+  return out;
+}
+
+NamedPath parse_path(const std::vector<char>& bytes, const std::string& file, const Robot& robot,
+                     const PathOptions& options, const std::string& name) {
+  if (file.ends_with(".npz"))
+    throw Error(ErrorCode::InvalidInput,
+                name + ": an archive of arrays; save one array as .npy, with numpy.save");
+  if (io::is_number_array(bytes)) return path_of_array(bytes, robot, options.fixed, name);
   std::string_view text(bytes.data(), bytes.size());
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start != std::string_view::npos && (text[start] == '{' || text[start] == '['))
+    return parse_path_json(text, name);
+  if (is_yaml(text, file)) return parse_path_yaml(text, name);
+  NamedPath out = parse_path_csv(text, name);
+  require_one_reading(text, out, robot, name);
+  return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// @param uses_times  else a note says that they are passed over
+TimedPath read_arranged(const std::string& file, const Robot& robot, const PathOptions& options,
+                        bool uses_times, std::vector<std::string>& notes) {
   const std::string name = file == "-" ? "standard input" : file;
-  const bool json = start != std::string_view::npos && (text[start] == '{' || text[start] == '[');
-  const NamedPath path =
-      json ? robot::parse_path_json(text, name) : robot::parse_path_csv(text, name);
-  if (!json) require_one_reading(text, path, robot, name);
-  for (const std::size_t column : robot::time_columns(path, robot))
-    notes.push_back(name + ": the column '" + path.joints[column] +
-                    "' is passed over: what is swept does not depend on times");
-  Path result = robot::arrange(path, robot, name, false, options.fixed);
+  const NamedPath path = parse_path(io::read_file(file), file, robot, options, name);
+  if (!uses_times)
+    for (const std::size_t column : robot::time_columns(path, robot))
+      notes.push_back(name + ": the column '" + path.joints[column] +
+                      "' is passed over: what is swept does not depend on times");
+  notes.insert(notes.end(), path.notes.begin(), path.notes.end());
+  TimedPath out;
+  Path& result = out.waypoints;
+  result = robot::arrange(path, robot, name, false, options.fixed);
+  out.times = robot::times_of(path, robot);
   if (options.degrees) result = robot::from_degrees(std::move(result), robot);
   if (options.check_limits) robot::require_within_limits(result, robot, name);
   if (const auto found = robot::find_likely_degrees(result, robot)) {
@@ -130,7 +290,19 @@ Path read_path(const std::string& file, const Robot& robot, const PathOptions& o
                                 : "if these are degrees, give «degrees»");
     notes.push_back(warning.str());
   }
-  return result;
+  return out;
+}
+
+}  // namespace
+
+TimedPath read_timed_path(const std::string& file, const Robot& robot, const PathOptions& options,
+                          std::vector<std::string>& notes) {
+  return read_arranged(file, robot, options, true, notes);
+}
+
+Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
+               std::vector<std::string>& notes) {
+  return read_arranged(file, robot, options, false, notes).waypoints;
 }
 
 std::string largest_move(const Path& path, const Robot& robot) {

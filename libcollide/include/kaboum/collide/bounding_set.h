@@ -4,6 +4,7 @@
 #include <kaboum/geom/convex_set.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,8 @@ class BoundingSet {
   [[nodiscard]] const Ball& ball() const { return ball_; }
   /// Box along the axes of the set's frame that holds all bodies.
   [[nodiscard]] const geom::Box3& box() const { return box_; }
+  /// True if all bodies are balls of one radius, and more than a few: points of a sensor.
+  [[nodiscard]] bool is_cloud() const { return is_cloud_; }
   [[nodiscard]] Direction direction() const { return direction_; }
   [[nodiscard]] double epsilon() const { return epsilon_; }
 
@@ -64,6 +67,7 @@ class BoundingSet {
   geom::Box3 box_;
   Direction direction_ = Direction::Outer;
   double epsilon_ = 0;
+  bool is_cloud_ = false;
 };
 
 /// A set at a place. Refers to the set.
@@ -105,11 +109,19 @@ class PosedSet {
   double defect_ = 0;  ///< of `linear` from a rotation, more than twice what it stretches by
   friend struct BoxPairs;
   [[nodiscard]] const double* low(std::size_t axis) const {
-    return boxes_.data() + axis * set_->stride();
+    return boxes_->data() + axis * set_->stride();
   }
   [[nodiscard]] const double* high(std::size_t axis) const { return low(3 + axis); }
-  /// Lower ends of the bodies' boxes, axis by axis, then upper ends, each as BoundingSet::row.
-  std::vector<double> boxes_;
+  /// Boxes that each hold kBlock boxes of the level below, the bodies' being level 0.
+  struct Level {
+    std::size_t from = 0, count = 0;  ///< place in boxes_, rows of `count`, as those of the bodies
+  };
+  static constexpr std::size_t kBlock = 64;
+  void place_blocks();
+  /// Lower ends of the bodies' boxes, axis by axis, then upper ends, each as BoundingSet::row; then
+  /// those of the levels above. Copies of a set share them until one of them is moved.
+  std::shared_ptr<std::vector<double>> boxes_;
+  std::vector<Level> levels_;  ///< from 1 on, up to one of at most kBlock boxes
   geom::Box3 box_;
 };
 

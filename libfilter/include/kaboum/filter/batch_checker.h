@@ -64,6 +64,8 @@ class BatchChecker {
 
   /// Decides straight motions in joint space, at every instant: of each from a row of `from` to the
   /// same row of `to`. As in check_motion, contacts that the robot has no part in do not count.
+  /// Every answer is the one that check_motion gives of that motion; where that would stop at its
+  /// most_intervals, the motion may be found free instead.
   /// @param free  for every motion 1: free at every instant, for certain; 0: at some instant sets
   ///   meet, or are nearer than the resolution, or check_motion leaves it undecided
   /// @param options  of world::check_motion, which decides the stretches that are open

@@ -19,6 +19,8 @@ struct NamedPath {
   std::vector<std::string> joints;  ///< of the columns; empty: in the robot's order
   Path waypoints;
   std::vector<std::size_t> lines = {};  ///< of the waypoints, in a file that has lines; else empty
+  std::string joints_at = {};           ///< where the joints are named: "line 1"; empty: not known
+  std::vector<std::string> notes = {};  ///< things a user should know; one sentence each
 };
 
 /// Comma-, semicolon- or blank-separated numbers, one waypoint per line. A first line that is not
@@ -32,13 +34,21 @@ NamedPath parse_path_csv(std::string_view text, const std::string& name);
 /// something else.
 std::string csv_field(const std::string& joint);
 
-/// {"joints": ["a", …], "waypoints": [[0, …], …]}, "joints" optional; or the waypoints alone.
-/// @throws Error{InvalidInput}.
+/// {"joints": ["a", …], "waypoints": [[0, …], …]}, "joints" optional; or the waypoints alone. Or a
+/// trajectory as others have it, times and all: ROS's JointTrajectory, alone or in MoveIt's
+/// RobotTrajectory, DisplayTrajectory and goals; a JointState with a row for each instant, as
+/// cuRobo's. Its times are a column "time_from_start". docs/formats.md.
+/// @throws Error{InvalidInput} naming the member; for several trajectories, and for joints of
+///   several degrees of freedom that move.
 NamedPath parse_path_json(std::string_view text, const std::string& name);
 
 /// The columns that are times, not joints: called time, %time, __time, timestamp, stamp,
 /// time_from_start or t, whatever the case, when the robot has no joint of this name.
 std::vector<std::size_t> time_columns(const NamedPath& path, const Robot& robot);
+
+/// Times of the waypoints, of the first column of times; empty: there is none, or the last one is
+/// not after the first one.
+std::vector<double> times_of(const NamedPath& path, const Robot& robot);
 
 /// Values of joints that do not move, by their names. [rad or length]
 using FixedJoints = std::map<std::string, double>;

@@ -150,6 +150,8 @@ struct Object {
   /// While a robot carries it, it leans by no more than this from how it stands at first; none: it
   /// may lean as it likes. > 0 [rad]
   std::optional<double> upright = {};
+  /// Of a point cloud (cloud.h): what the point of each body is called; else empty.
+  std::vector<std::uint32_t> point_numbers = {};
 };
 
 /// A part of space that things may be asked to be in.
@@ -202,6 +204,8 @@ struct World {
 
   /// "ROBOT/LINK" or "OBJECT".
   [[nodiscard]] std::string name_of(const Item& item) const;
+  /// The number of the point that a body of a cloud stands for; nullopt: the item is none.
+  [[nodiscard]] std::optional<std::uint32_t> point_of(const Item& item, std::size_t body) const;
   [[nodiscard]] std::optional<std::size_t> find_robot(const std::string& name) const;
   [[nodiscard]] std::optional<std::size_t> find_object(const std::string& name) const;
   /// @throws Error{InvalidArgument} when there is none, with a similar name.

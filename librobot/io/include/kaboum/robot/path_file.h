@@ -14,12 +14,25 @@ struct PathOptions {
   FixedJoints fixed = {};    ///< joints without a column
 };
 
-/// Reads a path for a robot, CSV or JSON (docs/formats.md). What could be read in two ways is
-/// refused: numbers that are the names of joints, and names of joints in a comment above or beside
-/// the first numbers that are in another order than the robot's.
+/// A path, and when its waypoints are reached where its file says so.
+struct TimedPath {
+  Path waypoints;
+  std::vector<double> times = {};  ///< of the waypoints, not falling; empty: none are stated [s]
+};
+
+/// Reads a path for a robot: CSV, JSON, YAML or an array of NumPy, also such as MoveIt, VAMP and
+/// cuRobo have them (docs/formats.md). What could be read in two ways is refused: numbers that are
+/// the names of joints, and names of joints in a comment above or beside the first numbers that are
+/// in another order than the robot's.
 /// @param file  `-` for standard input
 /// @param notes  gets what a user should know; one sentence each
-/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as arrange.
+/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as arrange;
+///   Error{NotBuilt} for YAML in a build without yaml-cpp.
+TimedPath read_timed_path(const std::string& file, const Robot& robot, const PathOptions& options,
+                          std::vector<std::string>& notes);
+
+/// The same without times, which a note says where there are some.
+/// @throws as read_timed_path
 Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
                std::vector<std::string>& notes);
 
