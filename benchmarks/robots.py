@@ -11,7 +11,8 @@ decomposed, its printed check is run, and what was written is loaded by MuJoCo, 
 (`scripts/setup --engines`), each in a process of its own, which also compares the poses of all
 links at 100 configurations with ours. Results are kept in FOLDER, a file a robot: those that are
 there are not made again, so that a run can be ended and gone on with. The table is made of all that
-are there. `--cpu` limits each program's CPU seconds.
+are there. `--cpu` limits each program's CPU seconds. For xacro, `xacro` is on PATH, and the packages
+that files include are found as it finds them ($AMENT_PREFIX_PATH).
 
 Snapshots of repositories may lack large files. Of MJCF, what needs a missing file is left out, and
 the row says so.
@@ -186,11 +187,24 @@ def ask_engine(readers, name, file, read, limit):
     return {"loaded": False, "why": f"ended by signal {signal}" if signal else "failed in the comparison"}
 
 
-def ask_engines(readers, files, reads, limit):
+def ask_engines(args, files):
     """By file and engine."""
-    return {file: {name: ask_engine(readers, name, file, reads[str(file)], limit)
-                   for name, formats in ENGINES.items() if file.suffix in formats}
+    done = subprocess.run([str(args.build / "tests/engines/robot-poses"), *map(str, files)],
+                          capture_output=True, text=True, check=True)
+    reads = json.loads(done.stdout)
+    return {file: {name: ask_engine(args.readers, name, file, reads[str(file)], args.cpu)
+                   for name, formats in ENGINES.items() if file.suffix.lower() in formats}
             for file in files}
+
+
+def expanded(path, words, place):
+    """A xacro file as what engines load: its text expanded; any other file as it is."""
+    if path.suffix != ".xacro":
+        return path
+    out = place / "original" / path.with_suffix("").with_suffix(".urdf").name
+    out.parent.mkdir()
+    done = subprocess.run(["xacro", str(path), *words, "-o", str(out)], capture_output=True, check=False)
+    return out if done.returncode == 0 else None
 
 
 def measure(path, words, args, sources):
@@ -207,11 +221,13 @@ def measure(path, words, args, sources):
     place = pathlib.Path(tempfile.mkdtemp(prefix="robots."))
     tools = args.build / "bin"
     environment = {**os.environ, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
-    os.environ["ROS_PACKAGE_PATH"] = os.pathsep.join(map(str, (sources, path.parent.parent, path.parent.parent.parent)))
+    repository = sources / path.relative_to(sources).parts[0]
+    os.environ["ROS_PACKAGE_PATH"] = os.pathsep.join(
+        map(str, (repository, sources, path.parent.parent, path.parent.parent.parent)))
     try:
         command = ["bcd-decompose", str(path), "-o", str(place / "out"), "--epsilon", args.epsilon,
                    "--effort", args.effort, "--no-cache", "--package-path",
-                   str(sources / path.relative_to(sources).parts[0]),
+                   str(repository),
                    "--report", str(place / "report.json")]
         if path.suffix != ".xml":
             command += ["--for", "drake"]  # which reads OBJ, as the others do
@@ -227,6 +243,8 @@ def measure(path, words, args, sources):
             lines = [x for x in said.strip().splitlines() if x]
             row["refused"] = (f"stopped after {args.cpu:g} s of CPU" if row["code"] is None
                               else (lines or ["no word"])[-1].replace(str(sources) + "/", ""))
+            original = expanded(path, words, place)
+            row["original"] = ask_engines(args, [original])[original] if original else {}
             return row
         report = json.loads((place / "report.json").read_text())
         row["links"] = len(report["links"])
@@ -237,11 +255,9 @@ def measure(path, words, args, sources):
         if "check" in report:
             row["check"], _, row["check_cpu"] = run(["sh", "-c", report["check"]], 4 * args.cpu,
                                                     env=environment)
-        written = pathlib.Path(report["urdf"])
-        done = subprocess.run([str(args.build / "tests/engines/robot-poses"), str(path), str(written)],
-                              capture_output=True, text=True, check=True)
-        answers = ask_engines(args.readers, [path, written], json.loads(done.stdout), args.cpu)
-        row["original"], row["written"] = answers[path], answers[written]
+        written, original = pathlib.Path(report["urdf"]), expanded(path, words, place)
+        answers = ask_engines(args, [x for x in (original, written) if x])
+        row["original"], row["written"] = answers.get(original, {}), answers[written]
     finally:
         shutil.rmtree(place, ignore_errors=True)
     return row
@@ -253,21 +269,29 @@ def short(text):
     return (text if len(text) < 100 else text[:100] + "…").replace("|", "/").replace("<", "&lt;")
 
 
+def loaded_before(row, name):
+    """Whether an engine loads the original."""
+    return row.get("original", {}).get(name, {}).get("loaded", False)
+
+
 def engines_of(row):
     """What loaded a written robot."""
-    out = []
+    out, neither = [], []
     for name, answer in row.get("written", {}).items():
-        if "." + row["format"] not in ENGINES[name]:
-            continue
         if not answer["loaded"]:
+            if not loaded_before(row, name):
+                neither.append(name)
+                continue
             why = re.sub(r"\S*/(\S*): (?=error)|^Error: ", "", answer["why"])
-            out.append(f"not {name} ({short(why)})")
+            out.append(f"NOT {name}, which loads the original ({short(why)})")
         elif answer.get("worst") is not None and answer["worst"] > TOLERANCE:
             out.append(f"{name} (poses off by {answer['worst']:.1e})")
         elif answer.get("faults"):
             out.append(f"{name} ({short(answer['faults'][0])})")
         else:
             out.append(name)
+    if neither:
+        out.append(f"not {', '.join(neither)}: nor the original")
     return ", ".join(out)
 
 
@@ -284,6 +308,11 @@ def table_of(rows):
         if "missing" in row or "refused" in row:
             why = row.get("missing") or "refused: " + row["refused"].replace("bcd-decompose: ", "")
             why = why.replace("|", "/").replace("<", "&lt;")[:240]
+            loading = [name for name in row.get("original", {}) if loaded_before(row, name)]
+            if loading:
+                why += f" ({', '.join(loading)} load{'s' if len(loading) == 1 else ''} it)"
+            elif "refused" in row:
+                why += " (no engine loads it)"
             cpu = f"{row['cpu']:.1f}" if "cpu" in row else ""
             out.append(f"| {name} | {row['format']} | | {row['epsilon']} | | {cpu} | {why} | | |")
             continue
@@ -307,14 +336,21 @@ def summary_of(rows):
     loads = [row for row in written if any(x["loaded"] for x in row["written"].values())]
     held = [row for row in written if row["verdicts"].get("held", 0) == row["links"]]
     checked = [row for row in written if row.get("check") in (0, 1)]
-    compared = [(name, answer) for row in written for what in ("original", "written")
-                for name, answer in row[what].items() if answer.get("worst") is not None]
+    compared = [(name, answer) for row in there for what in ("original", "written")
+                for name, answer in row.get(what, {}).items() if answer.get("worst") is not None]
+    loadable = [row for row in there if any(loaded_before(row, x) for x in row.get("original", {}))]
+    kept = [row for row in loadable if any(loaded_before(row, name) and answer["loaded"]
+                                           for name, answer in row.get("written", {}).items())]
+    pairs = [(row, name) for row in loadable for name in row["original"] if loaded_before(row, name)]
+    pairs_kept = [1 for row, name in pairs if row.get("written", {}).get(name, {}).get("loaded")]
     near = [1 for _, answer in compared if answer["worst"] <= TOLERANCE]
     worst = max((answer["worst"] for _, answer in compared if answer["worst"] <= TOLERANCE), default=0)
     return (f"{len(rows)} robots are listed. {absent} of them are not in the snapshots, {len(later)} are not measured yet. "
             f"Of the other {len(there)}:\n\n"
             f"- {len(written)} are written, {len(there) - len(written)} refused or stopped;\n"
             f"- {len(loads)} of those written are loaded by one engine at least;\n"
+            f"- of {len(loadable)} robots an engine loads the original: of {len(kept)} of these it loads what is written, too "
+            f"(by single engines: {len(pairs_kept)} of {len(pairs)});\n"
             f"- of {len(held)} every link is held; of {len(checked)} the printed check decided;\n"
             f"- kinematics were compared {len(compared)} times with an engine's, originals and what is "
             f"written: {len(near)} times all links are where the engine has them, within {worst:.1e}.\n")

@@ -323,12 +323,17 @@ def add_packages(packages, path):
     names = set(re.findall(r"(?:package|model)://([^/\"<]+)/", path.read_text(errors="replace")))
     if "<include>" in path.read_text(errors="replace"):  # whatever those include
         names.update(p.name for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x for p in pathlib.Path(x).iterdir())
-    for folder in [x for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]:
-        for name in sorted(names):
-            if (pathlib.Path(folder) / name).is_dir():
-                if packages.Contains(name):  # drake_models would be fetched
-                    packages.Remove(name)
-                packages.Add(name, str(pathlib.Path(folder) / name))
+    for folder in [pathlib.Path(x) for x in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if x]:
+        found = {name: folder / name for name in names if (folder / name).is_dir()}
+        if names - found.keys():  # a folder may have another name than its package
+            for package in [p for depth in ("", "*/", "*/*/") for p in folder.glob(depth + "package.xml")]:
+                name = re.search(r"<name>\s*(\S+?)\s*</name>", package.read_text(errors="replace"))
+                if name and name[1] in names:
+                    found.setdefault(name[1], package.parent)
+        for name, place in sorted(found.items()):
+            if packages.Contains(name):  # drake_models would be fetched
+                packages.Remove(name)
+            packages.Add(name, str(place))
 
 
 def of_model(plant, name):
