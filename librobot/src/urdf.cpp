@@ -152,6 +152,14 @@ class Elements {
     return {q.toRotationMatrix(), file_.vector(e, "xyz", Vec3::Zero())};
   }
 
+  /// Of a mesh. One number scales all axes, as Drake has it; urdfdom passes over such a shape.
+  [[nodiscard]] Vec3 scale_of(const XMLElement& mesh) const {
+    const char* text = mesh.Attribute("scale");
+    if (const auto x = finite_numbers(text != nullptr ? text : "1"); x && x->size() == 1)
+      return Vec3::Constant(x->front());
+    return file_.vector(mesh, "scale");
+  }
+
   [[nodiscard]] Geometry read_geometry(const XMLElement& shape, const std::string& link) const {
     const XMLElement* geometry = file_.only_child(shape, "geometry");
     const XMLElement* e = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
@@ -191,7 +199,7 @@ class Elements {
     } else if (kind == "mesh") {
       g.shape = Geometry::Shape::Mesh;
       g.mesh = file_.text(*e, "filename");
-      g.size = file_.vector(*e, "scale", Vec3::Ones());
+      g.size = scale_of(*e);
       if ((g.size.array() == 0).any()) fail_at(name_, g.line, place + "a mesh scaled by 0");
       return g;
     } else {

@@ -162,7 +162,8 @@ Subject subject_of(const geom::Mesh& file, const geom::Prepared& prepared) {
   out.mesh = prepared.solid.mesh();
   out.filled_triangles = prepared.solid.filled_triangles();
   out.is_prepared = true;
-  out.both_ways = prepared.report.hollow.has_value();
+  // Parts across whose holes preparing guessed may be left inside out.
+  out.both_ways = prepared.report.hollow.has_value() || geom::signed_volume(out.mesh) < 0;
   out.has_more = !prepared.report.left_out.empty();
   if (out.has_more) out.triangles = held_triangles(file, prepared);
   out.report = prepared.report;

@@ -63,6 +63,25 @@ sed 's,<link name="frame"/>,&<mujoco><compiler meshdir="nowhere" balanceinertia=
 expect 0 '' "$D" robot/m.urdf -o merged --epsilon 3% --effort fast
 [ "$(grep -c '<mujoco>' merged/m.urdf)" = 1 ] && grep -q 'timestep="0.001"' merged/m.urdf || fail "<mujoco> is not merged"
 grep -q '<compiler balanceinertia="true" strippath="false"/>' merged/m.urdf || fail "what is said to MuJoCo: $(grep compiler merged/m.urdf)"
+# It finds no package://: shapes for drawing that it should load are left out, and a note says so.
+mkdir -p drawn
+cp robot/meshes/t.off drawn
+cat >drawn/d.urdf <<'END'
+<robot name="d"><mujoco><compiler meshdir="m" discardvisual="false"/></mujoco><link name="l">
+  <visual><geometry><mesh filename="package://p/seen.stl"/></geometry></visual>
+  <collision><geometry><mesh filename="t.off"/></geometry></collision></link></robot>
+END
+expect 0 'leave out shapes for drawing' "$D" drawn/d.urdf -o drawn/out --effort fast --verbose
+grep -q '<compiler discardvisual="true" strippath="false"/>' drawn/out/d.urdf || fail "MuJoCo looks for package://"
+sed 's,package://p/seen.stl,t.off,' drawn/d.urdf >drawn/e.urdf
+expect 0 '' "$D" drawn/e.urdf -o drawn/out_e --effort fast
+grep -q 'discardvisual="false"' drawn/out_e/e.urdf || fail "MuJoCo draws no more"
+# A URDF called .xml is one, and becomes NAME.urdf: NAME.xml is its MJCF.
+cp drawn/e.urdf drawn/e.xml
+expect 0 '' "$D" drawn/e.xml -o drawn/out_x --effort fast --robot-format mjcf
+cmp drawn/out_e/e.urdf drawn/out_x/e.urdf || fail "a URDF called .xml"
+grep -q '<mujoco' drawn/out_x/e.xml || fail "the MJCF of a URDF called .xml"
+shows 0 'verified' "$BIN/bound-verify" robot drawn/e.xml drawn/out_x/e.urdf --prepare
 # Thin bodies that rounding moves are enlarged like others: no container leaves a margin to its readers.
 mkdir -p thin
 awk 'NR > 2 && NR < 7 { $3 = $3 * 1e-5 } { print }' robot/meshes/t.off >thin/plate.off

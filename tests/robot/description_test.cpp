@@ -169,6 +169,10 @@ TEST(Urdf, Shapes) {
   EXPECT_EQ(link.collision[0].size, Vec3(1, 2, 3));
   EXPECT_EQ(link.visual[1].mesh, "package://x/y.stl");
   EXPECT_EQ(link.visual[1].size, Vec3(1, -1, 0.001));
+  const Robot scaled = parse(robot_of(
+      "<link name='a'><visual><geometry><mesh filename='y.stl' scale=' .5'/></geometry></visual>"
+      "</link>"));
+  EXPECT_EQ(scaled.links[0].visual[0].size, Vec3(0.5, 0.5, 0.5));
   // Polytopes round round shapes: every point of these is inside.
   const auto cylinder = geom::convex_hull(bounding_points(link.collision[1]));
   const auto sphere = geom::convex_hull(bounding_points(link.visual[0]));
@@ -306,6 +310,9 @@ TEST(Urdf, BadFilesAreRefused) {
   has(robot_of("<link name='a'><collision><geometry><mesh filename='x' scale='1 0 1'/></geometry>"
                "</collision></link>"),
       "0");
+  has(robot_of("<link name='a'><collision><geometry><mesh filename='x' scale='1 2'/></geometry>"
+               "</collision></link>"),
+      "three finite numbers");
   std::string deep = "<robot name='r'>";
   for (int i = 0; i < 100000; ++i) deep += "<link>";
   has(deep, "r.urdf");

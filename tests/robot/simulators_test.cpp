@@ -8,6 +8,7 @@
 #include <kaboum/robot/sdf.h>
 
 #include <functional>
+#include <map>
 #include <numbers>
 
 namespace kaboum::robot {
@@ -194,6 +195,28 @@ TEST(Mjcf, Includes) {
               expand_mjcf(mjcf("<include file='c.xml'/><include file='c.xml'/>"), "m.xml", read);
             }).find("already"),
             std::string::npos);
+}
+
+/// What an included file includes is looked for beside the model, then beside that file.
+TEST(Mjcf, IncludesOfIncludes) {
+  std::map<std::string, std::string> files{
+      {"sub/a.xml", "<mujocoinclude><include file='b.xml'/></mujocoinclude>"},
+      {"sub/b.xml", "<mujocoinclude><geom name='beside' size='1'/></mujocoinclude>"}};
+  const auto expanded = [&] {
+    return expand_mjcf(mjcf("<include file='sub/a.xml'/>"), "m.xml", [&](const std::string& file) {
+      const auto at = files.find(file);
+      if (at == files.end()) throw Error(ErrorCode::InvalidInput, file + ": no such file");
+      return at->second;
+    });
+  };
+  EXPECT_NE(expanded().find("beside"), std::string::npos);
+  files["b.xml"] = "<mujocoinclude><geom name='first' size='1'/></mujocoinclude>";
+  EXPECT_NE(expanded().find("first"), std::string::npos);
+  files["sub/b.xml"] = "<mujocoinclude><include file='a.xml'/></mujocoinclude>";
+  files.erase("b.xml");  // a circle
+  EXPECT_NE(refusal(expanded).find("'sub/a.xml' is included already"), std::string::npos);
+  files["sub/b.xml"] = "<mujocoinclude><include file='c.xml'/></mujocoinclude>";
+  EXPECT_NE(refusal(expanded).find("c.xml: no such file"), std::string::npos);
 }
 
 ShapeEdit edit_with(bool visual, std::vector<std::vector<ShapeMeshes>> links) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/geom/predicates.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/inclusion.h>
 #include <kaboum/verify/subject.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 
 #include "inside_out.h"
@@ -131,6 +133,34 @@ TEST(MeshVerdict, HollowsOfSurfacesThatCrossThemselvesAreLeftOpen) {
   const Mesh hollow = joined(cube(-1, 2), verify::turned(cube(0.3, 0.7)));
   EXPECT_EQ(answer_about(guessed, hollow), Answer::Undecided);
   EXPECT_EQ(answer_about(guessed, cube(-1, 2)), Answer::Verified);
+}
+
+// Of flat parts whose holes were filled the volume is 0, up to a rounding that may be negative: that
+// says nothing of which way they are meant.
+TEST(MeshVerdict, FlatPartsWithFilledHolesAreDecided) {
+  int negative = 0;
+  for (int k = 0; k < 64; ++k) {
+    Mesh ring;
+    constexpr std::uint32_t kCorners = 6;
+    for (const double radius : {0.2, 0.3})
+      for (std::uint32_t i = 0; i < kCorners; ++i) {
+        const double angle = 0.1 * k + 2 * std::numbers::pi * i / kCorners;
+        ring.vertices.push_back(
+            {0.4 + radius * std::cos(angle), 0.5 + radius * std::sin(angle), 0.0158 + 0.01 * k});
+      }
+    for (std::uint32_t i = 0; i < kCorners; ++i) {
+      const std::uint32_t next = (i + 1) % kCorners;
+      ring.triangles.push_back({i, kCorners + i, kCorners + next});
+      ring.triangles.push_back({i, kCorners + next, next});
+    }
+    const verify::Subject subject = verify::prepared_subject(ring, {.holes = geom::Holes::Fill});
+    if (!(geom::signed_volume(subject.mesh) < 0)) continue;
+    ++negative;
+    EXPECT_TRUE(subject.both_ways);
+    EXPECT_EQ(answer_about(subject, cube(-1, 2)), Answer::Verified);
+    EXPECT_EQ(answer_about(subject, cube(0.4, 2)), Answer::Refuted);
+  }
+  EXPECT_GT(negative, 0);
 }
 
 // Sheets dropped on request are not asked for; what else preparing leaves out is.

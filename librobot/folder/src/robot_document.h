@@ -36,6 +36,9 @@ class RobotDocument {
   /// The copy's text, the last thing to be asked for.
   /// @param visual  whether the new shapes stand for the shapes for drawing
   virtual std::string text(const NewShapes& shapes, bool visual, const MeshNames& names) = 0;
+
+  /// For the user, on the copy; none before its text was asked for.
+  [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
 /// @param folder  that the copy will be in

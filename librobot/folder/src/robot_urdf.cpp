@@ -128,7 +128,10 @@ std::string RobotUrdf::text(const NewShapes& shapes, bool visual, const MeshName
       replace(robot_.links[l].name, visual, shapes[l], names);
   }
   move_references(document_.RootElement());
-  let_mujoco_find_meshes(*document_.RootElement());
+  if (let_mujoco_find_meshes(*document_.RootElement()))
+    notes_ = {
+        "MuJoCo is told to leave out shapes for drawing (discardvisual): it finds no meshes that "
+        "are named by package://"};
   tinyxml2::XMLPrinter printer;
   document_.Print(&printer);
   return printer.CStr();

@@ -24,6 +24,7 @@ class RobotUrdf : public RobotDocument {
   [[nodiscard]] std::vector<std::string> mesh_stems() const override;
   void require_shapes(const std::string& link, bool visual, std::size_t shapes) override;
   std::string text(const NewShapes& shapes, bool visual, const MeshNames& names) override;
+  [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
 
  private:
   using Element = tinyxml2::XMLElement;
@@ -43,6 +44,7 @@ class RobotUrdf : public RobotDocument {
   std::string file_;
   std::filesystem::path from_, folder_;
   std::string text_;
+  std::vector<std::string> notes_;
   tinyxml2::XMLDocument document_;
 };
 

@@ -210,6 +210,8 @@ void RobotWriter::write(const NewShapes& shapes, decltype(RobotContents::write_m
   for (auto& [extension, text] : contents.documents)
     text = s.with_unverified(marked(std::move(text)));
   std::string text = s.document->text(shapes, s.o.shapes.visual, names);
+  if (note)
+    for (const std::string& said : s.document->notes()) note(s.folder.urdf().string(), said);
   if (!s.o.inertials.empty())
     text = robot::with_inertials(text, s.folder.urdf().string(), s.o.inertials).text;
   contents.urdf = s.with_unverified(marked(std::move(text)));

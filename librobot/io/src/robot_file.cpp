@@ -172,8 +172,8 @@ std::vector<std::string> included_files(const RobotFile& robot) {
     const fs::path folder = robot.path.parent_path();
     const std::string name = robot.path.string();
     const auto read = [&](const std::string& file) {
-      files.push_back((folder / file).string());
       const std::vector<char> included = io::read_file(folder / file);
+      files.push_back((folder / file).string());
       return std::string(included.begin(), included.end());
     };
     const std::string text =

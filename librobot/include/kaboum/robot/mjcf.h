@@ -20,7 +20,8 @@ namespace kaboum::robot {
 /// The text of a model with what it includes put in the place of each <include>; as it is where it
 /// includes nothing.
 /// @param name  of the file, for messages
-/// @param read  gives the text of a file, named relative to the model
+/// @param read  gives the text of a file, named relative to the model; throws Error where it is not
+///   there. Of a file that a file in another folder includes, MuJoCo looks beside the model first.
 /// @throws Error{InvalidInput} naming the line: not well-formed, a file included twice
 std::string expand_mjcf(std::string_view text, const std::string& name,
                         const std::function<std::string(const std::string& file)>& read);
