@@ -207,11 +207,19 @@ def expanded(path, words, place):
     return out if done.returncode == 0 else None
 
 
+def commit():
+    """Of the sources; with "+" where they have changes that are not committed."""
+    name = subprocess.run(["git", "-C", str(HERE), "rev-parse", "--short", "HEAD"],
+                          capture_output=True, text=True, check=False).stdout.strip()
+    changed = subprocess.run(["git", "-C", str(HERE), "diff", "--quiet", "HEAD"], check=False).returncode != 0
+    return name + "+" if changed else name
+
+
 def measure(path, words, args, sources):
     """The row of one robot."""
     row = {"robot": str(path.relative_to(sources)), "format": path.suffix[1:], "epsilon": args.epsilon,
            "effort": args.effort, "shapes": "visual" if args.visual else "collision",
-           "date": datetime.date.today().isoformat(), "commit": args.commit}
+           "date": datetime.date.today().isoformat(), "commit": commit()}
     if words:
         row["arguments"] = words
     if not path.exists():
@@ -400,10 +408,6 @@ def main():
         parser.error("one folder of sources, and --results")
     args.results.mkdir(parents=True, exist_ok=True)
     sources = pathlib.Path(args.sources[0]).resolve()
-    args.commit = subprocess.run(["git", "-C", str(HERE), "rev-parse", "--short", "HEAD"],
-                                 capture_output=True, text=True, check=False).stdout.strip()
-    if subprocess.run(["git", "-C", str(HERE), "diff", "--quiet", "HEAD"], check=False).returncode != 0:
-        args.commit += "+"  # with changes that are not committed
     args.readers = None if args.only_table else load_engines()
     rows = []
     for file, words in listed(args.list):
@@ -424,7 +428,7 @@ def main():
         else:
             rows.append({"robot": file, "format": pathlib.Path(file).suffix[1:],
                          "epsilon": args.epsilon, "missing": LATER,
-                         "date": datetime.date.today().isoformat(), "commit": args.commit})
+                         "date": datetime.date.today().isoformat(), "commit": commit()})
     text = page_of(rows)
     if args.output:
         pathlib.Path(args.output).write_text(text)
