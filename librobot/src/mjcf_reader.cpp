@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <set>
 
@@ -656,70 +655,6 @@ class Reader {
   std::set<std::string> paired_;  // names of geoms
 };
 
-using ReadFile = std::function<std::string(const std::string&)>;
-
-/// The text of a file that another one includes. MuJoCo looks beside the model, then beside the
-/// file that includes it.
-/// @param file  its name there, and relative to the model on return
-/// @param from  the file that includes it, relative to the model; empty: the model
-std::string included_text(std::string& file, const std::string& from, const ReadFile& read) {
-  const std::filesystem::path folder = std::filesystem::path(from).parent_path();
-  if (folder.empty()) return read(file);
-  try {
-    return read(file);
-  } catch (const Error&) {
-    std::string beside = (folder / file).string(), text;
-    try {
-      text = read(beside);
-    } catch (const Error&) {
-      text.clear();
-    }
-    if (text.empty()) throw;
-    file = std::move(beside);
-    return text;
-  }
-}
-
-/// Replaces the includes below an element.
-/// @param from  the file that has it, relative to the model; empty: the model
-void expand(XMLElement& element, const std::string& name, const std::string& from,
-            const ReadFile& read, std::set<std::string>& included) {
-  for (XMLElement* e = element.FirstChildElement(); e != nullptr;) {
-    XMLElement* next = e->NextSiblingElement();
-    if (std::string_view(e->Name()) != "include") {
-      expand(*e, name, from, read, included);
-      e = next;
-      continue;
-    }
-    const char* given = e->Attribute("file");
-    if (given == nullptr) fail_at(name, e->GetLineNum(), "<include> without a file");
-    std::string file = given;
-    const auto require_new = [&] {
-      if (included.contains(file))
-        fail_at(name, e->GetLineNum(), "'" + file + "' is included already");
-    };
-    require_new();
-    const std::string text = included_text(file, from, read);
-    require_new();
-    included.insert(file);
-    tinyxml2::XMLDocument other;
-    parse_xml(other, text, file);
-    expand(*other.RootElement(), file, file, read, included);
-    tinyxml2::XMLNode* after = e;
-    for (const auto* child = other.RootElement()->FirstChildElement(); child != nullptr;
-         child = child->NextSiblingElement())
-      after = element.InsertAfterChild(after, child->DeepClone(element.GetDocument()));
-    element.DeleteChild(e);
-    e = next;
-  }
-}
-
-bool includes_more(const XMLElement& element) {
-  for (const auto* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-    if (std::string_view(e->Name()) == "include" || includes_more(*e)) return true;
-  return false;
-}
-
 const XMLElement& root_of(const tinyxml2::XMLDocument& document, const std::string& name) {
   const XMLElement& root = *document.RootElement();
   if (std::string_view(root.Name()) != "mujoco")
@@ -728,18 +663,6 @@ const XMLElement& root_of(const tinyxml2::XMLDocument& document, const std::stri
 }
 
 }  // namespace
-
-std::string expand_mjcf(std::string_view text, const std::string& name,
-                        const ReadFile& read) {
-  tinyxml2::XMLDocument document;
-  parse_xml(document, text, name);
-  if (!includes_more(root_of(document, name))) return std::string(text);
-  std::set<std::string> included;
-  expand(*document.RootElement(), name, {}, read, included);
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
-  return printer.CStr();
-}
 
 std::string state_fitted_sizes(std::string_view text, const std::string& name,
                                const MeshSource& meshes) {

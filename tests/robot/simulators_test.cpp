@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace kaboum::robot {
 namespace {
@@ -217,6 +218,33 @@ TEST(Mjcf, IncludesOfIncludes) {
   EXPECT_NE(refusal(expanded).find("'sub/a.xml' is included already"), std::string::npos);
   files["sub/b.xml"] = "<mujocoinclude><include file='c.xml'/></mujocoinclude>";
   EXPECT_NE(refusal(expanded).find("c.xml: no such file"), std::string::npos);
+}
+
+/// Files that included files name are looked for in the compiler's folder, then beside those files.
+TEST(Mjcf, FilesNamedByIncludes) {
+  std::set<std::string> there;
+  const auto name_of = [&](const std::string& compiler, const std::string& file) {
+    const std::string text = expand_mjcf(
+        mjcf(compiler + "<include file='sub/asset/a.xml'/>"), "m.xml",
+        [&](const std::string&) {
+          return "<mujocoinclude><asset><mesh name='x' file='" + file +
+                 "'/></asset></mujocoinclude>";
+        },
+        [&](const std::string& path) { return there.contains(path); });
+    EXPECT_EQ(text.find("included-from"), std::string::npos);
+    const std::size_t begin = text.find("<mesh name=\"x\" file=\"") + 21;
+    return text.substr(begin, text.find('"', begin) - begin);
+  };
+  const std::string compiler = "<compiler meshdir='m'/>";
+  there = {"sub/asset/g/x.stl"};
+  EXPECT_EQ(name_of("", "g/x.stl"), "sub/asset/g/x.stl");
+  EXPECT_EQ(name_of(compiler, "g/x.stl"), "../sub/asset/g/x.stl");
+  there = {"sub/asset/../g/x.stl"};
+  EXPECT_EQ(name_of("", "../g/x.stl"), "sub/g/x.stl");
+  there = {"sub/asset/g/x.stl", "m/g/x.stl"};
+  EXPECT_EQ(name_of(compiler, "g/x.stl"), "g/x.stl");
+  there = {};
+  EXPECT_EQ(name_of("", "g/x.stl"), "g/x.stl");
 }
 
 ShapeEdit edit_with(bool visual, std::vector<std::vector<ShapeMeshes>> links) {

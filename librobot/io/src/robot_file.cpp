@@ -135,7 +135,10 @@ RobotFile read_robot(const std::string& path, Motions motions,
       const std::vector<char> included = io::read_file(out.path.parent_path() / file);
       return std::string(included.begin(), included.end());
     };
-    const std::string expanded = expand_mjcf(out.text, name, read);
+    const auto exists = [&](const std::string& file) {
+      return is_file(out.path.parent_path() / file);
+    };
+    const std::string expanded = expand_mjcf(out.text, name, read, exists);
     const std::string whole =
         attach_mjcf(expanded, expanded == out.text ? name : name + " (expanded)", read);
     std::string stated = state_fitted_sizes(
@@ -176,8 +179,9 @@ std::vector<std::string> included_files(const RobotFile& robot) {
       files.push_back((folder / file).string());
       return std::string(included.begin(), included.end());
     };
-    const std::string text =
-        attach_mjcf(expand_mjcf(std::string(bytes.begin(), bytes.end()), name, read), name, read);
+    const auto exists = [&](const std::string& file) { return is_file(folder / file); };
+    const std::string text = attach_mjcf(
+        expand_mjcf(std::string(bytes.begin(), bytes.end()), name, read, exists), name, read);
     static_cast<void>(state_fitted_sizes(text, name, [&](const std::string& file) {
       files.push_back((folder / file).string());
       return io::read_mesh(folder / file).mesh;

@@ -20,11 +20,15 @@ namespace kaboum::robot {
 /// The text of a model with what it includes put in the place of each <include>; as it is where it
 /// includes nothing.
 /// @param name  of the file, for messages
-/// @param read  gives the text of a file, named relative to the model; throws Error where it is not
-///   there. Of a file that a file in another folder includes, MuJoCo looks beside the model first.
+/// @param read    gives the text of a file, named relative to the model; throws Error where it is
+///   not there. MuJoCo looks for included files beside the model, then beside the file that includes
+///   them; for files of meshes that these name in the compiler's folder, then beside these.
+/// @param exists  whether a file is there, named relative to the model; none: meshes are in the
+///   compiler's folder
 /// @throws Error{InvalidInput} naming the line: not well-formed, a file included twice
 std::string expand_mjcf(std::string_view text, const std::string& name,
-                        const std::function<std::string(const std::string& file)>& read);
+                        const std::function<std::string(const std::string& file)>& read,
+                        const std::function<bool(const std::string& file)>& exists = {});
 
 /// The text of a model with what it attaches put in the place of each <attach>, as MuJoCo 4.0 does;
 /// as it is where it attaches nothing. Files of assets are named relative to the model then. Key
