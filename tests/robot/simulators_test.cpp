@@ -225,7 +225,7 @@ TEST(Mjcf, FilesNamedByIncludes) {
   std::set<std::string> there;
   const auto name_of = [&](const std::string& compiler, const std::string& file) {
     const std::string text = expand_mjcf(
-        mjcf(compiler + "<include file='sub/asset/a.xml'/>"), "m.xml",
+        mjcf("<include file='sub/asset/a.xml'/>", compiler), "m.xml",
         [&](const std::string&) {
           return "<mujocoinclude><asset><mesh name='x' file='" + file +
                  "'/></asset></mujocoinclude>";

@@ -21,8 +21,9 @@ namespace kaboum::robot {
 /// includes nothing.
 /// @param name  of the file, for messages
 /// @param read    gives the text of a file, named relative to the model; throws Error where it is
-///   not there. MuJoCo looks for included files beside the model, then beside the file that includes
-///   them; for files of meshes that these name in the compiler's folder, then beside these.
+///   not there. MuJoCo looks for included files beside the model, then beside the file that
+///   includes them; for files of meshes that these name in the compiler's folder, then beside
+///   these.
 /// @param exists  whether a file is there, named relative to the model; none: meshes are in the
 ///   compiler's folder
 /// @throws Error{InvalidInput} naming the line: not well-formed, a file included twice

@@ -14,9 +14,9 @@ namespace kaboum::robot_folder {
 std::string with_slash(const std::string& prefix);
 
 /// Has MuJoCo take names of meshes as they stand, relative to the URDF: a <mujoco> element, which
-/// other programs ignore. One that is there keeps what else it says, but that MuJoCo should load the
-/// shapes for drawing too (discardvisual="false"), where these are named by package:// or another
-/// scheme: it would find none, and load nothing.
+/// other programs ignore. One that is there keeps what else it says, but that MuJoCo should load
+/// the shapes for drawing too (discardvisual="false"), where these are named by package:// or
+/// another scheme: it would find none, and load nothing.
 /// @return whether it leaves them out therefore
 bool let_mujoco_find_meshes(tinyxml2::XMLElement& robot);
 
