@@ -152,6 +152,13 @@ class Runs(unittest.TestCase):
 
 
 class Report(unittest.TestCase):
+    def test_every_program_is_built(self):
+        script = (ROOT / "scripts/reproduce-thesis").read_text()
+        built = set(re.search(r"--target ((?:[a-z-]+|\\\n|\s)+)", script)[1].replace("\\", " ").split())
+        run = {name for file in (ROOT / "reproduce").glob("*.py") for name in re.findall(r'programs / "([a-z-]+)"', file.read_text())}
+        self.assertGreater(len(run), 5)
+        self.assertLessEqual(run, built)
+
     def test_document(self):
         document = Document("a < b")
         document.table(["n", "by"], [["1,000", "x | y & z"]])
