@@ -105,7 +105,7 @@ def main(argv):
     if options.keep:
         keep.keep(results, report.SECTIONS)
     print(f"{out / 'index.html'}: {runner.executed + runner.called[0]} runs done, "
-          f"{len(runner.results) - runner.executed + runner.called[1]} kept"
+          f"{runner.kept + runner.called[1]} kept"
           + (f", {len(runner.failures)} without a result" if runner.failures else ""))
     return 1 if runner.failures else 0
 

@@ -48,7 +48,11 @@ class Run:
 
 
 class Failure(Exception):
-    """A run that gave no result."""
+    """A run that gave no result, now or when it was made (`kept`)."""
+
+    def __init__(self, why, kept=False):
+        super().__init__(why)
+        self.kept = kept
 
 
 @functools.lru_cache(maxsize=None)
@@ -78,7 +82,7 @@ class Runner:
         self.programs, self.folder, self.jobs, self.limit, self.retry = pathlib.Path(programs), folder, jobs, limit, retry
         self.results, self.failures = {}, {}
         self.spent = [0, 0]  # user and wall seconds of the calls of a section (calls.py), those that were kept among them
-        self.executed = 0
+        self.executed, self.kept = 0, 0
         self.called = [0, 0]  # calls made now, and those that were kept (calls.py)
         self._lock = threading.Lock()
 
@@ -95,8 +99,8 @@ class Runner:
                     try:
                         self.results[run], kept = future.result()
                     except Failure as failure:
-                        self.failures[run], kept = str(failure), False
-                    self.executed += not kept
+                        self.failures[run], kept = str(failure), failure.kept
+                    self.executed, self.kept = self.executed + (not kept), self.kept + kept
                     if not kept:
                         self._say(f"[{done}/{len(runs)}, {(time.monotonic() - start) / 60:.0f} min] {run.title()}: "
                                   f"{self._summary(run)}")
@@ -123,7 +127,7 @@ class Runner:
         key = hashlib.sha256(json.dumps(depends, sort_keys=True).encode()).hexdigest()
         folder = self.folder / f"{run.title()}-{key[:12]}"
         if (why := _why_none(folder, key, self.limit)) and not self.retry:
-            raise Failure(why)
+            raise Failure(why, kept=True)
         kept = _is_complete(folder, key)
         if not kept:
             shutil.rmtree(folder, ignore_errors=True)
