@@ -132,7 +132,7 @@ def main():
                 (f"{ready}; read x; echo '{{\"id\": 1, \"done\": true, \"q\": {{\"arm\": [9, 9, 9, 9, 9, 9]}}}}'; sleep 100", "elsewhere", "away"),
                 (f"{ready}; read x; head -c 20000000 /dev/zero | tr '\\0' a; sleep 100", "nonsense", "16 MiB"),
                 (f"{DRIVER} --sense 'isSpillable(o1)=perhaps'", None, "one of")):
-            done, report = run(scenario, robot, "--robot-timeout", "1.5")
+            done, report = run(scenario, robot, "--robot-timeout", "1.5" if end == "late" else "60")
             if done.returncode not in (1,) or (end and report["driver"]["end"] != end) or word not in done.stderr:
                 fail(f"{robot}: exit code {done.returncode}, {report and report['driver']}: {done.stderr}")
             if report["verdict"] == "good":
