@@ -153,8 +153,9 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
   const auto meet = [](const geom::Box3& x, const geom::Box3& y) {
     return (x.min.array() <= y.max.array()).all() && (y.min.array() <= x.max.array()).all();
   };
-  const auto overlap_of = [](const geom::Box3& x, const geom::Box3& y) {
-    return (x.max.cwiseMin(y.max) - x.min.cwiseMax(y.min)).minCoeff();
+  // How far one of two boxes that meet has to move, along an axis, until they are apart.
+  const auto depth_of = [](const geom::Box3& x, const geom::Box3& y) {
+    return (x.max - y.min).cwiseMin(y.max - x.min).minCoeff();
   };
   constexpr std::size_t kVeryMany = 1 << 16;
   const bool very_many = a.set().size() * b.set().size() > kVeryMany;
@@ -163,7 +164,7 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
       if (!meet(a.box(i), b.box(j))) continue;
       // No pair is deeper than its boxes: of very many pairs, only those are looked at that may be
       // deeper than the deepest so far.
-      if (very_many && out && overlap_of(a.box(i), b.box(j)) <= out->depth.lower) continue;
+      if (very_many && out && depth_of(a.box(i), b.box(j)) <= out->depth.lower) continue;
       const Posed body_a = a.body(i), body_b = b.body(j);
       const double above = (a.radius_above(i) + b.radius_above(j)) * kSumUp,
                    below = (a.radius_below(i) + b.radius_below(j)) / kSumUp;

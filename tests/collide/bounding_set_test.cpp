@@ -285,6 +285,75 @@ TEST(FindCollision, SlackIsALength) {
     EXPECT_THROW(find_collision(PosedSet(a), PosedSet(a), slack), Error);
 }
 
+/// Balls of radius 1 on a grid of spacing 4, row by row, so that boxes round 64 of them, and round
+/// 64 such boxes, are apart.
+std::vector<Vec3> grid(std::size_t count) {
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < count; ++i)
+    out.push_back(4.0 * Vec3(static_cast<double>(i % 64), static_cast<double>(i / 64 % 64),
+                             static_cast<double>(i / 4096)));
+  return out;
+}
+BoundingSet balls(const std::vector<Vec3>& centers) {
+  std::vector<geom::ConvexBody> bodies;
+  for (const Vec3& c : centers) bodies.push_back({"", {{c}, {}}, 1});
+  return {bodies, Direction::Outer, 0};
+}
+
+/// A ball that touches one of very many from each of six sides is found, and by no other; of none,
+/// one, two and three levels of boxes, the last one full or not, and after a move.
+TEST(FindCollision, EachOfVeryManyBodiesIsFoundFromEverySide) {
+  std::mt19937_64 random(11);
+  const BoundingSet ball = balls({Vec3::Zero()});
+  for (const std::size_t count : {64U, 65U, 129U, 4096U, 4097U, 4161U, 262'144U, 266'305U}) {
+    const std::vector<Vec3> centers = grid(count);
+    const BoundingSet set = balls(centers);
+    PosedSet many(set);
+    const PosedSet kept = many;
+    const geom::Transform pose = test::random_pose(random, 50);
+    many.place(pose);
+    PosedSet one(ball);
+    const std::size_t stride = count > 10'000 ? 1021 : 1;
+    for (std::size_t i = count - 1, k = 0; i < count; i -= stride, ++k) {
+      Vec3 side = Vec3::Zero();
+      side[static_cast<int>(k % 3)] = k % 2 == 0 ? 1.9 : -1.9;
+      for (const bool moved : {false, true}) {
+        const PosedSet& at = moved ? many : kept;
+        const Vec3 place = centers[i] + side;
+        one.place({Eigen::Matrix3d::Identity(), moved ? pose * place : place});
+        const auto found = find_collision(one, at), reverse = find_collision(at, one);
+        // The next one on the grid is 0.1 off.
+        ASSERT_TRUE(found && reverse) << count << " bodies, body " << i;
+        ASSERT_EQ(found->b, i);
+        ASSERT_EQ(reverse->a, i);
+        // Off the grid, nothing is near.
+        const Vec3 off = centers[i] + Vec3::Constant(2);
+        one.place({Eigen::Matrix3d::Identity(), moved ? pose * off : off});
+        ASSERT_FALSE(find_collision(one, at));
+      }
+    }
+  }
+}
+
+/// Two sets of very many bodies, of which one pair meets.
+TEST(FindCollision, TheOnePairOfVeryManyIsFound) {
+  std::mt19937_64 random(12);
+  std::vector<Vec3> centers = grid(4500);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Vec3> others = centers;
+    for (Vec3& p : others) p += Vec3::Constant(2);  // 2√3 from the nearest ones
+    const std::size_t i = random() % centers.size();
+    others[i] = centers[i] + Vec3(0, 0, 1.5);
+    const BoundingSet a = balls(centers), b = balls(others);
+    const auto found = find_collision(PosedSet(a), PosedSet(b));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->a, i);
+    EXPECT_EQ(found->b, i);
+    others[i] = centers[i] + Vec3::Constant(2);
+    EXPECT_FALSE(find_collision(PosedSet(a), PosedSet(balls(others))));
+  }
+}
+
 TEST(FindCollision, ManyThreadsMayAskOfTheSameSets) {
   std::mt19937_64 random(5);
   const BoundingSet a = set_of({kUnit, box({2, 0, 0}, {3, 1, 1})}, Direction::Outer),

@@ -159,5 +159,22 @@ TEST(Penetration, OfUnionsIsThatOfTheDeepestPairAtLeastAndPartsThemAtMost) {
   EXPECT_GT(found_some, 60);
 }
 
+/// A small body deep in a large one is deeper than their boxes overlap.
+TEST(Penetration, OfVeryManyPairsTheDeepestIsFound) {
+  std::vector<geom::ConvexBody> balls{{"", {{Vec3(10.5, 5, 5)}, {}}, 1},
+                                      {"", {{Vec3(5, 5, 5)}, {}}, 0.1}},
+      boxes{{"", cube(10), 0}};
+  for (int i = 0; i < 300; ++i) {
+    balls.push_back({"", {{Vec3(1000, 10 * i, 0)}, {}}, 0.1});
+    boxes.push_back({"", {{Vec3(-1000, 10 * i, 0)}, {}}, 0.1});
+  }
+  const BoundingSet a = set_of(boxes), b = set_of(balls);
+  const auto found = penetration(PosedSet(a), PosedSet(b)),
+             reverse = penetration(PosedSet(b), PosedSet(a));
+  ASSERT_TRUE(found && reverse);
+  EXPECT_NEAR(found->depth.lower, 5.1, 1e-6);
+  EXPECT_NEAR(reverse->depth.lower, 5.1, 1e-6);
+}
+
 }  // namespace
 }  // namespace kaboum::collide
