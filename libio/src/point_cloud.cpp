@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "bytes.h"
@@ -51,6 +52,10 @@ void read_lines(const Source& source, PointBuilder& to) {
   bool first = true;
   for_lines(without_byte_order_mark(source.bytes), [&](std::string_view line) {
     for (const std::string_view mark : {"#", "//"}) line = line.substr(0, line.find(mark));
+    if (line.find(',') != std::string_view::npos && line.find(';') != std::string_view::npos)
+      fail(source, line.data(),
+           "commas and semicolons in one line; write decimal points, and one of the two between "
+           "numbers");
     const std::vector<std::string_view> words = words_of(line);
     if (words.empty()) return;
     const bool names = first && words.size() >= 3 && same_word(words[0], "x") &&
@@ -112,15 +117,17 @@ class PcdHeaderReader {
     if (words.empty()) return;
     const std::string_view key = words.front();
     const std::span<const std::string_view> rest(words.data() + 1, words.size() - 1);
+    if (!seen_.emplace(key == "COLUMNS" ? "FIELDS" : key).second)
+      refuse(in_quotes(key) + " is there twice");
     if (key == "FIELDS" || key == "COLUMNS") {
       for (const std::string_view name : rest) out_.fields.push_back({.name = name});
     } else if (key == "SIZE") {
       for_fields(rest, [&](Field& f, std::string_view word) { f.size = number(word, 1, 8); });
     } else if (key == "TYPE") {
       for_fields(rest, [&](Field& f, std::string_view word) {
-        f.type = word[0];
-        if (word.size() != 1 || std::string_view("FIU").find(f.type) == std::string_view::npos)
+        if (word != "F" && word != "I" && word != "U")
           refuse(in_quotes(word) + " where a type, F, I or U, is expected");
+        f.type = word[0];
       });
     } else if (key == "COUNT") {
       for_fields(rest,
@@ -177,6 +184,9 @@ class PcdHeaderReader {
       whole("the PCD header states " + std::to_string(*points_) +
             " POINTS, and WIDTH times HEIGHT are " + std::to_string(*width_ * height) +
             "; the file is damaged, write it again");
+    for (const char* needed : {"SIZE", "TYPE"})
+      if (out_.data != "ascii" && !seen_.contains(needed))
+        whole(std::string("the PCD header has no ") + needed + "; binary points need it");
     for (Field& f : out_.fields) {
       const bool sizes = f.type == 'F' ? f.size == 4 || f.size == 8 : std::has_single_bit(f.size);
       if (!sizes)
@@ -201,6 +211,7 @@ class PcdHeaderReader {
   Source source_;
   PcdHeader out_;
   std::string_view line_;
+  std::set<std::string_view> seen_;  ///< keys of lines
   std::optional<std::size_t> width_, height_, points_;
 };
 
