@@ -100,7 +100,7 @@ void FreeMotions::keep_free(const PoseOf& pose_of, double bound, Random& random)
     const auto pose = [&](const FrameId& id) { return id == tool_ ? after : pose_of(id); };
     return std::any_of(constraints_.begin(), constraints_.end(), [&](const Constraint& c) {
       const Cost cost = kinematics::cost(c, pose(c.first.frame), pose(c.second.frame), length_);
-      return !(cost.value.cwiseAbs().maxCoeff() <= bound);
+      return !(cost.value.allFinite() && cost.value.cwiseAbs().maxCoeff() <= bound);
     });
   });
 }

@@ -39,7 +39,9 @@ void require_joint_values(const World& world, const WorldState& state) {
 
 void require_place(const World& world, const WorldState& state, std::size_t o) {
   const auto& a = state.attachments[o];
-  if (!a && !(state.poses[o].translation.cwiseAbs().maxCoeff() <= kLargest))
+  // NaN is not compared: the largest of several coefficients may pass it over.
+  const geom::Vec3& at = state.poses[o].translation;
+  if (!a && !(at.allFinite() && at.cwiseAbs().maxCoeff() <= kLargest))
     throw Error(ErrorCode::InvalidArgument, "a position that is not from -1e9 to 1e9");
   if (a && (a->robot >= world.robots.size() ||
             a->link >= world.robots[a->robot].kinematics.links.size()))

@@ -178,6 +178,21 @@ TEST(Cloud, AnswersAreThoseOfAnObjectForEachPoint) {
   EXPECT_GT(free_motions, 5U);
 }
 
+/// A coordinate that is NaN is refused wherever it is: comparisons pass over one.
+TEST(Cloud, PlacesThatAreNoNumbersAreRefused) {
+  World world = arm();
+  add_cloud(world, {.name = "cloud", .points = {{9, 9, 9}}, .radius = 0.1});
+  const Checker checker(world);
+  for (int k = 0; k < 3; ++k)
+    for (const double bad : {std::nan(""), HUGE_VAL, -2e9}) {
+      WorldState state = initial_state(world);
+      state.poses[0].translation[k] = bad;
+      Scratch scratch;
+      EXPECT_THROW(checker.pairs(state, {}), Error) << k;
+      EXPECT_THROW(checker.is_free(state, scratch), Error) << k;
+    }
+}
+
 TEST(Cloud, LinksMayBeAllowedToTouchIt) {
   World world = arm();
   add_cloud(world,
