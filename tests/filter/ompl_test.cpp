@@ -94,6 +94,24 @@ TEST(Ompl, PathsAreFreeAtEveryInstant) {
   }
 }
 
+TEST(Ompl, SpacesAreWithinLimits) {
+  world::World world = planar_cell();
+  robot::Robot& robot = world.robots[0].kinematics;
+  robot.joints[1].type = robot::JointType::Prismatic;
+  const auto bounds = [&] {
+    const world::Checker checker(world);
+    const ob::RealVectorBounds found =
+        OmplRobot(checker, initial_state(world), 0).make_space()->getBounds();
+    return std::array{found.low[1], found.high[1]};
+  };
+  EXPECT_EQ(bounds(), (std::array{-1.0, 1.0}));
+  robot.variables[1].lower = 2;
+  EXPECT_EQ(bounds(), (std::array{2.0, 3.0}));
+  robot.variables[1].lower = {};
+  robot.variables[1].upper = -2;
+  EXPECT_EQ(bounds(), (std::array{-3.0, -2.0}));
+}
+
 /// A roadmap answers a second query with what the first one found.
 TEST(Ompl, RoadmapsAreKept) {
   PlanarSetup s;

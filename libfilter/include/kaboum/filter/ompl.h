@@ -35,15 +35,21 @@ class OmplRobot {
   [[nodiscard]] std::size_t variables() const { return batch_.variables(); }
 
   /// A space with a dimension for each variable of the robot, within its limits; of joints without
-  /// limits, a turn either way from 0 (a slide: 1 either way), which setBounds may change.
+  /// limits, a turn either way from 0 (a slide: 1 either way) or from the only limit, which
+  /// setBounds may change.
   [[nodiscard]] std::shared_ptr<ompl::base::RealVectorStateSpace> make_space() const {
-    const auto& variables = checker_.world().robots[robot_].kinematics.variables;
+    const robot::Robot& kinematics = checker_.world().robots[robot_].kinematics;
+    const auto& variables = kinematics.variables;
     auto space = std::make_shared<ompl::base::RealVectorStateSpace>(
         static_cast<unsigned int>(variables.size()));
     ompl::base::RealVectorBounds bounds(static_cast<unsigned int>(variables.size()));
     for (unsigned int i = 0; i < variables.size(); ++i) {
-      bounds.setLow(i, variables[i].lower.value_or(-2 * std::numbers::pi));
-      bounds.setHigh(i, variables[i].upper.value_or(2 * std::numbers::pi));
+      const double most = robot::is_angle(kinematics, variables[i]) ? 2 * std::numbers::pi : 1;
+      // Of joints with one limit, as wide from there.
+      bounds.setLow(
+          i, variables[i].lower.value_or(std::min(-most, variables[i].upper.value_or(0) - most)));
+      bounds.setHigh(
+          i, variables[i].upper.value_or(std::max(most, variables[i].lower.value_or(0) + most)));
       space->setDimensionName(i, variables[i].name);
     }
     space->setBounds(bounds);
