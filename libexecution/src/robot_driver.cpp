@@ -33,6 +33,8 @@ std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+bool is_utf8(const std::string& text) { return json::parse(dump(text)) == text; }
+
 /// A line of a driver, or why there is none.
 struct Heard {
   std::string line;
@@ -51,7 +53,7 @@ class Side {
   virtual Heard hear(double seconds) = 0;
   /// nullopt: it was told. Else why not.
   virtual std::optional<Heard> tell(const std::string& line) = 0;
-  /// A line that is there already.
+  /// What is there already, of a line.
   virtual std::optional<std::string> unasked() = 0;
   virtual void end(bool finished) = 0;
 };
@@ -65,7 +67,10 @@ class Program final : public Side {
     Heard out;
     switch (channel_.lines().read_line(out.line, seconds)) {
       case LineSocket::ReadOutcome::Line:
-        return out;
+        // A journal could not have it as it was.
+        if (is_utf8(out.line)) return out;
+        channel_.end();
+        return {"", Kind::Nonsense, "it answered what is no UTF-8: " + excerpt(out.line)};
       case LineSocket::ReadOutcome::End:
         return {"", Kind::Ended, channel_.end() + " without an answer"};
       case LineSocket::ReadOutcome::Late:
@@ -84,7 +89,7 @@ class Program final : public Side {
     return Heard{"", Kind::Ended, channel_.end() + ", or reads nothing"};
   }
 
-  std::optional<std::string> unasked() override { return channel_.lines().take_line(); }
+  std::optional<std::string> unasked() override { return channel_.lines().take_what_is_there(); }
 
   void end(bool finished) override {
     double seconds = kLastWords;
@@ -262,13 +267,18 @@ struct RobotDriver::Data {
     return out;
   }
 
+  /// Nothing is said between an answer and the next question.
+  void require_silence() {
+    const auto more = side->unasked();
+    if (!more) return;
+    note({{"unasked", *more}});
+    stop(Kind::Nonsense, "it said what nobody asked: " + excerpt(*more));
+  }
+
   /// Tells it something, and reads what it answers: "done", "failed" or "sensed".
   json ask(json message, double seconds) {
     if (over) throw DriverStop(Kind::Ended, "the driver is told nothing any more");
-    if (const auto more = side->unasked()) {
-      note({{"unasked", *more}});
-      stop(Kind::Nonsense, "it said what nobody asked: " + excerpt(*more));
-    }
+    require_silence();
     message["id"] = ++messages;
     const std::string text = dump(message);
     note({{"told", text}});
@@ -385,6 +395,9 @@ void RobotDriver::begin(const judge::CellState& state) {
   if (!answer["q"].is_object())
     data_->stop(Kind::Nonsense,
                 R"('q' is {ROBOT: [NUMBER, ...], ...} here, not )" + excerpt(data_->line));
+  for (const auto& [name, q] : answer["q"].items())
+    if (!robots.contains(name))
+      data_->stop(Kind::Nonsense, "it says where '" + name + "' is, and no robot is called so");
   for (std::size_t r = 0; r < world.robots.size(); ++r)
     if (const std::string& name = world.robots[r].name; answer["q"].contains(name))
       data_->require_near({{"q", answer["q"][name]}}, r, state.q[r]);
@@ -456,6 +469,7 @@ std::string RobotDriver::sense(const std::string& fact, const std::vector<std::s
 void RobotDriver::finish() {
   data_->doing = "at the end";
   data_->ask_again({{"do", "finish"}}, data_->options.most_seconds, "done");
+  data_->require_silence();
   data_->finished = data_->over = true;
   data_->note({{"finished", true}});
 }

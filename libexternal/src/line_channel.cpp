@@ -122,17 +122,17 @@ LineSocket::ReadOutcome LineSocket::read_line(std::string& line, double& seconds
   }
 }
 
-std::optional<std::string> LineSocket::take_line() {
-  while (buffer_.find('\n') == std::string::npos) {
+std::optional<std::string> LineSocket::take_what_is_there() {
+  if (buffer_.empty()) {
     char part[4096];
     const ssize_t got = recv(socket_, part, sizeof part, MSG_DONTWAIT);
-    if (got <= 0) return std::nullopt;
-    buffer_.append(part, static_cast<std::size_t>(got));
+    if (got > 0) buffer_.append(part, static_cast<std::size_t>(got));
   }
+  if (buffer_.empty()) return std::nullopt;
   const std::size_t at = buffer_.find('\n');
-  std::string line = buffer_.substr(0, at);
-  buffer_.erase(0, at + 1);
-  return line;
+  std::string out = buffer_.substr(0, at);
+  buffer_.erase(0, at == std::string::npos ? at : at + 1);
+  return out;
 }
 
 bool LineSocket::write_line(std::string line, double& seconds) {

@@ -15,14 +15,25 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DRIVER = f"{sys.executable} {ROOT / 'examples/drivers/driver.py'}"
 RUNS = int(os.environ.get("KABOUM_TEST_DRIVERS", "25"))  # with faults at random
 
+# A driver in front of another one that answers the end of the plan twice.
+TWICE = """import subprocess, sys
+driver = subprocess.Popen(sys.argv[1:], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+print(driver.stdout.readline(), end="", flush=True)
+for line in sys.stdin:
+    driver.stdin.write(line)
+    driver.stdin.flush()
+    print(driver.stdout.readline() * (2 if '"finish"' in line else 1), end="", flush=True)
+"""
+
 
 def fail(what):
     raise SystemExit(f"drive.py: {what}")
 
 
 def run(folder, robot, *more):
+    files = [x for option, file in (("--report", "report.json"), ("--journal", "journal.jsonl")) if option not in more for x in (option, file)]
     command = [TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet",
-               "--report", "report.json", "--journal", "journal.jsonl", *(["--robot", robot] if robot else []), *more]
+               *files, *(["--robot", robot] if robot else []), *more]
     (folder / "report.json").unlink(missing_ok=True)
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     if done.returncode < 0:
@@ -131,12 +142,31 @@ def main():
                 (f"{ready}; read x; echo '{{\"id\": 1, \"sensed\": \"a\"}}'; sleep 100", "nonsense", "'done' or 'failed'"),
                 (f"{ready}; read x; echo '{{\"id\": 1, \"done\": true, \"q\": {{\"arm\": [9, 9, 9, 9, 9, 9]}}}}'; sleep 100", "elsewhere", "away"),
                 (f"{ready}; read x; head -c 20000000 /dev/zero | tr '\\0' a; sleep 100", "nonsense", "16 MiB"),
+                (f"{ready}; echo; exec sleep 100", "nonsense", "nobody asked"), ("printf '{\"kaboum_driver\": 1}\\n{\"id\"'; read x; sleep 100", "nonsense", "nobody asked"),
+                (f"{ready}; cat /dev/zero", "nonsense", "it "), (f"{ready}; read x; printf '\\377\\n'; sleep 100", "nonsense", "no UTF-8"),
+                (f"{ready}; read x; echo '{{\"id\": 1, \"done\": true, \"q\": {{\"amr\": [0]}}}}'; sleep 100", "nonsense", "'amr'"),
                 (f"{DRIVER} --sense 'isSpillable(o1)=perhaps'", None, "one of")):
             done, report = run(scenario, robot, "--robot-timeout", "1.5" if end == "late" else "60")
             if done.returncode not in (1,) or (end and report["driver"]["end"] != end) or word not in done.stderr:
                 fail(f"{robot}: exit code {done.returncode}, {report and report['driver']}: {done.stderr}")
             if report["verdict"] == "good":
                 fail(f"{robot}: good")
+
+        # The last answer twice at once.
+        (scenario / "twice.py").write_text(TWICE)
+        done, report = run(scenario, f"{sys.executable} twice.py {DRIVER}")
+        if done.returncode != 1 or report["driver"]["end"] != "nonsense" or "at the end" not in done.stderr:
+            fail(f"the last answer twice: exit code {done.returncode}: {done.stderr}")
+
+        # What is read is not overwritten, by whatever name.
+        for option, file in (("--journal", "plan.json"), ("--journal", "./domain.kpl"), ("--journal", "cell.json"), ("--report", "plan.json")):
+            before = (scenario / file).read_bytes()
+            done, _ = run(scenario, DRIVER, option, file)
+            if done.returncode != 2 or "overwrite" not in done.stderr or (scenario / file).read_bytes() != before:
+                fail(f"{option} {file}: exit code {done.returncode}: {done.stderr}")
+        done, _ = run(scenario, None, "--replay-journal", "kept.jsonl", "--journal", "./kept.jsonl")
+        if done.returncode != 2 or not (scenario / "kept.jsonl").read_bytes():
+            fail(f"a journal over itself: exit code {done.returncode}: {done.stderr}")
 
         # Faults at random: each run ends stopped or at the goal.
         ends = {}

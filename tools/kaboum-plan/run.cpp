@@ -10,6 +10,7 @@
 #include <charconv>
 #include <iostream>
 
+#include "common/files.h"
 #include "common/request_options.h"
 #include "input.h"
 
@@ -96,9 +97,6 @@ void require_driver_meaning(const PlanOptions& o) {
   if (!o.driver.command.empty() && !o.driver.replayed.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "--robot moves a robot, --replay-journal repeats a run without: give one of them");
-  if (!o.driver.replayed.empty() && o.driver.replayed == o.driver.journal)
-    throw Error(ErrorCode::InvalidArgument,
-                "--journal would overwrite what --replay-journal reads");
   if (drives && o.stated_outcomes)
     throw Error(ErrorCode::InvalidArgument, "--outcomes: the robot senses them");
   if (drives && !o.trajectories.empty())
@@ -148,6 +146,10 @@ int run_plan(const PlanOptions& o) {
   const execution::PlanningTask task = read_task(o);
   if (task.scene() == nullptr)
     throw Error(ErrorCode::InvalidArgument, "--scene is required: a plan is carried out in it");
+  std::vector<std::string> inputs = task.scene()->inputs;
+  for (const std::string& file : {o.plan, o.task.domain, o.task.problem, o.driver.replayed})
+    if (!file.empty()) inputs.push_back(file);
+  require_apart({{"--report", o.common.report}, {"--journal", o.driver.journal}}, inputs);
   const plan::Model model = task.load();
   const plan::Plan plan = read_plan_file(model, o);
   execution::DriveReport drive;
@@ -193,7 +195,8 @@ int run_plan(const PlanOptions& o) {
                                         (replans.size() == 1 ? " time" : " times"))
               << '\n';
   const int missing = say_missing(replans);
-  return r.good() && !drive.stopped ? missing : kNo;
+  if (!r.good() || drive.stopped) return kNo;
+  return good || missing != kDone ? missing : kNo;
 }
 
 }  // namespace kaboum::tools

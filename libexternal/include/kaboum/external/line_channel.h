@@ -19,8 +19,8 @@ class LineSocket {
   enum class ReadOutcome { Line, End, Late, TooLong };
   /// @param seconds  that are left; less afterwards by what it took.
   ReadOutcome read_line(std::string& line, double& seconds);
-  /// A line that is there already; nothing is waited for.
-  std::optional<std::string> take_line();
+  /// A line that is there already, or the beginning of one; nothing is waited for.
+  std::optional<std::string> take_what_is_there();
   /// false: the other side takes no more, or not in this time.
   bool write_line(std::string line, double& seconds);
   /// The other side reads the end.
