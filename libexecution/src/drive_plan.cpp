@@ -221,7 +221,14 @@ DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const
       out.run.plans.run = plan::run(model, plan, replan.run, steps(model, plan));
     else
       out.run.plans = plan::run_and_replan(task.texts(), model, plan, replan, steps);
-    if (out.run.plans.complete()) drive->finish();
+    if (out.run.plans.complete()) {
+      // A run ends as well where what an action observes contradicts what is known.
+      if (out.run.plans.run.ends != 1)
+        throw DriverStop(Kind::Uncertified,
+                         "what the next action observes contradicts what is known: the plan has "
+                         "not come to its end");
+      drive->finish();
+    }
   } catch (const DriverStop& stop) {
     out.stopped = stop.kind();
     out.reason = stop.what();
