@@ -25,15 +25,20 @@ constexpr std::size_t kExcerpt = 200;  // characters of a line in a message
 constexpr double kLastWords = 0.2;     // for telling a driver to stop [s]
 constexpr double kSlower = 1.5;        // a motion may take so many times as long as it is
 
-std::string excerpt(const std::string& line) {
-  return line.size() <= kExcerpt ? "'" + line + "'" : "'" + line.substr(0, kExcerpt) + "…'";
-}
-
 std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-bool is_utf8(const std::string& text) { return json::parse(dump(text)) == text; }
+/// With a sign in place of what is no UTF-8.
+std::string utf8(const std::string& text) { return json::parse(dump(text)).get<std::string>(); }
+
+/// The beginning of a line as a message may have it.
+std::string excerpt(const std::string& line) {
+  std::string begin = line.substr(0, kExcerpt);
+  for (char& c : begin)
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+  return "'" + utf8(begin) + (line.size() <= kExcerpt ? "'" : "…'");
+}
 
 /// A line of a driver, or why there is none.
 struct Heard {
@@ -68,7 +73,7 @@ class Program final : public Side {
     switch (channel_.lines().read_line(out.line, seconds)) {
       case LineSocket::ReadOutcome::Line:
         // A journal could not have it as it was.
-        if (is_utf8(out.line)) return out;
+        if (utf8(out.line) == out.line) return out;
         channel_.end();
         return {"", Kind::Nonsense, "it answered what is no UTF-8: " + excerpt(out.line)};
       case LineSocket::ReadOutcome::End:
