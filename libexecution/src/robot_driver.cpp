@@ -37,7 +37,10 @@ std::string excerpt(const std::string& line) {
   std::string begin = line.substr(0, kExcerpt);
   for (char& c : begin)
     if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
-  return "'" + utf8(begin) + (line.size() <= kExcerpt ? "'" : "…'");
+  std::string out = "'";
+  out += utf8(begin);
+  out += line.size() <= kExcerpt ? "'" : "…'";
+  return out;
 }
 
 /// A line of a driver, or why there is none.
