@@ -83,13 +83,24 @@ const std::map<std::string, std::string>& usual_settings() {
   return usual;
 }
 
-Settings settings_of(const XMLElement& root) {
+/// @param name  of the file, for messages
+Settings settings_of(const XMLElement& root, const std::string& name) {
   Settings out;
   out.others = usual_settings();
+  const auto require = [&](const XMLElement& e, bool known, const std::string& what) {
+    if (!known) fail_at(name, e.GetLineNum(), "<compiler>: " + what);
+  };
   for (const auto* e = root.FirstChildElement("compiler"); e != nullptr;
        e = e->NextSiblingElement("compiler")) {
-    if (const std::string v = attribute(*e, "angle"); !v.empty()) out.degrees = v == "degree";
-    if (const std::string v = attribute(*e, "eulerseq"); v.size() == 3) out.euler = v;
+    if (const std::string v = attribute(*e, "angle"); !v.empty()) {
+      require(*e, v == "radian" || v == "degree", "angle is '" + v + "', not radian or degree");
+      out.degrees = v == "degree";
+    }
+    if (const std::string v = attribute(*e, "eulerseq"); !v.empty()) {
+      require(*e, v.size() == 3 && v.find_first_not_of("xyzXYZ") == std::string::npos,
+              "eulerseq is '" + v + "', not three of x, y, z, X, Y and Z");
+      out.euler = v;
+    }
     if (const std::string v = attribute(*e, "strippath"); !v.empty()) out.strips = v == "true";
     if (const std::string v = attribute(*e, "assetdir"); !v.empty()) out.meshes = out.textures = v;
     if (const std::string v = attribute(*e, "meshdir"); !v.empty()) out.meshes = v;
@@ -101,8 +112,8 @@ Settings settings_of(const XMLElement& root) {
 }
 
 /// Names assets' files from the folder of the first model, and gives all a name.
-void settle_assets(XMLElement& root, const fs::path& folder) {
-  const Settings settings = settings_of(root);
+void settle_assets(XMLElement& root, const std::string& name, const fs::path& folder) {
+  const Settings settings = settings_of(root, name);
   for (XMLElement* e = root.FirstChildElement("compiler"); e != nullptr;
        e = e->NextSiblingElement("compiler"))
     for (const char* key : {"assetdir", "meshdir", "texturedir", "strippath"})
@@ -142,15 +153,15 @@ struct SubModel {
 class Converter {
  public:
   Converter(SubModel& model, const Settings& to)
-      : model_(model), from_(settings_of(model.root())), to_(to), classes_(model.name) {}
+      : model_(model),
+        from_(settings_of(model.root(), model.name)),
+        to_(to),
+        classes_(model.name) {}
 
   void run() {
     for (const auto& [key, value] : from_.others)
       if (to_.others.at(key) != value)
-        throw Error(ErrorCode::InvalidInput,
-                    model_.name + ": its compiler has " + key + "=\"" + value +
-                        "\", the one of the model that it is attached to \"" + to_.others.at(key) +
-                        "\"; state the same" + kSave);
+        throw Error(ErrorCode::InvalidInput, contradiction(key, value));
     if (from_.degrees == to_.degrees && from_.euler == to_.euler) return;
     for (XMLElement* e = model_.root().FirstChildElement("default"); e != nullptr;
          e = e->NextSiblingElement("default"))
@@ -166,6 +177,12 @@ class Converter {
  private:
   [[noreturn]] void fail(const XMLElement& e, const std::string& what) const {
     fail_at(model_.name, e.GetLineNum(), std::string("<") + e.Name() + ">: " + what);
+  }
+
+  [[nodiscard]] std::string contradiction(const std::string& key, const std::string& value) const {
+    return model_.name + ": its compiler has " + key + "=\"" + value +
+           "\", the one of the model that it is attached to \"" + to_.others.at(key) +
+           "\"; state the same" + kSave;
   }
 
   [[nodiscard]] double factor() const {
@@ -346,7 +363,7 @@ const std::map<std::string, std::string>* usual_attributes(const std::string& ta
 class Attacher {
  public:
   Attacher(XMLElement& root, const std::string& name, std::size_t& elements)
-      : root_(root), name_(name), elements_(elements), settings_(settings_of(root)) {}
+      : root_(root), name_(name), elements_(elements), settings_(settings_of(root, name)) {}
 
   void add_model(const std::string& called, std::unique_ptr<SubModel> model, const XMLElement& at) {
     Converter(*model, settings_).run();
@@ -538,14 +555,17 @@ class Attacher {
       XMLElement* e = nullptr;
       for (const auto& [key, value] : here.of_kind("main", tag)) {
         if (own.contains(key)) continue;
-        if (usual == nullptr || !usual->contains(key))
-          fail(at, "the main class states " + key + " of <" + tag +
-                       ">, which the attached model would get; state it in a class of its own" +
-                       kSave);
+        if (usual == nullptr || !usual->contains(key)) fail_inherited(at, key, tag);
         if (e == nullptr) e = made.InsertNewChildElement(tag.c_str());
         e->SetAttribute(key.c_str(), usual->at(key).c_str());
       }
     }
+  }
+
+  [[noreturn]] void fail_inherited(const XMLElement& at, const std::string& key,
+                                   const std::string& tag) const {
+    fail(at, "the main class states " + key + " of <" + tag +
+                 ">, which the attached model would get; state it in a class of its own" + kSave);
   }
 
   /// Whether an element names only things that are attached.
@@ -612,7 +632,7 @@ class Attacher {
         for (XMLElement* c = assets->FirstChildElement(tag); c != nullptr;
              c = c->NextSiblingElement(tag)) {
           const std::string name = attribute(*c, "name");
-          if (!needed_[tag].contains(name) || !assets_.insert(prefix + tag + " " + name).second)
+          if (!needed_[tag].contains(name) || !assets_.insert({tag, prefix + name}).second)
             continue;
           count(*c);
           XMLElement* copy = c->DeepClone(root_.GetDocument())->ToElement();
@@ -631,7 +651,8 @@ class Attacher {
   Settings settings_;
   std::map<std::string, std::unique_ptr<SubModel>> models_;
   std::map<std::string, SubModel*> prefixes_;
-  std::set<std::string> assets_, taken_;
+  std::set<std::pair<std::string, std::string>> assets_;  // tag, name
+  std::set<std::string> taken_;
   const XMLElement* attach_ = nullptr;                   // that is being written out
   std::string main_;                                     // class, with its prefix
   std::map<std::string, std::set<std::string>> names_;   // that were attached, by kind
@@ -650,11 +671,33 @@ bool attaches(const XMLElement& element) {
   return false;
 }
 
+/// Bodies of what is attached that would be lost.
+void require_rigid(const XMLElement& root, const std::string& name) {
+  for (const auto* section = root.FirstChildElement("deformable"); section != nullptr;
+       section = section->NextSiblingElement("deformable"))
+    if (const auto* flex = section->FirstChildElement("flex"); flex != nullptr)
+      fail_at(name, flex->GetLineNum(),
+              "<flex>: flexible bodies have no shape that bodies could hold");
+}
+
+/// Counts elements, of which files that name others several times have too many. A file is as much
+/// work as some elements.
+void count_read(XMLElement& root, const std::string& name, std::size_t& elements) {
+  constexpr std::size_t kFile = 100;
+  elements += kFile;
+  for_all(root, [&](XMLElement&) { ++elements; });
+  if (elements > kMostExpanded)
+    throw Error(ErrorCode::LimitReached, name +
+                                             ": the models that it attaches, and those that they "
+                                             "attach, have more than " +
+                                             std::to_string(kMostExpanded) + " elements");
+}
+
 /// @param folder  of the model, from that of the first one
 /// @param chain   files that this one is attached by, and itself
 void write_out(XMLElement& root, const std::string& name, const fs::path& folder,
                const FileText& read, std::vector<std::string>& chain, std::size_t& elements) {
-  settle_assets(root, folder);
+  settle_assets(root, name, folder);
   Attacher attacher(root, name, elements);
   for (XMLElement* assets = root.FirstChildElement("asset"); assets != nullptr;
        assets = assets->NextSiblingElement("asset"))
@@ -679,6 +722,8 @@ void write_out(XMLElement& root, const std::string& name, const fs::path& folder
                             }),
                 path);
       model->model = attribute(model->root(), "model");
+      count_read(model->root(), path, elements);
+      require_rigid(model->root(), path);
       chain.push_back(path);
       write_out(model->root(), model->name, inner, read, chain, elements);
       chain.pop_back();

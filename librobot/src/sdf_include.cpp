@@ -165,14 +165,26 @@ class Includer {
     model = root.FirstChildElement("model");
     if (model == nullptr || model->NextSiblingElement("model") != nullptr)
       fail("'" + found.file + "' has not one model");
-    return placed(e, *model, found.file, minor_of(root));
+    XMLElement* out = placed(e, *model, found.file, minor_of(root));
+    forget(root);
+    return out;
+  }
+
+  /// What is known of elements of a document, which goes now.
+  void forget(XMLElement& root) {
+    std::erase_if(versions_, [&](const auto& model) {
+      return model.first->GetDocument() == root.GetDocument();
+    });
+    for_all(root, [&](XMLElement& e) { settled_.erase(&e); });
   }
 
   /// The copy of an included model, with what the <include> says of it.
   XMLElement* placed(XMLElement& e, XMLElement& model, const std::string& file, int minor) {
     tinyxml2::XMLDocument& document = *e.GetDocument();
     XMLElement* out = copy(model, document, file);
-    versions_.emplace_back(out, minor);
+    // Where the document had it from another one, it is of that one's version.
+    if (std::ranges::none_of(versions_, [&](const auto& known) { return known.first == out; }))
+      versions_.emplace_back(out, minor);
     const XMLElement* own_pose = e.FirstChildElement("pose");
     if (const XMLElement* name = e.FirstChildElement("name"); name != nullptr)
       out->SetAttribute("name", trimmed(name->GetText()).c_str());
@@ -215,7 +227,9 @@ class Includer {
   }
 
   void move(XMLElement& uri, const std::string& file) {
-    const std::string name = trimmed(uri.GetText());
+    constexpr std::string_view kFile = "file://";
+    std::string name = trimmed(uri.GetText());
+    if (name.starts_with(kFile)) name = name.substr(kFile.size());  // relative ones, too
     if (name.empty() || name.find("://") != std::string::npos || name.starts_with('/')) return;
     const fs::path place = (fs::path(file).parent_path() / name).lexically_normal();
     uri.SetText(place.lexically_relative(folder_).generic_string().c_str());

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <regex>
 
 namespace kaboum::robot {
 namespace {
@@ -94,6 +95,40 @@ TEST(AttachedModels, AreRefusedByPlace) {
       "attached to itself");
 }
 
+TEST(AttachedModels, AreRefusedWhatTheyCannotMean) {
+  const auto has = [&](const std::string& inner, const std::string& words) {
+    const std::string said =
+        refusal(model_of("<attach model=\"a\" prefix=\"l_\"/>"),
+                {{"sub/a.xml", "<mujoco>" + inner +
+                                   "<worldbody><body name=\"b\"><geom size=\"1\" euler=\"1 2 "
+                                   "3\"/></body></worldbody></mujoco>"}});
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+    EXPECT_TRUE(said.starts_with("sub/a.xml:1: ")) << said;
+  };
+  has("<compiler eulerseq=\"abc\"/>", "eulerseq is 'abc'");
+  has("<compiler eulerseq=\"xy\"/>", "eulerseq is 'xy'");
+  has("<compiler angle=\"deg\"/>", "angle is 'deg'");
+  has("<deformable><skin/><flex name=\"f\"/></deformable>", "flexible bodies");
+}
+
+/// Models that name the next one twice, and attach nothing.
+TEST(AttachedModels, AreNotReadWithoutEnd) {
+  Files files;
+  for (int i = 0; i < 30; ++i) {
+    const std::string next = "m" + std::to_string(i + 1) + ".xml";
+    files["m" + std::to_string(i) + ".xml"] = "<mujoco><asset><model name=\"m\" file=\"" + next +
+                                              "\"/><model name=\"n\" file=\"" + next +
+                                              "\"/></asset><worldbody/></mujoco>";
+  }
+  files["m30.xml"] = "<mujoco><worldbody><body name=\"b\"/></worldbody></mujoco>";
+  try {
+    attached(files["m0.xml"], files);
+    FAIL() << "it ends";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::LimitReached);
+  }
+}
+
 /// Ten models that attach the next one ten times each.
 TEST(AttachedModels, DoNotMultiplyWithoutEnd) {
   Files files;
@@ -167,6 +202,45 @@ TEST_F(IncludedModels, ArePlacedAndTheirFilesFound) {
   ASSERT_TRUE(left && right);
   EXPECT_EQ(robot.robot.links[*left].collision.at(0).mesh, "arm/meshes/p.stl");
   EXPECT_EQ(robot.robot.joints[*left - 1].origin.translation, Vec3(1, 2, 3));
+}
+
+// A document that is nothing but an include is of the version of what it includes.
+TEST_F(IncludedModels, HaveTheVersionOfTheirOwnDocument) {
+  file("arm.sdf",
+       "<sdf version=\"1.9\"><model name=\"arm\"><link name=\"l\"/><link name=\"m\"/>"
+       "<joint name=\"j\" type=\"revolute\"><pose>0 0 0 0 0 1</pose><parent>l</parent>"
+       "<child>m</child><axis><xyz>1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit>"
+       "</axis></joint></model></sdf>");
+  file("by.sdf", "<sdf version=\"1.4\"><include><uri>arm.sdf</uri></include></sdf>");
+  const auto axis_by = [&](const std::string& by) {
+    const SdfRobot robot = parse_sdf(
+        included(robot_with("<include><uri>" + by + "</uri><name>a</name></include>")), "r.sdf");
+    const auto moved = robot.robot.find_link("a::m");
+    EXPECT_TRUE(moved);
+    return moved ? robot.robot.joints[*moved - 1].axis : Vec3(Vec3::Zero());
+  };
+  EXPECT_EQ(axis_by("by.sdf"), axis_by("arm.sdf"));
+}
+
+// What is beside the model, and what it included, is nothing of the robot's.
+TEST_F(IncludedModels, LeaveTheRestOfTheirDocuments) {
+  file("part.sdf",
+       "<sdf version=\"1.5\"><model name=\"part\"><link name=\"l\"><collision name=\"c\"><geometry>"
+       "<mesh><uri>p.stl</uri></mesh></geometry></collision></link></model></sdf>");
+  std::string worlds;
+  for (int i = 0; i < 50; ++i)
+    worlds += "<world name=\"w\"><include><uri>part.sdf</uri></include></world>";
+  file("sub/arm.sdf",
+       "<sdf version=\"1.9\"><model name=\"arm\"><link name=\"l\"><collision name=\"c\"><geometry>"
+       "<mesh><uri>file://p.stl</uri></mesh></geometry></collision></link></model>" +
+           std::regex_replace(worlds, std::regex("part.sdf"), "../part.sdf") + "</sdf>");
+  std::string includes;
+  for (int i = 0; i < 20; ++i)
+    includes += "<include><uri>sub/arm.sdf</uri><name>a" + std::to_string(i) + "</name></include>";
+  const SdfRobot robot = parse_sdf(included(robot_with(includes)), "r.sdf");
+  EXPECT_EQ(robot.robot.links.size(), 22U);
+  for (const Link& link : robot.robot.links)
+    for (const Geometry& g : link.collision) EXPECT_EQ(g.mesh, "sub/p.stl");
 }
 
 TEST_F(IncludedModels, AreRefusedByPlace) {
