@@ -84,7 +84,8 @@ std::vector<UncheckedLinks> pairs_of(const std::vector<UncheckedLinks>& given,
     const auto place = [&](const std::string& name) {
       return std::ranges::find(links, name) - links.begin();
     };
-    const auto [first, second] = std::minmax(place(pair.a), place(pair.b));
+    const std::ptrdiff_t a = place(pair.a), b = place(pair.b);  // outlive what refers to them
+    const auto [first, second] = std::minmax(a, b);
     if (second == std::ssize(links) || first == second) continue;
     out.try_emplace({first, second},
                     UncheckedLinks{links[static_cast<std::size_t>(first)],
