@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include "mjcf_model.h"
@@ -24,6 +26,9 @@ constexpr std::array kPlace{"type",    "size",  "pos",      "quat",        "axis
 /// What a geom says of contacts.
 constexpr std::array kContact{"contype", "conaffinity", "condim", "priority", "friction",
                               "solmix",  "solref",      "solimp", "margin",   "gap"};
+
+/// Of these, what meets what.
+constexpr std::array kBits{"contype", "conaffinity"};
 
 template <class Action>
 void visit(XMLElement& element, const Action& action) {
@@ -130,6 +135,11 @@ class Editor {
     const bool drawn_besides = model_.visual[l] != model_.collision[l];
     const char* own = body->Attribute("name");
     const std::string name = l == 0 ? "world" : own != nullptr ? own : model_.robot.links[l].name;
+    // In the body, a frame's class is not its own.
+    const XMLElement& first = *originals.front();
+    const bool alike = first.Parent() == body && std::ranges::all_of(kBits, [&](const char* key) {
+                         return bits_of(first, key) == bits_of_all(l, key);
+                       });
     std::vector<std::string> fresh;
     for (const auto& [g, rpy] : shapes) {
       XMLElement* e = originals.front()->ShallowClone(&document_)->ToElement();
@@ -137,7 +147,10 @@ class Editor {
       fresh.push_back(geoms_.give(name + "_" + std::to_string(fresh.size())));
       e->SetAttribute("name", fresh.back().c_str());
       state_primitive(*e, g);
-      if (edit_.visual) let_collide(l, *e);
+      if (edit_.visual)
+        let_collide(l, *e);
+      else if (!alike)
+        collide_as_all(l, *e);
       if (model_.weighed_by_geoms[l]) e->SetAttribute("mass", "0");
       mine(body).InsertEndChild(e);
     }
@@ -200,6 +213,28 @@ class Editor {
     if (const auto group = like.find("group"); group != like.end())
       e.SetAttribute("group", group->second.c_str());
     e.DeleteAttribute("material");
+    collide_as_all(l, e);
+  }
+
+  /// With all that any of the link's shapes for collisions meets: its bits are those of all.
+  void collide_as_all(std::size_t l, XMLElement& e) const {
+    if (model_.collision[l].empty()) return;
+    for (const char* key : kBits) e.SetAttribute(key, static_cast<int>(bits_of_all(l, key)));
+  }
+
+  [[nodiscard]] unsigned bits_of_all(std::size_t l, const char* key) const {
+    unsigned out = 0;
+    for (const XMLElement* geom : model_.collision[l]) out |= bits_of(*geom, key);
+    return out;
+  }
+
+  /// What a geom says itself or by its class.
+  [[nodiscard]] unsigned bits_of(const XMLElement& geom, const char* key) const {
+    const std::map<std::string, std::string>& own = model_.geoms.at(&geom);
+    const auto found = own.find(key);
+    const auto stated = found == own.end() ? std::optional(1.0) : finite_number(found->second);
+    if (!stated || !(std::abs(*stated) < 0x1p31)) return 0;
+    return static_cast<unsigned>(static_cast<int>(*stated));
   }
 
   /// The mesh of a new file, with the scale and reference of the one that it stands for; once.

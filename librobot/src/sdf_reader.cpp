@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numbers>
 #include <set>
@@ -718,12 +719,39 @@ class NewCollisions {
     if (g.shape != Shape::Sphere) state(round, "length", digits(g.size.y()));
   }
 
+  /// Has new ones meet all that any of the old ones meets: their bits are those of all.
+  void collide_as_all(const Elements& old) const {
+    for (const char* tag : {"collide_bitmask", "category_bitmask"}) {
+      unsigned long bits = 0;
+      for (const XMLElement* e : old) bits |= bits_of(*e, tag);
+      for (XMLElement* e : fresh_)
+        if (bits_of(*e, tag) != bits)
+          child(child(child(*e, "surface"), "contact"), tag).SetText(std::to_string(bits).c_str());
+    }
+  }
+
   void put(const Elements& old) {
     for (XMLElement* e : old) link_.DeleteChild(e);
     for (XMLElement* e : fresh_) link_.InsertEndChild(e);
   }
 
  private:
+  static XMLElement& child(XMLElement& of, const char* tag) {
+    XMLElement* out = of.FirstChildElement(tag);
+    return out != nullptr ? *out : *of.InsertNewChildElement(tag);
+  }
+  /// What a <collision> says of its contacts; by default all bits.
+  static unsigned long bits_of(const XMLElement& collision, const char* tag) {
+    constexpr unsigned long kAll = 0xFFFF;
+    const XMLElement* e = collision.FirstChildElement("surface");
+    if (e != nullptr) e = e->FirstChildElement("contact");
+    if (e != nullptr) e = e->FirstChildElement(tag);
+    const std::string text = e == nullptr ? std::string() : trimmed(e->GetText());
+    if (text.empty()) return kAll;
+    const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    return std::strtoul(text.c_str(), nullptr, hexadecimal ? 16 : 10);
+  }
+
   tinyxml2::XMLDocument& document_;
   XMLElement& link_;
   std::vector<XMLElement*> fresh_;
@@ -765,6 +793,7 @@ std::string sdf_with_shapes(std::string_view text, const std::string& name, cons
     if (reader.minor() < kFirstWithCapsules) shapes = without_capsules(shapes);
     NewCollisions fresh(document, reader.link_element(l));
     for (const Primitive& one : shapes) fresh.add(*originals.front(), one, !edit.visual);
+    if (!edit.visual) fresh.collide_as_all(originals);
     fresh.put(reader.shapes(l, false));
   }
   tinyxml2::XMLPrinter printer;

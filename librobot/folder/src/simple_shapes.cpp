@@ -127,13 +127,17 @@ void add_shape(tinyxml2::XMLElement& link, const SimpleShape& shape) {
       add("cylinder", shape.center, shape.rpy);
 }
 
+/// A capsule of next to no length.
+bool is_short(const SimpleShape& shape) {
+  constexpr double kShort = 1e-9;
+  return shape.kind == Kind::Capsule && !(shape.size.y() > kShort * shape.size.x());
+}
+
 /// The shape, or for a capsule of next to no length a sphere: MJCF refuses lengths of 0.
 SimpleShape engine_shape(SimpleShape shape) {
-  constexpr double kShort = 1e-9;
-  const double radius = shape.size.x(), length = shape.size.y();
-  if (shape.kind != Kind::Capsule || length > kShort * radius) return shape;
+  if (!is_short(shape)) return shape;
   shape.kind = Kind::Sphere;
-  shape.size.x() = (radius + length) * (1 + 1e-15);
+  shape.size.x() = (shape.size.x() + shape.size.y()) * (1 + 1e-15);
   return shape;
 }
 
@@ -168,7 +172,10 @@ SimpleShapes simple_shapes(const std::vector<robot::LinkBody>& bodies) {
       continue;
     }
     out.shapes.push_back(body.points.size() == 1 ? sphere_of(body) : capsule_of(body));
-    out.beyond = std::max(out.beyond, out.shapes.back().size.x() - body.margin);
+    const SimpleShape& made = out.shapes.back();
+    // A short capsule's sphere reaches beyond it by its length.
+    const double more = is_short(made) ? made.size.y() * (1 + 1e-12) + 1e-15 * made.size.x() : 0;
+    out.beyond = std::max(out.beyond, made.size.x() + more - body.margin);
   }
   return out;
 }
