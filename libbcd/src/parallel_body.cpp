@@ -26,6 +26,9 @@ Vec3 octant(int k) {
   return {(k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0, (k & 4) != 0 ? 1.0 : -1.0};
 }
 
+/// Of length 1; not finite for no way at all.
+Vec3 direction_of(const Vec3& way) { return way / way.norm(); }
+
 }  // namespace
 
 /// A cube of the octree.
@@ -71,7 +74,7 @@ ParallelBody::SignedDistance ParallelBody::signed_distance(
 ParallelBody::Around ParallelBody::look_around(const Vec3& c) const {
   const geom::TriangleSearch::Nearest near = surface_.nearest(c);
   const auto& [p, q, r] = surface_.corners(near.triangle);
-  return {signed_distance(c, near), (geom::closest_point(c, p, q, r) - c).normalized()};
+  return {signed_distance(c, near), direction_of(geom::closest_point(c, p, q, r) - c)};
 }
 
 ParallelBody::Look ParallelBody::look_at(const Cell& cell, double h) const {
@@ -224,7 +227,7 @@ ParallelBody::Room ParallelBody::room_about(const Vec3& c) const {
   }
   const double radius = std::max(best * (1 - kRounding), known);
   const Vec3 along =
-      (nearest_of_cap(nearest->center, nearest->normal, nearest->height, h_, c) - c).normalized();
+      direction_of(nearest_of_cap(nearest->center, nearest->normal, nearest->height, h_, c) - c);
   if (!along.allFinite()) return {radius, std::nullopt};
   return {radius, c + radius * along};
 }
