@@ -77,7 +77,7 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
     throw Error(ErrorCode::InvalidArgument, "robot_bodies must be 1 at least");
   const std::string path = file_of(file, "file");
   const robot_folder::SphereFormat format = format_of(path);
-  const RobotValue value = robot_of(robot, "robot");
+  const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   r.set.body_kind = certify::SetRequest::BodyKind::Spheres;
   r.set.effort = effort_of(effort);
   if (!epsilon.is_none()) r.set.epsilon = epsilon_of(epsilon);
@@ -118,7 +118,7 @@ py::dict repair_spheres(const py::object& robot, const py::object& spheres, cons
   if (format_of(from) != format_of(to))
     throw Error(ErrorCode::InvalidArgument,
                 "spheres are written in the format that they have: name the file as " + from);
-  const RobotValue value = robot_of(robot, "robot");
+  const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   robot::require_links(*value.file, r.shapes.links);
   r.epsilon = epsilon_of(epsilon);
   r.effort = effort_of(effort);

@@ -104,6 +104,17 @@ pairs = [(p.get("geom1"), p.get("geom2")) for p in root.findall("contact/pair")]
 assert sorted(pairs) == sorted((g.get("name"), "floor") for g in own), pairs
 assert root.find("asset/mesh").get("file") == "../bar.stl"
 P
+# What collides with one of the old geoms does with the new ones, whatever class and frame they are in.
+sed 's/<geom name="second" class="col"/& contype="4" conaffinity="2"/; s/<default class="col"><geom/& contype="1" conaffinity="8"/
+  s/<frame pos="0.1 0 0" euler="0.3 0 0"><geom name="first" class="col"/<frame childclass="col" pos="0.1 0 0" euler="0.3 0 0"><geom name="first"/' arm.xml >bits.xml
+make bits.xml other/bits.xml capsules
+shows 0 '^verified: .* hold 3 of 3 links' "$V" robot bits.xml --bodies other/bits.xml
+python3 - <<'P' || fail 'bits of contacts'
+import xml.etree.ElementTree as tree
+base = tree.parse("other/bits.xml").getroot().find("worldbody/body")
+own = [g for g in base.findall("geom") if g.get("type") == "capsule"]
+assert own and all((g.get("contype"), g.get("conaffinity")) == ("5", "10") for g in own), [g.attrib for g in own]
+P
 # A class that would make another shape of it.
 sed 's/<default class="col">/&<!-- -->/; s/group="3"/fitscale="2" mesh="bar" group="3"/' arm.xml >fitted.xml
 expect 3 "link 'base'\|mesh of its class\|fits to" "$B" fitted.xml -o fitted-capsules.xml --bodies capsules --epsilon 0.4 --effort fast
@@ -116,6 +127,14 @@ make free.xml free-capsules.xml capsules
 shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.xml --bodies free-capsules.xml
 make free.xml free.yaml spheres
 shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.xml --spheres free.yaml
+sed 's/radius: .*/radius: 0.3/' free.yaml >small.yaml
+shows 1 '^refuted' "$V" robot free.xml --spheres small.yaml
+expect 0 '' "$B" free.xml -o mended-free.yaml --repair small.yaml --epsilon 0.5 --effort fast
+shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.xml --spheres mended-free.yaml
+
+sed 's/name="j" type="revolute"/name="j" type="floating"/' arm.urdf >free.urdf
+make free.urdf free-spheres.urdf spheres
+shows 0 '^verified: .* hold 3 of 3 links' "$V" robot free.urdf --spheres free-spheres.urdf --epsilon 0.4001
 
 # SDF that stays SDF; before 1.8 it has no capsules.
 for version in 1.6 1.9; do
@@ -133,6 +152,17 @@ X
   done
   grep -q '<mu>0.3</mu>' other/arm-$version-capsules.sdf || fail "$version: what a collision says of contacts is gone"
 done
+sed 's/<mu>0.3.*<\/surface>/<mu>0.3<\/mu><\/ode><\/friction><contact><collide_bitmask>0x05<\/collide_bitmask><\/contact><\/surface>/
+  s/<link name="base">.*/&<!-- -->/' arm.sdf | python3 -c "
+import sys
+text = sys.stdin.read()
+first = text.index('<collision'), text.index('</collision>') + len('</collision>')
+second = text[first[0]:first[1]].replace('name=\"c\"', 'name=\"d\"').replace('0x05', '10')
+print(text[:first[1]] + second + text[first[1]:])" >bits.sdf
+make bits.sdf other/bits.sdf capsules
+shows 0 '^verified: .* hold 2 of 2 links' "$V" robot bits.sdf --bodies other/bits.sdf
+[ "$(grep -c '<collide_bitmask>15</collide_bitmask>' other/bits.sdf)" -gt 0 ] || fail "bits: $(grep bitmask other/bits.sdf)"
+grep '<collide_bitmask>' other/bits.sdf | grep -vq '>15<' && fail "bits of one: $(grep bitmask other/bits.sdf)"
 grep -q '<capsule>' other/arm-1.9-capsules.sdf || fail 'SDF 1.9: no <capsule>'
 grep -q '<capsule>' other/arm-1.6-capsules.sdf && fail 'SDF 1.6 has no <capsule>'
 
@@ -186,6 +216,23 @@ for name in ("mixed.glb", "spheres.glb"):
         width = {"VEC3": 12, "SCALAR": 4}[accessor["type"]]
         assert view["byteLength"] == width * accessor["count"] and view["byteOffset"] + view["byteLength"] <= rest
 P
+# Nothing that the robot is of is written over, and where the file is refused there is no scene either.
+cat >whole.xml <<'X'
+<mujoco model="whole"><compiler angle="radian"/><asset><model name="arm" file="arm.xml"/></asset>
+<worldbody><body name="t"><geom size="0.1"/><attach model="arm" body="base" prefix="l_"/></body></worldbody></mujoco>
+X
+cp arm.xml kept.xml
+expect 2 'overwrite the input .*arm.xml' "$B" whole.xml -o arm.xml --bodies spheres --epsilon 0.4 --effort fast
+cmp arm.xml kept.xml || fail 'an attached model was written over'
+sed 's/bar.off/part.glb/g' arm.urdf >glb.urdf
+expect 0 '' "$BIN/bcd-decompose" bar.off -o part.glb --epsilon 0.4
+cp part.glb kept.glb
+expect 2 'overwrite the input .*part.glb' "$B" glb.urdf -o x.yaml --bodies spheres --epsilon 0.4 --preview part.glb
+cmp part.glb kept.glb || fail 'a mesh was written over'
+expect 3 'fits to\|of its class' "$B" fitted.xml -o x.xml --bodies capsules --epsilon 0.4 --effort fast --preview none.glb
+[ ! -e none.glb ] || fail 'a scene without its file'
+expect 0 '' "$B" whole.xml -o whole.yaml --bodies spheres --epsilon 0.4 --effort fast --depfile whole.d
+grep -q 'arm.xml' whole.d || fail "an attached model is no dependency: $(cat whole.d)"
 expect 2 'glb' "$B" arm.urdf -o x --preview x.glb
 expect 2 'polytopes' "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --preview x.html
 expect 2 'capsules, boxes or mixed' "$B" arm.urdf -o x.xml --epsilon 0.4

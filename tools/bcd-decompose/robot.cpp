@@ -353,20 +353,36 @@ double write_shapes(Run& run, const BodyFormat& format, const certify::Certified
                     const std::vector<robot_folder::UncheckedLinks>& unchecked) {
   const DecomposeOptions& o = run.o;
   const robot_folder::SimpleShapes shapes = robot_folder::simple_shapes(bodies.artefact());
-  if (!o.preview.empty())
-    io::write_file(o.preview, robot_folder::glb_of_shapes(run.robot.robot, shapes));
-  if (format.spheres) {
-    io::write_file(o.output,
-                   robot_folder::sphere_text(*format.spheres, run.robot, bodies,
-                                             run.request.parameters(), o.output, unchecked));
-    return 0;
-  }
-  const robot::ModelText made =
-      robot_folder::text_of_shapes(*format.shapes, run.robot, o.robot.shapes, bodies, shapes,
-                                   run.request.parameters(), o.output);
+  robot::ModelText made;
+  if (format.spheres)
+    made.text = robot_folder::sphere_text(*format.spheres, run.robot, bodies,
+                                          run.request.parameters(), o.output, unchecked);
+  else
+    made = robot_folder::text_of_shapes(*format.shapes, run.robot, o.robot.shapes, bodies, shapes,
+                                        run.request.parameters(), o.output);
+  // Nothing is written where either is refused.
+  const std::vector<char> scene = o.preview.empty()
+                                      ? std::vector<char>()
+                                      : robot_folder::glb_of_shapes(run.robot.robot, shapes);
   for (const std::string& note : made.notes) run.notes.add(o.output, note);
   io::write_file(o.output, made.text);
-  return shapes.beyond;
+  if (!o.preview.empty()) io::write_file(o.preview, scene);
+  return format.spheres ? 0 : shapes.beyond;
+}
+
+/// The files that a robot is read from besides its own, its meshes too.
+/// @throws Error{InvalidArgument} where one of them is to be written
+std::vector<std::string> parts_of(const DecomposeOptions& o, const robot::RobotFile& robot,
+                                  const robot::ShapeChoice& shapes) {
+  std::vector<std::string> out = robot::included_files(robot);
+  for (std::string& file : strings(robot::link_meshes(robot, shapes).files))
+    out.push_back(std::move(file));
+  require_apart({{"--output", o.output},
+                 {"--report", o.common.report},
+                 {"--preview", o.preview},
+                 {"--depfile", o.depfile}},
+                out);
+  return out;
 }
 
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
@@ -379,6 +395,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   run.request.partial = true;
   const std::vector<robot_folder::UncheckedLinks> unchecked =
       unchecked_links(o, run.robot.robot, run.notes);
+  const std::vector<std::string> parts = parts_of(o, run.robot, run.request.shapes);
   const certify::SetCache kept(certify::SetCache::default_folder());
   const certify::SetCache* cache = o.no_cache ? nullptr : &kept;
   if (o.robot_bodies > 0) {
@@ -437,6 +454,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     std::vector<std::string> inputs{o.input};
     if (!o.pairs.empty()) inputs.push_back(o.pairs);
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    inputs.insert(inputs.end(), parts.begin(), parts.end());
     for (std::string& file : strings(bodies.certificate().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);
   }
@@ -459,7 +477,7 @@ int repair(const DecomposeOptions& o) {
                 "--repair: spheres are written in the format that they have: end --output as " +
                     o.repair + " does (.yaml, .yml, .xrdf, .srdf or .urdf)");
   const robot::RobotFile robot = robot::read_robot(
-      o.input, robot::Motions::All, o.robot.xacro_arguments, o.robot.shapes.packages);
+      o.input, robot::Motions::None, o.robot.xacro_arguments, o.robot.shapes.packages);
   robot::require_links(robot, o.robot.shapes.links);
   const std::vector<char> text = io::read_file(o.repair);
   Progress progress(o.common.quiet);

@@ -558,7 +558,8 @@ bool is_sphere_file(const std::string& file) {
 
 SphereFile read_spheres(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
-  if (extension == ".urdf" || extension == ".xacro") return read_urdf(file, read_robot(file).robot);
+  if (extension == ".urdf" || extension == ".xacro")
+    return read_urdf(file, read_robot(file, Motions::None).robot);
   const std::vector<char> text = io::read_file(file);
   return parse_spheres(file, std::string(text.begin(), text.end()));
 }

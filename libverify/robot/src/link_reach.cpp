@@ -98,9 +98,11 @@ DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::Conve
     return shapes.triangles.empty() ? claim : verify_excess(set, shapes, epsilon, true);
   };
   out = of(round, link.inside);
-  if (out.answer == Answer::Verified || inside.bodies.empty()) return out;
-  DistanceClaim necessary = of(inside, link.round);
-  if (necessary.answer == Answer::Refuted) return necessary;
+  if (out.answer == Answer::Verified) return out;
+  if (!inside.bodies.empty()) {
+    DistanceClaim necessary = of(inside, link.round);
+    if (necessary.answer == Answer::Refuted) return necessary;
+  }
   out.answer = Answer::Undecided;
   if (out.reason.empty())
     out.reason = "bodies a little larger are farther away, and a little smaller ones are not";
