@@ -512,13 +512,15 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (!fixed.contains(robot.variables[i].name)) column[i] = next++;
   } else {
     const std::vector<std::size_t> times = time_columns(path, robot);
-    const std::string at = path.joints_at.empty() ? "" : path.joints_at + ": ";
+    const auto refuse = [&](const std::string& what) {
+      fail(name, path.joints_at.empty() ? what : path.joints_at + ": " + what);
+    };
     for (std::size_t j = 0; j < path.joints.size(); ++j) {
       const std::string& joint = path.joints[j];
       if (std::find(times.begin(), times.end(), j) != times.end()) continue;
       if (std::count(path.joints.begin(), path.joints.end(), joint) > 1)
-        fail(name, at + "joint '" + joint + "' is named twice");
-      if (!has_variable(robot, joint)) fail(name, at + none(joint));
+        refuse("joint '" + joint + "' is named twice");
+      if (!has_variable(robot, joint)) refuse(none(joint));
     }
     require_times_in_order(path, times, name);
     for (std::size_t i = 0; i < count; ++i) {
@@ -526,12 +528,11 @@ Path arrange(const NamedPath& path, const Robot& robot, const std::string& name,
       if (fixed.contains(joint)) continue;
       const auto it = std::find(path.joints.begin(), path.joints.end(), joint);
       if (it == path.joints.end())
-        fail(name, std::string(at)
-                       .append("no column for joint '")
-                       .append(joint)
-                       .append("'; where it does not move, give its value instead («joint=")
-                       .append(joint)
-                       .append("=0»)"));
+        refuse(std::string("no column for joint '")
+                   .append(joint)
+                   .append("'; where it does not move, give its value instead («joint=")
+                   .append(joint)
+                   .append("=0»)"));
       column[i] = static_cast<std::size_t>(it - path.joints.begin());
     }
   }
