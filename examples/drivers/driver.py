@@ -15,12 +15,12 @@ import time
 
 class Driver:
     def __init__(self, options):
-        self.options, self.random, self.q, self.held = options, random.Random(options.seed), {}, {}
+        self.options, self.random, self.q, self.held = options, random.Random(options.seed), {}, set()
         self.sensed = dict(text.rsplit("=", 1) for text in options.sense)
 
     def begin(self, message):
         self.q = {name: robot["q"] for name, robot in message["robots"].items()}
-        self.held = {name: o["held_by"] for name, o in message["objects"].items() if "held_by" in o}
+        self.held = {(name, o["held_by"]) for name, o in message["objects"].items() if "held_by" in o}
         return {"done": True, "q": self.q}
 
     def act(self, message):
@@ -36,14 +36,17 @@ class Driver:
         return {"done": True, "q": self.q[message["robot"]]}
 
     def take(self, message):
-        if message["object"] in self.held:
+        hold = message["object"], message["robot"]
+        if hold in self.held:
             return {"failed": message["object"] + " is held already"}
-        self.held[message["object"]] = message["robot"]
+        self.held.add(hold)
         return {"done": True}
 
     def release(self, message):
-        if self.held.pop(message["object"], None) != message["robot"]:
+        hold = message["object"], message["robot"]
+        if hold not in self.held:
             return {"failed": message["object"] + " is not held by it"}
+        self.held.remove(hold)
         return {"done": True}
 
     def sense(self, message):

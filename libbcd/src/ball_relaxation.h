@@ -18,10 +18,10 @@ namespace kaboum::bcd {
 /// distances, with weights. Points that stay free gain weight. Now and then the ball that is needed
 /// least is put to a free point.
 ///
-/// Where a ball goes is found in terms of the power |x − c|² − r² of points x, which is linear in c
-/// and |c|² − r². So the ball that leaves the least weighted squares of powers of some points, and
-/// has limits outside, is the solution of a convex problem of four variables. Limits are points
-/// that were found to end a ball's radius near the place.
+/// The power |x − c|² − r² of a point x is linear in c and |c|² − r². So the ball that leaves the
+/// least weighted squares of powers of some points, and has limits outside, is the solution of a
+/// convex problem of four variables. Limits are points that were found to end a ball's radius near
+/// the place.
 class BallRelaxation {
  public:
   /// The radius that a ball about a point has, and what it ends at; ≤ 0: there is none. [length]

@@ -459,7 +459,7 @@ class BallSearch {
     double high = body_->distance() / (1 - kBallSlack), low = 0;
     for (int turn = 0; turn < kTurns && low < (1 - kWorth) * high; ++turn) {
       show("bringing balls nearer", static_cast<double>(turn) / kTurns);
-      // Where the points known are held by balls that are smaller by that, so may all be.
+      // An attempt to hold the known points by balls whose radii are reduced.
       std::vector<Ball> balls = best;
       allow_work(kReducing * effort_.work);
       const double tried = std::max(high - shrunk(balls, high - low), 0.5 * (low + high));

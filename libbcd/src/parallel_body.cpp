@@ -26,7 +26,7 @@ Vec3 octant(int k) {
   return {(k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0, (k & 4) != 0 ? 1.0 : -1.0};
 }
 
-/// Of length 1; not finite for no way at all.
+/// The direction of a way, of length 1; not finite where the way has no length.
 Vec3 direction_of(const Vec3& way) { return way / way.norm(); }
 
 }  // namespace

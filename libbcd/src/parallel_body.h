@@ -99,10 +99,10 @@ class ParallelBody {
 
   [[nodiscard]] Look look_at(const Cell& cell, double h) const;
   [[nodiscard]] std::optional<Cap> cap_of(const Cell& cell, const Look& look, double h) const;
-  /// What is nearest to a point: its signed distance, and the direction to it, of length 1.
+  /// The signed distance of a point from the surface, and the direction to the nearest place.
   struct Around {
     SignedDistance signed_distance;
-    geom::Vec3 along;  ///< not finite for a point of the surface
+    geom::Vec3 along;  ///< of length 1; not finite for a point of the surface
   };
   [[nodiscard]] Around look_around(const geom::Vec3& c) const;
   [[nodiscard]] SignedDistance signed_distance(const geom::Vec3& p,

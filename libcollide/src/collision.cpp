@@ -256,8 +256,7 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
   const auto upper_of = [&](const Gap& gap, std::size_t i, std::size_t j) {
     return std::max((gap.upper + a.error() + b.error()) * kSumUp - margins(a, i, b, j), 0.0);
   };
-  // Of very many pairs, only those are kept that may be nearer than the one whose boxes are
-  // nearest.
+  // The bound by which very many pairs are pruned: what the pair with the nearest boxes has.
   constexpr std::size_t kMany = 1 << 16;
   double most = std::numeric_limits<double>::infinity();
   if (a.set().size() * b.set().size() > kMany) {

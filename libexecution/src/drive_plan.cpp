@@ -88,6 +88,13 @@ class Drive {
   }
 
  private:
+  /// What holds an object: a link of a robot.
+  struct Holder {
+    std::size_t robot;
+    std::uint32_t link;
+    bool operator==(const Holder&) const = default;
+  };
+
   [[nodiscard]] StatedState known_state(const plan::KnownState& known) const {
     auto state = state_of(world_, *model_, known);
     if (!state)
@@ -115,24 +122,36 @@ class Drive {
     if (request_.simulation.progress) request_.simulation.progress(action);
     ++report_.actions;
     driver_.act(action);
+    std::vector<MotionPart> parts;
     for (const plan::Plan::Call& call : n.calls)
-      for (const MotionPart& part :
+      for (MotionPart& part :
            parts_of(call.payload, world_, "node " + std::to_string(node) + ", " + action))
-        move(part, action);
+        parts.push_back(std::move(part));
+    for (std::size_t i = 0; i < parts.size(); ++i) move(parts, i, action);
   }
 
-  void move(const MotionPart& part, const std::string& action) {
+  /// The robot that holds an object in a later motion of the node, if it is another one.
+  static std::optional<Holder> next_holder(const std::vector<MotionPart>& parts, std::size_t i,
+                                           std::size_t object) {
+    for (std::size_t k = i + 1; k < parts.size(); ++k)
+      if (const auto link = parts[k].holds.find(object); link != parts[k].holds.end())
+        return parts[k].robot == parts[i].robot
+                   ? std::nullopt
+                   : std::optional(Holder{parts[k].robot, link->second});
+    return std::nullopt;
+  }
+
+  void move(const std::vector<MotionPart>& parts, std::size_t i, const std::string& action) {
+    const MotionPart& part = parts[i];
     if (part.path.empty() || part.path.front() != q_[part.robot])
       throw DriverStop(Kind::Uncertified, action + ": a path of " + world_.robots[part.robot].name +
                                               " does not begin where it is");
     for (auto held = held_.begin(); held != held_.end();) {
       const auto [object, by] = *held++;
-      if (by.robot != part.robot) continue;
-      const auto wanted = part.holds.find(object);
-      if (wanted == part.holds.end() || wanted->second != by.link) release(object);
+      if (by.robot == part.robot && !part.holds.contains(object))
+        hold(object, next_holder(parts, i, object));
     }
-    for (const auto& [object, link] : part.holds)
-      if (!held_.contains(object)) take(object, {part.robot, link});
+    for (const auto& [object, link] : part.holds) hold(object, Holder{part.robot, link});
     SimulationOptions options = request_.simulation;
     options.rate = rate_;
     driver_.move(part.robot, trajectory_of(part, world_, options));
@@ -142,30 +161,29 @@ class Drive {
   /// Takes and lets go what the state after a node says.
   void settle(const plan::KnownState& after) {
     const judge::CellState state = known_state(after).state;
-    for (std::size_t o = 0; o < state.objects.size(); ++o) {
-      const auto& hold = state.objects[o].hold;
-      const auto held = held_.find(o);
-      if (held != held_.end() &&
-          (!hold || hold->robot != held->second.robot || hold->link != held->second.link))
-        release(o);
-    }
     for (std::size_t o = 0; o < state.objects.size(); ++o)
-      if (const auto& hold = state.objects[o].hold; hold && !held_.contains(o))
-        take(o, {hold->robot, hold->link});
+      if (!state.objects[o].hold) hold(o, std::nullopt);
+    for (std::size_t o = 0; o < state.objects.size(); ++o)
+      if (const auto& now = state.objects[o].hold) hold(o, Holder{now->robot, now->link});
   }
 
-  struct Holder {
-    std::size_t robot;
-    std::uint32_t link;
-  };
-  void take(std::size_t object, Holder by) {
-    driver_.take(object, by.robot, by.link);
-    held_[object] = by;
-  }
-  void release(std::size_t object) {
+  /// Has an object held by this alone. What is handed over is taken before it is let go: it never
+  /// falls. From one link to another of the same robot there is no such order.
+  void hold(std::size_t object, std::optional<Holder> by) {
     const auto held = held_.find(object);
-    driver_.release(object, held->second.robot);
-    held_.erase(held);
+    const std::optional<Holder> before =
+        held != held_.end() ? std::optional(held->second) : std::nullopt;
+    if (before == by) return;
+    if (before && by && before->robot == by->robot)
+      throw DriverStop(Kind::Uncertified, world_.objects[object].name +
+                                              " goes from one link to another of " +
+                                              world_.robots[by->robot].name);
+    if (by) driver_.take(object, by->robot, by->link);
+    if (before) driver_.release(object, before->robot);
+    if (by)
+      held_[object] = *by;
+    else
+      held_.erase(object);
   }
 
   const world::World& world_;

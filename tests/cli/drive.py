@@ -49,7 +49,7 @@ def journal(folder, name="journal.jsonl"):
 def judge(folder, finished):
     """What the robot was told, by rules of this test: motions join, points are joined by straight lines in time, one message at a time,
     nothing after a stop; what is held is taken once and let go by who holds it."""
-    at, held, waiting, stopped, finish = {}, {}, False, False, False
+    at, held, waiting, stopped, finish = {}, set(), False, False, False
     for entry in journal(folder)[1:]:
         if "told" in entry:
             waiting, message, before = True, json.loads(entry["told"]), waiting
@@ -57,7 +57,7 @@ def judge(folder, finished):
                 fail(f"told out of turn: {entry}")
             if message["do"] == "begin":
                 at = {name: robot["q"] for name, robot in message["robots"].items()}
-                held = {name: o["held_by"] for name, o in message["objects"].items() if "held_by" in o}
+                held = {(name, o["held_by"]) for name, o in message["objects"].items() if "held_by" in o}
             elif message["do"] == "move":
                 points = message["trajectory"]["points"]
                 if points[0]["positions"] != at[message["robot"]]:
@@ -69,9 +69,9 @@ def judge(folder, finished):
                     if any(abs(v) > 1e-9 for v in p["velocities"]):
                         fail("a motion does not begin and end at rest")
             elif message["do"] == "take":
-                if message["object"] in held:
+                if (message["object"], message["robot"]) in held:
                     fail("taken twice")
-            elif message["do"] == "release" and held.get(message["object"]) != message["robot"]:
+            elif message["do"] == "release" and (message["object"], message["robot"]) not in held:
                 fail("let go by another one")
             finish = message["do"] == "finish"
         elif "heard" in entry:
@@ -83,9 +83,9 @@ def judge(folder, finished):
                 if message["do"] == "move":
                     at[message["robot"]] = message["trajectory"]["points"][-1]["positions"]
                 elif message["do"] == "take":
-                    held[message["object"]] = message["robot"]
+                    held.add((message["object"], message["robot"]))
                 elif message["do"] == "release":
-                    del held[message["object"]]
+                    held.remove((message["object"], message["robot"]))
         elif "stopped" in entry:
             stopped, waiting = True, False
     if finish != finished and not (finish and stopped):
@@ -113,6 +113,28 @@ def main():
         sensed = {json.loads(e["told"])["fact"] for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "sense"}
         if len(sensed) != 2:
             fail(f"sensed: {sensed}")
+
+        # What is handed over is taken before it is let go.
+        handed = folder / "handed"
+        made = subprocess.run([ROOT / "examples/scenarios/bimanual-assembly/run", "--hand-over", "--plan-only", "--out", handed], env=environment, capture_output=True,
+                              text=True)
+        if made.returncode != 0:
+            fail(f"no plan that hands over: {made.stderr[-500:]}")
+        (handed / "domain.kpl").write_text((ROOT / "examples/scenarios/bimanual-assembly/domain.kpl").read_text())
+        done, _ = run(handed, DRIVER)
+        if done.returncode != 0:
+            fail(f"handing over: exit code {done.returncode}: {done.stderr}")
+        judge(handed, True)
+        holders, passed = {}, 0
+        for message in (json.loads(e["told"]) for e in journal(handed) if "told" in e):
+            by = holders.setdefault(message.get("object"), set())
+            if message["do"] == "take":
+                passed += bool(by)
+                by.add(message["robot"])
+            elif message["do"] == "release":
+                by.remove(message["robot"])
+        if passed < 1:
+            fail("nothing is handed over from hand to hand")
 
         # A journal is repeated: the same messages; and not with another plan's rate, nor when it is damaged.
         (scenario / "kept.jsonl").write_text((scenario / "journal.jsonl").read_text())

@@ -28,7 +28,6 @@ struct PlanOptions {
   std::string plan, output = "-", output_format;
   bool tree = false, explain = false, no_cache = false;
   std::string outcomes = "all", trajectories;  ///< of run
-  bool stated_outcomes = false;
   std::string assume;  ///< of solve: a file
   std::string html;    ///< of show
   CommonOptions common;

@@ -92,12 +92,17 @@ Json driver_json(const execution::DriveReport& r) {
           {"wall_seconds_between", r.between}};
 }
 
+/// Whether a robot's program, or the journal of one, carries the plan out.
+bool is_driven(const PlanOptions& o) {
+  return !o.driver.command.empty() || !o.driver.replayed.empty();
+}
+
 void require_driver_meaning(const PlanOptions& o) {
-  const bool drives = !o.driver.command.empty() || !o.driver.replayed.empty();
+  const bool drives = is_driven(o);
   if (!o.driver.command.empty() && !o.driver.replayed.empty())
     throw Error(ErrorCode::InvalidArgument,
                 "--robot moves a robot, --replay-journal repeats a run without: give one of them");
-  if (drives && o.stated_outcomes)
+  if (drives && o.stated.contains("outcomes"))
     throw Error(ErrorCode::InvalidArgument, "--outcomes: the robot senses them");
   if (drives && !o.trajectories.empty())
     throw Error(ErrorCode::InvalidArgument,
@@ -126,7 +131,7 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
                 "{\"isSpillable(o1)\": true, ...}: as it says")
       ->capture_default_str()
       ->type_name("all|seed:N|FILE")
-      ->each([&o](const std::string&) { o.stated_outcomes = true; });
+      ->each([&o](const std::string&) { o.stated.insert("outcomes"); });
   add_request_options(*r, execution::run_options(), o.run, o.stated);
   add_request_options(*r, execution::driver_options(), o.driver, o.stated);
   r->add_option("--trajectories", o.trajectories,
@@ -138,7 +143,7 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
 
 int run_plan(const PlanOptions& o) {
   require_driver_meaning(o);
-  const bool drives = !o.driver.command.empty() || !o.driver.replayed.empty();
+  const bool drives = is_driven(o);
   execution::PlanRunRequest request = o.run;
   request.replan.run = outcomes_of(o.outcomes);
   request.replan.solve.algorithm = plan::Algorithm::Greedy;
