@@ -28,8 +28,8 @@ struct PlanOptions {
   std::string plan, output = "-", output_format;
   bool tree = false, explain = false, no_cache = false;
   std::string outcomes = "all", trajectories;  ///< of run
-  std::string assume;  ///< of solve: a file
-  std::string html;    ///< of show
+  std::string assume;                          ///< of solve: a file
+  std::string html;                            ///< of show
   CommonOptions common;
 };
 
