@@ -298,13 +298,15 @@ void require_same_times(const std::vector<double>& before, const std::vector<dou
                         const std::string& first, const std::string& file) {
   if (before.empty() || times.empty()) return;
   for (std::size_t i = 0; i < std::min(before.size(), times.size()); ++i)
-    if (before[i] != times[i])
-      throw Error(ErrorCode::InvalidInput,
-                  file + ": waypoint " + std::to_string(i + 1) + " is at " +
-                      std::to_string(times[i]) + " s, that of " + first + " at " +
-                      std::to_string(before[i]) +
-                      " s; robots that move at once go from waypoint to waypoint together: give "
-                      "both paths waypoints at the same times");
+    if (before[i] != times[i]) {
+      std::string what = file + ": waypoint " + std::to_string(i + 1) + " is at ";
+      what.append(std::to_string(times[i])).append(" s, that of ").append(first);
+      what.append(" at ").append(std::to_string(before[i]));
+      what.append(
+          " s; robots that move at once go from waypoint to waypoint together: give both paths "
+          "waypoints at the same times");
+      throw Error(ErrorCode::InvalidInput, what);
+    }
 }
 
 int check(const tools::CheckOptions& o) {
