@@ -105,7 +105,8 @@ RepairedBalls begin(const robot::RobotFile& robot, std::uint32_t index,
   double beyond = 0;
   const std::vector<Geometry> shapes =
       held_shapes(request.shapes.shapes_of(link), out.given, beyond);
-  const geom::Mesh mesh = robot::exact_shapes(shapes, robot, request.shapes.packages);
+  robot::MeshFiles files(robot.path, request.shapes.packages);
+  const geom::Mesh mesh = robot::exact_shapes(shapes, files);
   try {
     geom::Prepared prepared = geom::prepare(mesh, preparation);
     for (const std::string& note : prepared.report.notes)

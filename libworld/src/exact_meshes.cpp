@@ -25,11 +25,11 @@ std::vector<ExactMesh> exact_meshes(const World& world, const fs::path& scene,
     const nlohmann::json& stated = description.at("robots").at(r);
     const robot::RobotFile file =
         robot::read_robot((folder / stated.at("urdf").at("file").get<std::string>()).string());
+    robot::MeshFiles meshes(file.path, packages);
     const bool visual = stated.value("shapes", "collision") == "visual";
     for (std::size_t s = 0; s < world.robots[r].shapes.size(); ++s) {
       const robot::Link& link = file.robot.links.at(world.robots[r].shapes[s].link);
-      out.push_back(
-          {{r, s}, robot::exact_shapes(visual ? link.visual : link.collision, file, packages)});
+      out.push_back({{r, s}, robot::exact_shapes(visual ? link.visual : link.collision, meshes)});
     }
   }
   for (std::size_t o = 0; o < world.objects.size(); ++o) {

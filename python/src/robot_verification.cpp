@@ -27,8 +27,10 @@ class Files {
   /// @param skip  a mesh without a file is one with an error
   const verify::MeshFile& of(const robot::Geometry& mesh, const robot::RobotFile& robot,
                              bool skip) {
+    robot::MeshFiles& places =
+        places_.try_emplace(robot.path.string(), robot.path, packages_).first->second;
     if (skip) {
-      const robot::FoundMesh found = robot::look_for_mesh(mesh.mesh, robot.path, packages_);
+      const robot::FoundMesh found = places.look_for(mesh.mesh);
       if (found.files.empty()) {
         verify::MeshFile file{mesh.mesh, {}, {}};
         file.error = Error(ErrorCode::InvalidInput, found.what);
@@ -36,7 +38,7 @@ class Files {
             .first->second;
       }
     }
-    const std::string path = robot::find_only_mesh(mesh.mesh, robot.path, packages_).string();
+    const std::string path = places.only(mesh.mesh).string();
     const auto at = files_.find(path);
     if (at != files_.end()) return at->second;
     return files_.emplace(path, verify::read_mesh_file(path, exact_points_)).first->second;
@@ -45,6 +47,7 @@ class Files {
  private:
   std::vector<std::string> packages_;
   std::size_t exact_points_;
+  std::map<std::string, robot::MeshFiles> places_;  // by robot
   std::map<std::string, verify::MeshFile> files_;
 };
 

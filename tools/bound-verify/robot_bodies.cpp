@@ -330,13 +330,14 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   Answer all = Answer::Verified;
   std::size_t held = 0, within = 0, judged = 0, count = 0;
   Json links = Json::array();
+  robot::MeshFiles files(robot.path, o.how.shapes.packages);
   for (const robot::Link& link : robot.robot.links) {
     if (!o.how.shapes.has(link)) continue;
     std::vector<Geometry> flat, round;
     for (const Geometry& g : o.how.shapes.shapes_of(link))
       (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
           .push_back(g);
-    const geom::Mesh mesh = robot::exact_shapes(flat, robot, o.how.shapes.packages);
+    const geom::Mesh mesh = robot::exact_shapes(flat, files);
     if (mesh.triangles.empty() && round.empty()) continue;
     const auto index = bodies.robot.find_link(link.name);
     const robot::Link none{link.name, {}, {}};
@@ -346,8 +347,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     now.held = now.answer;
     if (epsilon) {
       now.distance = verify::verify_link_reach(
-          bounds.inside, bounds.outside,
-          verify::measured_link(o.how.shapes.shapes_of(link), robot, o.how.shapes.packages),
+          bounds.inside, bounds.outside, verify::measured_link(o.how.shapes.shapes_of(link), files),
           *epsilon);
       now.answer = verify::worse(now.answer, now.distance->answer);
       now.sentence += "; " + verify::sentence_of_reach(*now.distance, *epsilon);

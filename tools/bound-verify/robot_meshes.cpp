@@ -20,7 +20,7 @@ const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::Rob
   const auto [at, fresh] = named_.try_emplace({robot.path.string(), g.mesh});
   if (!fresh) return *at->second;
   if (skip) {
-    const robot::FoundMesh found = robot::look_for_mesh(g.mesh, robot.path, packages_);
+    const robot::FoundMesh found = files_of(robot).look_for(g.mesh);
     if (found.files.empty()) {
       // No file has this name, which holds its reader's place.
       verify::MeshFile file{g.mesh, {}, {}};
@@ -29,10 +29,13 @@ const verify::MeshFile& RobotMeshes::file_of(const Geometry& g, const robot::Rob
       return *(at->second = &files_.emplace(key, std::move(file)).first->second);
     }
   }
-  const verify::MeshFile& file =
-      read(robot::find_only_mesh(g.mesh, robot.path, packages_).string());
+  const verify::MeshFile& file = read(files_of(robot).only(g.mesh).string());
   at->second = &file;
   return file;
+}
+
+robot::MeshFiles& RobotMeshes::files_of(const robot::RobotFile& robot) {
+  return places_.try_emplace(robot.path.string(), robot.path, packages_).first->second;
 }
 
 const verify::MeshFile& RobotMeshes::read(const std::string& path) {
@@ -42,13 +45,13 @@ const verify::MeshFile& RobotMeshes::read(const std::string& path) {
 }
 
 std::string RobotMeshes::record_of_other_kind(const robot::RobotFile& original, bool visual) const {
+  robot::MeshFiles meshes(original.path, packages_);
   const auto hashes_of = [&](bool drawn) {
     std::set<std::string> out;
     for (const robot::Link& link : original.robot.links)
       for (const Geometry& g : drawn ? link.visual : link.collision) try {
           if (g.shape == Geometry::Shape::Mesh)
-            out.insert(
-                io::sha256(io::read_file(robot::resolve_mesh(g.mesh, original.path, packages_))));
+            out.insert(io::sha256(io::read_file(meshes.first(g.mesh))));
         } catch (const Error&) {  // NOLINT(bugprone-empty-catch): a note is not worth an error
         }
     return out;

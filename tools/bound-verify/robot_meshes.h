@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/robot_file.h>
 #include <kaboum/verify/robot_verdict.h>
 
@@ -30,9 +31,11 @@ class RobotMeshes {
 
  private:
   const verify::MeshFile& read(const std::string& path);
+  robot::MeshFiles& files_of(const robot::RobotFile& robot);
 
   std::vector<std::string> packages_;
   std::size_t exact_points_;
+  std::map<std::string, robot::MeshFiles> places_;  // by robot
   std::map<std::string, verify::MeshFile> files_;
   std::map<std::pair<std::string, std::string>, const verify::MeshFile*>
       named_;  // robot, reference

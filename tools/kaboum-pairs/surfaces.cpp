@@ -146,13 +146,14 @@ std::vector<pairs::LinkSurface> surfaces_of(const robot::RobotFile& file,
                                             std::vector<std::string>& notes) {
   robot::require_meshes(file, choice);
   std::vector<pairs::LinkSurface> out;
+  robot::MeshFiles files(file.path, choice.packages);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l) {
     const robot::Link& link = file.robot.links[l];
     if (!choice.has(link)) continue;
     Made made;
     for (const Geometry& shape : choice.shapes_of(link)) {
       if (shape.shape == Geometry::Shape::Mesh) {
-        const Mesh exact = robot::exact_shapes({shape}, file, choice.packages);
+        const Mesh exact = robot::exact_shapes({shape}, files);
         geom::require_valid(exact);
         add_mesh(exact, made);
       } else {

@@ -190,14 +190,12 @@ void append_placed(geom::Mesh& to, const geom::Mesh& mesh, const Geometry& place
   }
 }
 
-geom::Mesh drawn_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
-                        std::uint32_t link) {
+geom::Mesh drawn_shapes(const std::vector<Geometry>& shapes, robot::MeshFiles& files) {
   geom::Mesh out;
-  for (const Geometry& g : choice.shapes_of(robot.robot.links[link])) {
+  for (const Geometry& g : shapes) {
     if (g.shape == Geometry::Shape::Mesh) {
       try {
-        append_placed(
-            out, io::read_mesh(robot::resolve_mesh(g.mesh, robot.path, choice.packages)).mesh, g);
+        append_placed(out, io::read_mesh(files.first(g.mesh)).mesh, g);
       } catch (
           const Error&) {  // NOLINT(bugprone-empty-catch): one that cannot be read is not drawn
       }
@@ -227,6 +225,7 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::C
                                  const std::vector<double>& seconds) {
   const certify::BodiesCertificate& bodies = made.bodies.certificate();
   std::vector<PageLink> links;
+  robot::MeshFiles files(robot.path, bodies.choice.packages);
   for (const certify::LinkVerdict& link : verdicts(made)) {
     PageLink& out = links.emplace_back();
     out.name = robot.robot.links[link.link].name;
@@ -249,7 +248,7 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::C
         out.seconds = out.seconds.value_or(0) + seconds[*shape.mesh];
     }
     out.epsilon = epsilon_of(out.name, request.epsilons, request.set.wanted_epsilon());
-    out.original = drawn_shapes(robot, bodies.choice, link.link);
+    out.original = drawn_shapes(bodies.choice.shapes_of(robot.robot.links[link.link]), files);
   }
   return links;
 }
@@ -271,6 +270,7 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::L
                                  const certify::LinkEnclosuresRequest& request) {
   const std::vector<certify::LinkVerdict> links = verdicts(made);
   std::vector<PageLink> out;
+  robot::MeshFiles files(robot.path, request.shapes.packages);
   for (const std::vector<robot::LinkShape>& shapes : made.shapes_by_link()) {
     const std::uint32_t at = shapes.front().link;
     const robot::Link& link = robot.robot.links[at];
@@ -292,7 +292,7 @@ std::vector<PageLink> page_links(const robot::RobotFile& robot, const certify::L
       append_placed(row.result, mesh.made.enclosure.artefact(), place);
     }
     row.epsilon = epsilon_of(link.name, request.epsilons, request.mesh.mesh.epsilon);
-    row.original = drawn_shapes(robot, request.shapes, at);
+    row.original = drawn_shapes(request.shapes.shapes_of(link), files);
   }
   return out;
 }

@@ -151,11 +151,12 @@ std::string page_of_robot(const RobotWords& words, const robot::RobotFile& robot
   std::vector<std::string> points;  // links that have nothing else
   std::map<std::uint32_t, const certify::CertifiedLink*> sets;
   double reach = 0;
+  robot::MeshFiles files(robot.path, bodies.choice.packages);
   for (const certify::CertifiedLink& made_link : made.links) {
     const std::uint32_t index = made_link.certificate().link;
     sets[index] = &made_link;
-    const geom::Mesh exact = robot::exact_shapes(bodies.choice.shapes_of(robot.robot.links[index]),
-                                                 robot, bodies.choice.packages);
+    const geom::Mesh exact =
+        robot::exact_shapes(bodies.choice.shapes_of(robot.robot.links[index]), files);
     if (exact.triangles.empty()) {
       points.push_back(robot.robot.links[index].name);
       continue;

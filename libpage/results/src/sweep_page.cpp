@@ -58,13 +58,13 @@ std::string page_of_sweep(const SweepWords& words, const robot::RobotFile& robot
   Layer result{"swept bodies", Layer::View::Transparent};
   result.bodies = true;
   std::map<std::uint32_t, SweptLink> links;
+  robot::MeshFiles files(robot.path, choice.packages);
   std::vector<DistanceOf> distances;
   for (const std::size_t source : c.sources) {
     const std::uint32_t index = bodies.artefact()[source].link;
     auto found = links.find(index);
     if (found == links.end()) {
-      geom::Mesh exact =
-          robot::exact_shapes(choice.shapes_of(robot.robot.links[index]), robot, choice.packages);
+      geom::Mesh exact = robot::exact_shapes(choice.shapes_of(robot.robot.links[index]), files);
       found = links.try_emplace(index, robot.robot, path, index, exact).first;
       input.shapes.push_back({std::move(exact), {}, index});
     }

@@ -23,9 +23,13 @@ class Keeper {
  public:
   Keeper(const robot::RobotFile& robot, const robot::ShapeChoice& choice, fs::path folder,
          KeptNames kept)
-      : robot_(robot), choice_(choice), folder_(std::move(folder)), kept_(kept) {}
+      : robot_(robot),
+        choice_(choice),
+        files_(robot.path, choice.packages),
+        folder_(std::move(folder)),
+        kept_(kept) {}
 
-  void rename(std::vector<Geometry>& shapes) const {
+  void rename(std::vector<Geometry>& shapes) {
     for (Geometry& g : shapes) {
       if (g.shape != Geometry::Shape::Mesh) continue;
       g.mesh = kept_ == KeptNames::Files
@@ -35,15 +39,16 @@ class Keeper {
   }
 
  private:
-  [[nodiscard]] fs::path file_of(const std::string& reference) const {
-    if (!choice_.skip_missing) return robot::resolve_mesh(reference, robot_.path, choice_.packages);
-    const robot::FoundMesh found = robot::look_for_mesh(reference, robot_.path, choice_.packages);
+  [[nodiscard]] fs::path file_of(const std::string& reference) {
+    if (!choice_.skip_missing) return files_.first(reference);
+    const robot::FoundMesh found = files_.look_for(reference);
     return found.files.empty() ? fs::absolute(robot_.path).parent_path() / reference
                                : found.files.front();
   }
 
   const robot::RobotFile& robot_;
   const robot::ShapeChoice& choice_;
+  robot::MeshFiles files_;
   fs::path folder_;
   KeptNames kept_;
 };
@@ -94,9 +99,9 @@ NewShapes new_shapes(
   const auto is_left_out = [](const NewShape& shape) {
     return shape.meshes && shape.meshes->empty();
   };
+  robot::MeshFiles files(robot.path, choice.packages);
   const auto is_there = [&](const Geometry& g) {
-    return g.shape != Geometry::Shape::Mesh ||
-           !robot::look_for_mesh(g.mesh, robot.path, choice.packages).files.empty();
+    return g.shape != Geometry::Shape::Mesh || !files.look_for(g.mesh).files.empty();
   };
   if (choice.visual && choice.skip_missing)
     for (std::size_t l = 0; l < out.size(); ++l)
@@ -110,7 +115,7 @@ robot::Model new_model(const robot::RobotFile& robot, const robot::ShapeChoice& 
                        const NewShapes& shapes, const fs::path& folder, const std::string& prefix,
                        KeptNames kept) {
   robot::Model out{robot.robot, robot::dynamics_of(robot)};
-  const Keeper keeper(robot, choice, folder, kept);
+  Keeper keeper(robot, choice, folder, kept);
   for (std::size_t l = 0; l < shapes.size(); ++l) {
     robot::Link& link = out.robot.links[l];
     if (shapes[l].empty()) {

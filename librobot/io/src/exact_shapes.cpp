@@ -28,12 +28,11 @@ geom::Mesh placed_mesh(const geom::Mesh& file, const Geometry& shape) {
   return out;
 }
 
-geom::Mesh exact_shapes(const std::vector<Geometry>& shapes, const RobotFile& robot,
-                        const std::vector<std::string>& packages) {
+geom::Mesh exact_shapes(const std::vector<Geometry>& shapes, MeshFiles& files) {
   geom::Mesh all;
   for (const Geometry& g : shapes) {
     if (g.shape == Geometry::Shape::Mesh) {
-      append(all, placed_mesh(io::read_mesh(resolve_mesh(g.mesh, robot.path, packages)).mesh, g));
+      append(all, placed_mesh(io::read_mesh(files.first(g.mesh)).mesh, g));
     } else if (!is_point(g)) {
       append(all, *geom::convex_hull(bounding_points(g)));
     }

@@ -16,17 +16,16 @@ namespace fs = std::filesystem;
 class MeshPlaces {
  public:
   MeshPlaces(const RobotFile& robot, const std::vector<std::string>& packages)
-      : robot_(robot), packages_(packages) {}
+      : files_(robot.path, packages) {}
 
   const FoundMesh& of(const std::string& reference) {
     const auto [at, fresh] = found_.try_emplace(reference);
-    if (fresh) at->second = look_for_mesh(reference, robot_.path, packages_);
+    if (fresh) at->second = files_.look_for(reference);
     return at->second;
   }
 
  private:
-  const RobotFile& robot_;
-  const std::vector<std::string>& packages_;
+  MeshFiles files_;
   std::map<std::string, FoundMesh> found_;
 };
 

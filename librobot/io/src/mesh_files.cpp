@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "is_file.h"
 
@@ -197,6 +198,26 @@ fs::path model_in(const fs::path& folder) {
 
 }  // namespace
 
+class PackageFolders {
+ public:
+  /// @param folder  of the robot
+  PackageFolders(fs::path folder, std::vector<std::string> packages)
+      : folder_(std::move(folder)), packages_(std::move(packages)) {}
+
+  [[nodiscard]] const fs::path& folder() const { return folder_; }
+
+  const PackagePlaces& of(const std::string& name) {
+    const auto at = found_.find(name);
+    return at != found_.end() ? at->second
+                              : found_.try_emplace(name, name, folder_, packages_).first->second;
+  }
+
+ private:
+  fs::path folder_;
+  std::vector<std::string> packages_;
+  std::map<std::string, PackagePlaces> found_;
+};
+
 fs::path find_package(const std::string& name, const fs::path& robot,
                       const std::vector<std::string>& packages) {
   const PackagePlaces looked(name, folder_of(robot), packages);
@@ -241,8 +262,14 @@ fs::path find_model(const std::string& uri, const fs::path& from,
   return {};
 }
 
-FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
-                        const std::vector<std::string>& packages) {
+MeshFiles::MeshFiles(const fs::path& robot, const std::vector<std::string>& packages)
+    : robot_(robot), folders_(std::make_unique<PackageFolders>(folder_of(robot), packages)) {}
+
+MeshFiles::~MeshFiles() = default;
+MeshFiles::MeshFiles(MeshFiles&& other) noexcept = default;
+MeshFiles& MeshFiles::operator=(MeshFiles&& other) noexcept = default;
+
+FoundMesh MeshFiles::look_for(const std::string& reference) {
   const auto fail = [&](const std::string& why, const std::string& what = {}) {
     return FoundMesh{{},
                      why + (reference.find("%20") != std::string::npos
@@ -251,7 +278,6 @@ FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
                                 : ""),
                      what.empty() ? why : what};
   };
-  const fs::path folder = folder_of(robot);
   const std::string file = "file://", model = "model://";
   const std::string package = reference.starts_with(model) ? model : "package://";
   if (!reference.starts_with(package)) {
@@ -259,7 +285,7 @@ FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
       return fail("only package://, model:// and file:// are known");
     fs::path path =
         reference.starts_with(file) ? fs::path(reference.substr(file.size())) : fs::path(reference);
-    if (path.is_relative()) path = folder / path;
+    if (path.is_relative()) path = folders_->folder() / path;
     if (is_file(path)) return {{path}, {}, {}};
     return fail("there is no file " + path.string());
   }
@@ -271,7 +297,7 @@ FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
       uri.substr(std::min(uri.find_first_not_of('/', name.size()), uri.size()));
   if (name.empty() || rest.empty()) return fail("it is not of the form package://NAME/FILE");
 
-  const PackagePlaces looked(name, folder, packages);
+  const PackagePlaces& looked = folders_->of(name);
   std::vector<fs::path> found;
   for (const fs::path& place : looked.found())
     if (is_file(place / rest)) found.push_back(place / rest);
@@ -281,28 +307,23 @@ FoundMesh look_for_mesh(const std::string& reference, const fs::path& robot,
   return fail(looked.why_none(), "there is no package or folder " + name);
 }
 
-std::vector<fs::path> find_mesh(const std::string& reference, const fs::path& robot,
-                                const std::vector<std::string>& packages) {
-  FoundMesh found = look_for_mesh(reference, robot, packages);
+std::vector<fs::path> MeshFiles::all(const std::string& reference) {
+  FoundMesh found = look_for(reference);
   if (found.files.empty())
     throw Error(ErrorCode::InvalidInput,
-                robot.string() + ": no mesh file for '" + reference + "': " + found.why);
+                robot_.string() + ": no mesh file for '" + reference + "': " + found.why);
   return std::move(found.files);
 }
 
-fs::path resolve_mesh(const std::string& reference, const fs::path& robot,
-                      const std::vector<std::string>& packages) {
-  return find_mesh(reference, robot, packages).front();
-}
+fs::path MeshFiles::first(const std::string& reference) { return all(reference).front(); }
 
-fs::path find_only_mesh(const std::string& reference, const fs::path& robot,
-                        const std::vector<std::string>& packages) {
-  const std::vector<fs::path> places = find_mesh(reference, robot, packages);
+fs::path MeshFiles::only(const std::string& reference) {
+  const std::vector<fs::path> places = all(reference);
   const std::string hash = places.size() > 1 ? io::sha256(io::read_file(places.front())) : "";
   for (auto other = places.begin() + 1; other != places.end(); ++other)
     if (io::sha256(io::read_file(*other)) != hash)
       throw Error(ErrorCode::InvalidInput,
-                  robot.string() + ": '" + reference + "' is found twice, as " +
+                  robot_.string() + ": '" + reference + "' is found twice, as " +
                       places.front().string() + " and, with other contents, as " + other->string() +
                       "; which one it stands for is not known: name it without package://");
   return places.front();

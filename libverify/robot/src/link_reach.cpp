@@ -53,8 +53,7 @@ std::vector<Vec3> points_within(const Geometry& g) {
 
 }  // namespace
 
-MeasuredLink measured_link(const std::vector<Geometry>& shapes, const robot::RobotFile& robot,
-                           const std::vector<std::string>& packages) {
+MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles& files) {
   MeasuredLink out;
   const auto take = [&](const geom::Mesh& inside, const geom::Mesh& round) {
     append(out.inside, inside);
@@ -63,7 +62,7 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, const robot::Rob
   for (const Geometry& g : shapes) {
     if (robot::is_point(g)) continue;
     if (g.shape == Geometry::Shape::Mesh) {
-      const io::ReadResult read = io::read_mesh(robot::resolve_mesh(g.mesh, robot.path, packages));
+      const io::ReadResult read = io::read_mesh(files.first(g.mesh));
       const Subject subject =
           prepared_subject(read.mesh, {.holes = geom::Holes::Fill,
                                        .quads = read.bent_quads,

@@ -44,7 +44,7 @@ geom::Mesh read_link_mesh(const std::string& path, const MotionShapeOptions& o, 
 
 /// The shapes of one link.
 void add_link(const robot::RobotFile& file, std::uint32_t index, const MotionShapeOptions& o,
-              MotionShapes& out) {
+              robot::MeshFiles& files, MotionShapes& out) {
   const robot::Link& link = file.robot.links[index];
   ++out.asked;
   std::size_t count = 0;
@@ -53,7 +53,7 @@ void add_link(const robot::RobotFile& file, std::uint32_t index, const MotionSha
     geom::Mesh mesh;
     ExactPoints exact;
     if (g.shape == Geometry::Shape::Mesh) {
-      out.files.push_back(robot::find_only_mesh(g.mesh, file.path, o.choice.packages).string());
+      out.files.push_back(files.only(g.mesh).string());
       mesh = read_link_mesh(out.files.back(), o, out, exact);
     }
     const std::string name = link.name + "/" + std::to_string(count++);
@@ -81,11 +81,12 @@ geom::ConvexSet read_swept_urdf(const std::string& path, const std::vector<std::
   if (file.robot.links.size() != 1) refuse("it has several links");
   bytes = io::read_file(path);
   geom::ConvexSet set;
+  robot::MeshFiles files(path, packages);
   for (const Geometry& g : file.robot.links[0].collision) {
     if (g.shape != Geometry::Shape::Mesh) refuse("it has a " + describe(g));
     if (!g.origin.linear.isIdentity(0) || !g.origin.translation.isZero(0) || !g.size.isOnes(0))
       refuse("a mesh is moved or scaled");
-    const std::filesystem::path mesh = robot::find_only_mesh(g.mesh, file.path, packages);
+    const std::filesystem::path mesh = files.only(g.mesh);
     std::vector<char> more;
     set.bodies.push_back({mesh.filename().string(), io::read_mesh(mesh, {}, &more).mesh});
     bytes.insert(bytes.end(), more.begin(), more.end());
@@ -107,8 +108,9 @@ MotionShapes read_motion_shapes(const robot::RobotFile& file, const MotionShapeO
     out.notes.push_back(note);
   for (const std::string& note : robot::notes_on(out.bare, visual, ": nothing of this is judged"))
     out.notes.push_back(file.path.string() + ": " + note);
+  robot::MeshFiles files(file.path, o.choice.packages);
   for (std::uint32_t l = 0; l < file.robot.links.size(); ++l)
-    if (o.choice.has(file.robot.links[l])) add_link(file, l, o, out);
+    if (o.choice.has(file.robot.links[l])) add_link(file, l, o, files, out);
   if (out.shapes.empty())
     throw Error(ErrorCode::InvalidInput, file.path.string() + ": no link has a shape" +
                                              (visual ? "" : "; try «geometry=visual»"));

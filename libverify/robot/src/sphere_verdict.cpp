@@ -215,11 +215,9 @@ void judge(const std::vector<Geometry>& round, LinkSpheresVerdict& out) {
 }
 
 /// The distance of a link's spheres from its shapes.
-void judge_distance(const std::vector<Geometry>& shapes, const robot::RobotFile& robot,
-                    const std::vector<std::string>& packages, double epsilon,
+void judge_distance(const std::vector<Geometry>& shapes, robot::MeshFiles& files, double epsilon,
                     LinkSpheresVerdict& out) {
-  out.distance =
-      verify_link_reach(out.balls, out.balls, measured_link(shapes, robot, packages), epsilon);
+  out.distance = verify_link_reach(out.balls, out.balls, measured_link(shapes, files), epsilon);
   out.answer = worse(out.answer, out.distance->answer);
   out.sentence += "; " + sentence_of_reach(*out.distance, epsilon);
 }
@@ -286,6 +284,7 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
   require_spheres_of(robot, spheres, file);
   SpheresVerdict out;
   out.epsilon = epsilon;
+  robot::MeshFiles files(robot.path, shapes.packages);
   for (std::uint32_t index = 0; index < robot.robot.links.size(); ++index) {
     const robot::Link& link = robot.robot.links[index];
     if (!shapes.has(link)) continue;
@@ -296,12 +295,12 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     LinkSpheresVerdict one;
     one.link = link.name;
     one.index = index;
-    one.mesh = robot::exact_shapes(flat, robot, shapes.packages);
+    one.mesh = robot::exact_shapes(flat, files);
     if (one.mesh.triangles.empty() && round.empty()) continue;
     for (const robot::LinkSpheres& given : spheres.links)
       if (given.link == link.name) one.balls = given.balls;
     judge(round, one);
-    if (epsilon) judge_distance(shapes.shapes_of(link), robot, shapes.packages, *epsilon, one);
+    if (epsilon) judge_distance(shapes.shapes_of(link), files, *epsilon, one);
     out.links.push_back(std::move(one));
     if (judged) judged(out.links.back());
   }

@@ -8,6 +8,7 @@
 #include <kaboum/geom/mesh.h>
 #include <kaboum/page/preview.h>
 #include <kaboum/robot/link_meshes.h>
+#include <kaboum/robot/mesh_files.h>
 
 #include <optional>
 #include <string>
@@ -61,10 +62,9 @@ std::string epsilon_of(const std::string& link, const certify::LinkEpsilons& own
 /// One HTML file, pictures included.
 std::string to_html(const RobotPage& page);
 
-/// The shapes of a link that are meant, as triangles in its frame; for pictures only.
-/// Meshes that cannot be read are left out.
-geom::Mesh drawn_shapes(const robot::RobotFile& robot, const robot::ShapeChoice& choice,
-                        std::uint32_t link);
+/// Shapes of a link as triangles in its frame, for pictures only. Meshes that cannot be read are
+/// left out.
+geom::Mesh drawn_shapes(const std::vector<robot::Geometry>& shapes, robot::MeshFiles& files);
 
 /// Appends a mesh, moved; mirrored ones are turned.
 void append_placed(geom::Mesh& to, const geom::Mesh& mesh, const robot::Geometry& place);

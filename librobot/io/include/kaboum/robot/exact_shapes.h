@@ -1,9 +1,9 @@
 #pragma once
 
 #include <kaboum/geom/mesh.h>
-#include <kaboum/robot/robot_file.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/robot.h>
 
-#include <string>
 #include <vector>
 
 namespace kaboum::robot {
@@ -15,9 +15,8 @@ geom::Mesh placed_mesh(const geom::Mesh& file, const Geometry& shape);
 /// Shapes of a link as one mesh in its frame: the triangles of mesh files as they are, turned where
 /// the scale mirrors them; boxes; of cylinders and spheres the polytopes that enclose them
 /// (bounding_points). Nothing of points.
-/// @param packages  folders that package:// URIs are looked up in.
+/// @param files  of the robot
 /// @throws Error{InvalidInput} where a file cannot be read.
-geom::Mesh exact_shapes(const std::vector<Geometry>& shapes, const RobotFile& robot,
-                        const std::vector<std::string>& packages);
+geom::Mesh exact_shapes(const std::vector<Geometry>& shapes, MeshFiles& files);
 
 }  // namespace kaboum::robot

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/robot/robot_file.h>
+#include <kaboum/robot/mesh_files.h>
+#include <kaboum/robot/robot.h>
 #include <kaboum/verify/distance.h>
 
 #include <string>
@@ -19,10 +20,9 @@ struct MeasuredLink {
   geom::Mesh inside, round;
 };
 
-/// @param packages  folders that package:// URIs are looked up in
+/// @param files  of the robot
 /// @throws Error{InvalidInput} where a mesh cannot be read
-MeasuredLink measured_link(const std::vector<robot::Geometry>& shapes,
-                           const robot::RobotFile& robot, const std::vector<std::string>& packages);
+MeasuredLink measured_link(const std::vector<robot::Geometry>& shapes, robot::MeshFiles& files);
 
 /// Decides whether no point of a link's bodies is farther than `epsilon` from its shapes.
 /// @param inside, round  bodies within those that are meant, and round them; may be the same
