@@ -239,6 +239,53 @@ TEST(Urdf, ShapesOfSizeZeroAreKept) {
   }
 }
 
+TEST(Urdf, WhatNobodyReadsIsNoted) {
+  // Of shapes in one <geometry> engines take the first; what collides is not to be lost so.
+  const std::string two = "<geometry><sphere radius='1'/>\n<box size='1 2 3'/></geometry>";
+  const Robot drawn = parse(robot_of("<link name='a'><visual>" + two + "</visual></link>"));
+  ASSERT_EQ(drawn.links[0].visual.size(), 1U);
+  EXPECT_EQ(drawn.links[0].visual[0].shape, Geometry::Shape::Sphere);
+  ASSERT_EQ(drawn.links[0].unread.size(), 1U);
+  EXPECT_TRUE(drawn.links[0].unread[0].visual);
+  ASSERT_EQ(drawn.notes.size(), 1U);
+  EXPECT_NE(drawn.notes[0].find(":2: link 'a': a second shape"), std::string::npos)
+      << drawn.notes[0];
+  EXPECT_NE(message(robot_of("<link name='a'><collision>" + two + "</collision></link>"))
+                .find(":2: link 'a': a second shape in one <geometry>: give it a <collision>"),
+            std::string::npos);
+
+  // Drake's mark of a convex mesh is no shape, wherever it is.
+  for (const std::string mesh : {"<mesh filename='m.obj'/><drake:declare_convex/>",
+                                 "<mesh filename='m.obj'><drake:declare_convex/></mesh>"}) {
+    const Robot marked = parse(
+        robot_of("<link name='a'><collision><geometry>" + mesh + "</geometry></collision></link>"));
+    EXPECT_EQ(marked.links[0].collision.size(), 1U);
+    EXPECT_TRUE(marked.notes.empty());
+  }
+  EXPECT_NE(message(robot_of("<link name='a'><collision><geometry><mesh filename='m.obj'/>"
+                             "<drake:declare_convex><box/></drake:declare_convex></geometry>"
+                             "</collision></link>"))
+                .find("a second shape"),
+            std::string::npos);
+}
+
+TEST(Urdf, WorldIsImplied) {
+  const Robot robot = parse(robot_of("<link name='a'/>\n" + joint("j", "fixed", "world", "a")));
+  ASSERT_EQ(robot.links.size(), 2U);
+  EXPECT_EQ(robot.links[0].name, "world");
+  EXPECT_EQ(robot.links[1].name, "a");
+  ASSERT_EQ(robot.notes.size(), 1U);
+  EXPECT_NE(robot.notes[0].find("r.urdf:2: joint 'j' begins at link 'world'"), std::string::npos)
+      << robot.notes[0];
+  // One of the file's own is not implied, and no other name is.
+  EXPECT_TRUE(
+      parse(robot_of("<link name='world'/><link name='a'/>" + joint("j", "fixed", "world", "a")))
+          .notes.empty());
+  EXPECT_NE(message(robot_of("<link name='a'/>" + joint("j", "fixed", "base", "a")))
+                .find("its parent link 'base' does not exist"),
+            std::string::npos);
+}
+
 TEST(Urdf, BadFilesAreRefused) {
   const std::string limit = "<limit lower='0' upper='1' effort='1' velocity='1'/>";
   const auto has = [](const std::string& text, const std::string& words) {
