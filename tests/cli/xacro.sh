@@ -121,6 +121,12 @@ cat >found/arm.urdf.xacro <<'END'
 END
 expect 0 '2 links' with_xacro "$D" found/arm.urdf.xacro -o of-found --epsilon 2% --package-path ws --xacro-args side:=left --depfile y.d
 shows 0 '^verified: 2 of 2 links' with_xacro "$BIN/bound-verify" robot found/arm.urdf.xacro of-found/arm.urdf --package-path ws
+# A repository that is called as the package in it.
+mkdir -p repositories/arm_description
+cp -r ws/arm_description repositories/arm_description/description
+echo '<package><name>arm_description</name></package>' >repositories/arm_description/description/package.xml
+cp -r ws/grip repositories
+expect 0 '2 links' with_xacro "$D" found/arm.urdf.xacro -o of-repository --epsilon 2% --package-path repositories
 expect 0 '2 links' env ROS_PACKAGE_PATH="$WORK/ws" PATH="$WORK/bin:$PATH" "$D" found/arm.urdf.xacro -o of-ros --epsilon 2%
 expect 3 "xacro fails.*\$(find arm_description) of found/arm.urdf.xacro:2 is no package that is found: name it, or the folder that holds it, by --package-path" with_xacro "$D" found/arm.urdf.xacro -o x --epsilon 2%
 mkdir -p ros/ament_index_python

@@ -221,6 +221,9 @@ class PackageFolders {
 fs::path find_package(const std::string& name, const fs::path& robot,
                       const std::vector<std::string>& packages) {
   const PackagePlaces looked(name, folder_of(robot), packages);
+  // A repository is often called as the package in it, whose package.xml tells them apart.
+  for (const fs::path& folder : looked.found())
+    if (package_name(folder) == name) return folder;
   return looked.found().empty() ? fs::path() : looked.found().front();
 }
 
