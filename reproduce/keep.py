@@ -17,7 +17,7 @@ from document import Document
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEPT, PAGE = ROOT / "docs/reproduction-results.json", ROOT / "docs/reproduction-results.md"
 WORSE = 0.02  # a figure that changes by more of itself is named
-SPENT = re.compile(r"\btimes?\b|\[µ?m?s\]|µs|\bms\b|CPU|MB|faster|per second|/s\b|seconds|wall", re.I)
+SPENT = re.compile(r"\btimes?\b|÷ sets|\[µ?m?s\]|µs|\bms\b|CPU|MB|faster|per second|/s\b|seconds|wall", re.I)
 MORE_IS_BETTER = re.compile(r"factor|fewer|within limits|inside|nearer|found|free|diagonal here|its diagonal", re.I)
 NAMING = ("n", "by", "share", "the thesis's vertices")  # columns whose cells say what a row is of
 VERDICTS = ("verdict", "Proposition 1", "inside?", "collides?", "")  # columns whose cells are results, though texts
@@ -146,9 +146,13 @@ def _verdict(key, was, now):
 
 def same_figures(first, second, wanted=None):
     """Lines on all that differs between two results, whatever they are of; none where all figures are the same but for times.
+    Whole sections are compared with whole ones, quick with quick; where one has none of a kind, that kind is not compared.
     @param wanted  sections; None: all"""
     lines = []
-    for kind in ("whole", "quick"):
+    kinds = [kind for kind in ("whole", "quick") if first.get(kind) and second.get(kind)]
+    if not kinds:
+        return ["one is whole, the other quick: nothing can be compared"]
+    for kind in kinds:
         a, b = ({name: kept for name, kept in results.get(kind, {}).items() if wanted is None or name in wanted} for results in (first, second))
         lines += [f"{kind}: {name} is in one of them only" for name in sorted(set(a) ^ set(b))]
         lines += [f"{kind}: {name}: {where}: {column}: {was} | {now}" for name, where, column, was, now, _ in changes(a, b)]

@@ -407,6 +407,8 @@ class Report(unittest.TestCase):
         self.assertEqual([v for _, _, v in verdicts(better)], ["better", "better", "gone", "gone", "gone", "gone", "gone"])
         self.assertEqual(keep.merged({"whole": {"a": 1}}, {"quick": {"a": 2}}), {"whole": {"a": 1}, "quick": {"a": 2}})
         self.assertTrue(keep.same_figures({"whole": {"a": before["t"]}}, {"whole": {}}))
+        self.assertEqual(keep.same_figures({"whole": {"a": before["t"]}}, {"whole": {"a": before["t"]}, "quick": {"b": before["t"]}}), [])
+        self.assertTrue(keep.same_figures({"whole": {"a": before["t"]}}, {"quick": {"a": before["t"]}}))
 
     def test_what_varies(self):
         runs = [{"total_time_s": s, "collision_checks": 7} for s in (1.0, 3.0, 2.0)]
