@@ -77,4 +77,12 @@ std::optional<Length> parse_length(std::string_view text) {
   return length;
 }
 
+std::vector<std::string> texts_with_unit(std::span<const Length> lengths) {
+  std::vector<std::string> out;
+  for (const Length& length : lengths)
+    if (length.unit != Length::Unit::Own && std::ranges::find(out, length.text()) == out.end())
+      out.push_back(length.text());
+  return out;
+}
+
 }  // namespace kaboum

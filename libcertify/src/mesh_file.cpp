@@ -22,23 +22,6 @@ io::ReadResult read_triangles(const fs::path& file, std::optional<io::Format> fo
   return read;
 }
 
-/// What the file is known to say of itself takes the place of what was asked for. Lengths are
-/// brought into its unit.
-SetRequest with_unit(SetRequest request, const std::string& unit, const Hooks& hooks) {
-  if (!unit.empty() && unit != request.unit) {
-    if (hooks.note && !request.unit.empty())
-      hooks.note("Its vertices are in " + unit + " as read, and so is its set, not in " +
-                 request.unit + ".");
-    request.unit = unit;
-  } else if (unit.empty() && hooks.note) {
-    for (const std::optional<Length>& length : {request.epsilon, request.thickness})
-      if (length && length->unit != Length::Unit::Own)
-        hooks.note("The file does not state the unit of its vertices: " + length->text() +
-                   " is brought into " + request.unit + "; another one is stated by «unit=mm».");
-  }
-  return in_own_unit(std::move(request));
-}
-
 void say(const std::vector<std::string>& notes, const Hooks& hooks) {
   if (!hooks.note) return;
   for (const std::string& text : notes) hooks.note(text);
@@ -77,14 +60,14 @@ std::optional<CertifiedFile> find_file(const fs::path& file, std::optional<io::F
       find_known(CacheFolder(cache.folder()), file, format, request.scale);
   if (!known) return std::nullopt;
   std::string flaw;
-  auto set = cache.find(
-      SetCache::key_of(known->mesh_hash, known->sha256, with_unit(request, known->unit, {})), flaw);
+  std::vector<std::string> notes = known->notes;
+  const SetRequest asked = in_unit_of_file(request, known->unit, notes);
+  auto set = cache.find(SetCache::key_of(known->mesh_hash, known->sha256, asked), flaw);
   if (!set) return std::nullopt;
-  say(known->notes, hooks);
-  with_unit(request, known->unit, hooks);
+  say(notes, hooks);
   say(set->certificate().notes, hooks);
-  warn(request, set->certificate(), hooks);
-  return CertifiedFile{known->sha256, known->notes, {}, {std::move(*set), true}};
+  warn(asked, set->certificate(), hooks);
+  return CertifiedFile{known->sha256, std::move(notes), {}, {std::move(*set), true}};
 }
 
 }  // namespace
@@ -107,8 +90,9 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
     if (auto found = find_file(file, format, request, *cache, hooks)) return std::move(*found);
   std::vector<char> bytes;
   io::ReadResult read = read_triangles(file, format, bytes, request);
-  say(read.notes, hooks);
-  request = with_unit(std::move(request), read.unit, hooks);
+  std::vector<std::string> notes = read.notes;
+  request = in_unit_of_file(std::move(request), read.unit, notes);
+  say(notes, hooks);
   request.preparation.quads = read.bent_quads;
   request.preparation.diagonal = request.direction == SetRequest::Direction::Outer
                                      ? geom::PrepareOptions::Diagonal::Outward
@@ -130,7 +114,7 @@ CertifiedFile certify_file(const fs::path& file, std::optional<io::Format> forma
     throw TooCoarse(file.string(), read.mesh, epsilon, epsilon ? kSetSpacing : kMeshSpacing);
   }
   warn(request, found->set.certificate(), hooks);
-  return {sha256, std::move(read.notes), std::move(read.other_files), std::move(*found)};
+  return {sha256, std::move(notes), std::move(read.other_files), std::move(*found)};
 }
 
 }  // namespace kaboum::certify

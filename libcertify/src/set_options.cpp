@@ -1,6 +1,7 @@
 // The options of a set: their table, the request that they come to, and its record.
 
 #include <kaboum/base/length_unit.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/base/sha256.h>
 #include <kaboum/certify/set_options.h>
 
@@ -234,15 +235,29 @@ SetOptions options_of(const SetRequest& request) {
   return out;
 }
 
-SetRequest in_own_unit(SetRequest request) {
-  const auto bring = [&](std::optional<Length>& length) {
-    if (length) length = length->in(request.unit);
-  };
-  bring(request.epsilon);
-  for (geom::RequestedRegion& one : request.regions) one.epsilon = one.epsilon.in(request.unit);
-  bring(request.thickness);
-  if (request.wrap) bring(request.wrap->offset);
-  if (request.wrap) bring(request.wrap->seal);
+SetRequest in_unit_of_file(SetRequest request, const std::string& unit,
+                           std::vector<std::string>& notes) {
+  std::vector<Length*> lengths;
+  for (std::optional<Length>* one : {&request.epsilon, &request.thickness})
+    if (*one) lengths.push_back(&**one);
+  for (geom::RequestedRegion& one : request.regions) lengths.push_back(&one.epsilon);
+  if (request.wrap)
+    for (std::optional<Length>* one : {&request.wrap->offset, &request.wrap->seal})
+      if (*one) lengths.push_back(&**one);
+  if (unit.empty()) {
+    std::vector<Length> stated;
+    for (const Length* length : lengths) stated.push_back(*length);
+    const std::string there =
+        " is brought into " + request.unit + "; another one is stated by «unit=mm».";
+    for (const std::string& text : texts_with_unit(stated))
+      notes.push_back("The file does not state the unit of its vertices: " + text + there);
+  } else {
+    if (unit != request.unit && !request.unit.empty())
+      notes.push_back("Its vertices are in " + unit + " as read, and so is its set, not in " +
+                      request.unit + ".");
+    request.unit = unit;
+  }
+  for (Length* length : lengths) *length = length->in(request.unit);
   return request;
 }
 
@@ -252,9 +267,6 @@ std::optional<Length> SetRequest::wanted_epsilon() const {
 }
 
 namespace {
-
-/// What states regions, as for options of the table.
-constexpr const char* kRegionsOption = "epsilon-map";
 
 /// A word that stands for regions: a hash of all of their numbers.
 std::string word_of(const std::vector<geom::RequestedRegion>& regions) {
@@ -325,6 +337,13 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
     if (outer_only != nullptr) return "{" + std::string(outer_only) + "} needs {direction} outer";
     if (options.request.pre_step == bcd::PreStep::On)
       return "{pre-step} on needs {direction} outer";
+  }
+  if (stated.contains(kRegionsOption)) {
+    const std::string regions = std::string("{") + kRegionsOption + "}";
+    if (options.request.direction != SetRequest::Direction::Outer)
+      return regions + " needs {direction} outer";
+    for (const char* name : {"max-bodies", "max-total-vertices", "min-thickness", "max-aspect"})
+      if (stated.contains(name)) return regions + (" does not go with {" + std::string(name)) + "}";
   }
   if (options.request.simplify && options.request.max_total_vertices)
     return "{simplify} means nothing with {max-total-vertices}, which leaves out as many vertices "

@@ -16,6 +16,7 @@ class _HasFaces(Protocol):
 _Path = Union[str, PathLike[str]]
 _Mesh = Union[_HasFaces, _Path, tuple[ArrayLike, ArrayLike]]
 _Length = Union[float, str]
+_EpsilonMap = Union[_Path, list[dict[str, Any]]]
 _Progress = Callable[[str], object]
 _Bracket = tuple[float, float]
 _Answer = Literal["verified", "refuted", "undecided", "undefined"]
@@ -726,6 +727,7 @@ def decimate(
 def decompose(
     mesh: _Mesh,
     *,
+    epsilon_map: _EpsilonMap | None = None,
     # options of decompose
     epsilon: _Length | None = None,
     max_bodies: int | None = None,
@@ -847,6 +849,7 @@ def verify_cover(
     original: _Mesh,
     set: _Set,
     *,
+    epsilon_map: _EpsilonMap | None = None,
     # options of verify_cover
     claims: Literal["all", "solid", "surface"] = "all",
     epsilon: _Length | None = None,

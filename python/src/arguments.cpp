@@ -5,6 +5,7 @@
 #include <kaboum/base/option.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/io/region_file.h>
 #include <kaboum/robot/base_pose.h>
 
 #include <cmath>
@@ -127,6 +128,34 @@ std::optional<std::string> path_of(const py::object& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (!py::hasattr(value, "__fspath__")) return std::nullopt;
   return py::str(value.attr("__fspath__")()).cast<std::string>();
+}
+
+std::string json_text(const py::object& value, const std::string& of) {
+  const auto list_of = [](const py::object& o) -> py::object { return o.attr("tolist")(); };
+  try {
+    return py::module_::import("json")
+        .attr("dumps")(value, py::arg("allow_nan") = false,
+                       py::arg("default") = py::cpp_function(list_of))
+        .cast<std::string>();
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError) &&
+        !error.matches(PyExc_AttributeError))
+      throw;
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              of + ": numbers must be finite, and all else texts, lists and dicts by name");
+}
+
+std::vector<geom::RequestedRegion> regions_of(const py::object& epsilon_map) {
+  if (epsilon_map.is_none()) return {};
+  if (const auto file = path_of(epsilon_map)) return io::read_regions(*file);
+  if (!py::isinstance<py::list>(epsilon_map))
+    throw Error(ErrorCode::InvalidArgument,
+                "epsilon_map must be the name of a file, or a list of dicts, each a region: "
+                "{'epsilon': '0.2%', 'box': [[0, 0, 0], [1, 1, 1]]}");
+  py::dict all;
+  all["regions"] = epsilon_map;
+  return io::parse_regions(json_text(all, "epsilon_map"), "epsilon_map");
 }
 
 std::vector<std::string> spelled(std::vector<std::string> notes) {

@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/region.h>
 #include <kaboum/geom/transform.h>
 #include <kaboum/io/mesh_io.h>
 #include <pybind11/numpy.h>
@@ -66,6 +67,16 @@ std::vector<double> numbers_of(const py::object& given, const char* name);
 /// matrix.
 /// @throws Error{InvalidArgument} where it is none of these
 geom::Transform pose_from(const py::object& pose);
+
+/// JSON of what Python states; arrays become lists.
+/// @param of  whose it is, for messages
+/// @throws Error{InvalidArgument} for what is no JSON
+std::string json_text(const py::object& value, const std::string& of);
+
+/// The argument epsilon_map: of a file of regions, or of a list of dicts of the same shape; None:
+/// no regions.
+/// @throws Error as io::read_regions
+std::vector<geom::RequestedRegion> regions_of(const py::object& epsilon_map);
 
 /// Notes of libraries with options as Python names them.
 std::vector<std::string> spelled(std::vector<std::string> notes);

@@ -210,18 +210,20 @@ MeshValue scaled(MeshValue value, double factor) {
   return value;
 }
 
-CertifiedSetValue decompose(const py::object& mesh, const py::kwargs& given) {
+CertifiedSetValue decompose(const py::object& mesh, const py::object& epsilon_map,
+                            const py::kwargs& given) {
   py::dict keywords = given;
   certify::SetOptions options;
-  const std::set<std::string> stated = take_options(certify::set_options(), keywords, options);
+  std::set<std::string> stated = take_options(certify::set_options(), keywords, options);
+  if (!epsilon_map.is_none()) stated.insert(certify::kRegionsOption);
   const RunKeywords running = take_run_keywords(keywords);
   require_all_taken("decompose", keywords, keywords_of(certify::set_options()));
   require_none(certify::contradiction(options, stated));
+  options.request.regions = regions_of(epsilon_map);
   certify::SetRequest r = certify::request_of(options);
   MeshValue value = mesh_of(mesh, "mesh");
   if (r.scale != 1) value = scaled(std::move(value), r.scale);
-  if (!value.unit.empty()) r.unit = value.unit;
-  r = certify::in_own_unit(std::move(r));
+  r = certify::in_unit_of_file(std::move(r), value.unit, value.notes);
   using Diagonal = geom::PrepareOptions::Diagonal;
   r.preparation.quads = value.bent_quads;
   r.preparation.diagonal =
@@ -265,6 +267,10 @@ read from STEP or IGES is wrapped, so that its exact faces are covered.
 Parameters
 ----------
 mesh : mesh
+epsilon_map : name of a file, or list of dict, optional
+    Regions (boxes, half-spaces and balls in the coordinates of the bodies) with an epsilon each, as
+    `bcd-decompose --epsilon-map` reads them, or its "regions": no point of the bodies in one is
+    farther than that from the solid, and elsewhere `epsilon` counts (docs/formats.md, "Regions").
 {keywords}
 
 Raises
@@ -332,9 +338,10 @@ void bind_convex_sets(py::module_& module) {
     py::options signatures;
     signatures.disable_function_signatures();  // the table's
     const std::string text =
-        document("decompose", "mesh: object", keywords_of(certify::set_options()),
-                 "kaboum.CertifiedSet", kConvexSetDoc);
-    module.def("decompose", &decompose, py::arg("mesh"), text.c_str());
+        document("decompose", "mesh: object, *, epsilon_map: object = None",
+                 keywords_of(certify::set_options()), "kaboum.CertifiedSet", kConvexSetDoc);
+    module.def("decompose", &decompose, py::arg("mesh"), py::kw_only(),
+               py::arg("epsilon_map") = py::none(), text.c_str());
   }
   module.def(
       "read_set",

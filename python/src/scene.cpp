@@ -24,23 +24,6 @@ struct SceneValue {
   std::shared_ptr<scene::SceneDraft> draft;
 };
 
-/// JSON of what Python states; arrays become lists. @param of  whose it is, for messages
-std::string json_text(const py::object& value, const std::string& of) {
-  const auto list_of = [](const py::object& o) -> py::object { return o.attr("tolist")(); };
-  try {
-    return py::module_::import("json")
-        .attr("dumps")(value, py::arg("allow_nan") = false,
-                       py::arg("default") = py::cpp_function(list_of))
-        .cast<std::string>();
-  } catch (const py::error_already_set& error) {
-    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError) &&
-        !error.matches(PyExc_AttributeError))
-      throw;
-  }
-  throw Error(ErrorCode::InvalidArgument,
-              of + ": numbers must be finite, and all else texts, lists and dicts by name");
-}
-
 std::string object_called(const std::string& name) { return "object '" + name + "'"; }
 
 std::vector<double> pose_of(const py::object& at, const std::string& name) {

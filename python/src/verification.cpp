@@ -4,6 +4,7 @@
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/exact_points.h>
 #include <kaboum/verify/mesh_verdict.h>
+#include <kaboum/verify/region_excess.h>
 #include <kaboum/verify/subject.h>
 #include <kaboum/verify/verdict_options.h>
 
@@ -70,9 +71,26 @@ py::dict claims_of(const verify::MeshVerdict& found) {
   return out;
 }
 
+/// Of each region a dict, in their order.
+py::list regions_of(const verify::MeshVerdict& found, const geom::ConvexSet& set) {
+  py::list out;
+  for (const verify::RegionVerdict& one : found.regions) {
+    py::dict region;
+    region["name"] = one.region.name;
+    region["answer"] = verify::name_of(one.claim.answer);
+    region["reason"] = one.claim.reason;
+    region["bound"] = one.region.epsilon;
+    region["largest_found"] = one.claim.largest;
+    region["at"] = array_of(one.claim.at);
+    region["reached"] = verify::may_reach(set, one.region.region);
+    out.append(region);
+  }
+  return out;
+}
+
 Verdict decide(verify::Relation relation, const MeshValue& original,
                const geom::Mesh& approximation, const geom::ConvexSet* set, const Options& asked,
-               const RunKeywords& running) {
+               std::vector<geom::RequestedRegion> regions, const RunKeywords& running) {
   Watch watch(running.progress);
   Verdict out;
   const verify::MeshVerdict found = run(running.threads, [&] {
@@ -80,9 +98,14 @@ Verdict decide(verify::Relation relation, const MeshValue& original,
     const geom::Mesh& mesh = subject ? subject->mesh : *original.mesh;
     const bool cover = relation == verify::Relation::Cover && set != nullptr;
     const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
+    const double diagonal = geom::bounding_box(mesh).diagonal();
+    // Of both: one may leave it out.
+    const std::string& unit =
+        original.unit.empty() && set != nullptr ? set->provenance.unit : original.unit;
+    for (geom::RequestedRegion& one : regions) one.epsilon = one.epsilon.in(unit);
     std::optional<double> bound;
     if (asked.epsilon) {
-      bound = asked.epsilon->in(original.unit).of(geom::bounding_box(mesh).diagonal());
+      bound = asked.epsilon->in(unit).of(diagonal);
       if (!std::isfinite(*bound) || !(*bound > margin))
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");
@@ -96,10 +119,12 @@ Verdict decide(verify::Relation relation, const MeshValue& original,
       measured = verify::measured_mesh(*subject, *original.mesh);
     return verify::decide({mesh, approximation, set, relation, asked.claims, bound,
                            asked.max_contacts, asked.max_work, watch.hook(), points,
-                           subject ? &*subject : nullptr, measured ? &*measured : nullptr});
+                           subject ? &*subject : nullptr, measured ? &*measured : nullptr,
+                           geom::bounded(regions, diagonal)});
   });
   out.answer = found.answer;
   out.claims = claims_of(found);
+  if (!found.regions.empty()) out.claims["regions"] = regions_of(found, *set);
   if (original.exact_faces > 0 && !found.exact_points)
     out.claims["exact_points"] = exact_points_not_looked_at();
   return out;
@@ -156,13 +181,14 @@ using Table = std::vector<Option<Options>>;
 
 Verdict verify_relation(const char* function, verify::Relation relation, const Table& table,
                         const py::object& original, const py::object& approximation,
-                        const py::kwargs& given) {
+                        const py::kwargs& given, std::vector<geom::RequestedRegion> regions = {}) {
   Options asked;
   const RunKeywords running = take_keywords(function, table, given, asked, Runs::Threads);
   require_none(contradiction(asked));
   const MeshValue first = mesh_of(original, "original");
   const Approximation second = approximation_of(approximation, relation);
-  return decide(relation, first, second.triangles(), second.set.get(), asked, running);
+  return decide(relation, first, second.triangles(), second.set.get(), asked, std::move(regions),
+                running);
 }
 
 void bind_verification_class(py::module_& module) {
@@ -208,6 +234,9 @@ Parameters
 ----------
 original : mesh
 set : ConvexSet, name of a file or folder, or list of meshes
+epsilon_map : name of a file, or list of dict, optional
+    Also decide that no point of the union in a region is farther from the solid than the region's
+    own epsilon, as `decompose` takes it; 'regions' of the claims is a list of dicts.
 {keywords}
 
 Raises
@@ -268,16 +297,19 @@ void bind_verification(py::module_& module) {
       },
       py::arg("original"), py::arg("approximation"), py::kw_only(), py::arg("relation") = "outer",
       text.c_str());
-  text = document("verify_cover", "original: object, set: object",
+  text = document("verify_cover", "original: object, set: object, *, epsilon_map: object = None",
                   keywords_of(verify::cover_verdict_options()), "kaboum.Verdict", kCoverDoc,
                   Runs::Threads);
   module.def(
       "verify_cover",
-      [](const py::object& original, const py::object& set, const py::kwargs& given) {
+      [](const py::object& original, const py::object& set, const py::object& epsilon_map,
+         const py::kwargs& given) {
         return verify_relation("verify_cover", verify::Relation::Cover,
-                               verify::cover_verdict_options(), original, set, given);
+                               verify::cover_verdict_options(), original, set, given,
+                               regions_of(epsilon_map));
       },
-      py::arg("original"), py::arg("set"), text.c_str());
+      py::arg("original"), py::arg("set"), py::kw_only(), py::arg("epsilon_map") = py::none(),
+      text.c_str());
 }
 
 }  // namespace kaboum::python

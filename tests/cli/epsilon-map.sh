@@ -79,5 +79,22 @@ json left_made.json "r['cover']['regions'][0]['reached'] and r['cover']['regions
 expect 0 'region .left.: verified' "$B" notched.off -o left.glb --epsilon 0.6 --effort fast --epsilon-map left.json --report left_kept.json
 json left_kept.json "r['cover']['regions'][0]['reached'] and r['cover']['regions'][0]['bound'] == 0.05"
 shows 0 'no body reaches' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map far.json
-expect 2 'epsilon-map' "$B" notched.off -o out.glb --max-bodies 3 --epsilon-map left.json
+for other in '--max-bodies 3' '--max-total-vertices 99' '--min-thickness 0.1' '--max-aspect 8' '--direction inner'; do
+  expect 2 "epsilon-map .*${other%% *}" "$B" notched.off -o out.glb $other --epsilon-map left.json
+done
+for program in "$B notched.off -o out.glb" "$V cover notched.off coarse.glb"; do
+  expect 3 '' $program --epsilon 0.6 --epsilon-map ''
+  expect 3 'none.json' $program --epsilon 0.6 --epsilon-map none.json
+done
+# A map with a unit, of a file without one: what it is taken for is noted on the terminal and in the report.
+sed 's/0.05/"50mm"/' left.json >unit.json
+for run in made kept; do
+  expect 0 'does not state the unit.*: 50mm is brought into m; .*--unit mm' "$B" notched.off -o unit.glb --epsilon 0.6 --effort fast --epsilon-map unit.json --report unit_$run.json
+  json unit_$run.json "[n for n in r['notes'] if '50mm is brought into m' in n] and r['cover']['regions'][0]['bound'] == 0.05"
+done
+json unit_kept.json "r['cached']"
+expect 0 '50mm is brought into m, which is that of unit.glb' "$V" cover notched.off unit.glb --epsilon 0.6 --epsilon-map unit.json --report unit_judged.json
+json unit_judged.json "[n for n in r['original']['notes'] if '50mm is brought into m' in n]"
+expect 0 '' "$B" notched.off -o polytopes.obj --epsilon 0.6 --effort fast --epsilon-map left.json
+expect 2 '50mm: the unit of the coordinates is not known' "$V" cover notched.off polytopes.obj --epsilon 0.6 --epsilon-map unit.json
 finish

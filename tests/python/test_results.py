@@ -1,5 +1,6 @@
 """Decimation, decomposition, distances: what the tools do, and the same bytes."""
 
+import json
 import os
 import signal
 import subprocess
@@ -137,6 +138,46 @@ def test_same_container_as_the_tool(bracket, tmp_path):
     assert kaboum.verify_cover(bracket, result)
     without_one = kaboum.ConvexSet(made.bodies[1:])
     assert kaboum.verify_cover(bracket, without_one).answer == "refuted"
+
+
+def test_regions_as_the_tool(bracket, tmp_path):
+    """The same bytes and answers of a map in a file, a map in Python, and the programs."""
+    vertices = kaboum.read(bracket).vertices
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    near = {"name": "corner", "epsilon": "2%", "box": [low, 0.5 * (low + high)]}
+    regions = [near, {"epsilon": f"{0.03 * size}m", "ball": {"center": high, "radius": 0.2 * size}}]
+    file, result, report = tmp_path / "map.json", tmp_path / "b.glb", tmp_path / "r.json"
+    file.write_text(json.dumps({"regions": regions}, default=lambda a: a.tolist()))
+    subprocess.run([f"{BIN}/bcd-decompose", bracket, "-o", result, "--epsilon", "6%", "--effort", "fast", "--no-cache",
+                    "--epsilon-map", file, "--report", report], check=True, capture_output=True)
+    made = kaboum.decompose(bracket, epsilon="6%", effort="fast", epsilon_map=regions)
+    assert made.bytes == result.read_bytes()
+    assert kaboum.decompose(bracket, epsilon="6%", effort="fast", epsilon_map=file).cached
+    assert made.report["cover"]["regions"] == json.loads(report.read_text())["cover"]["regions"]
+    assert [n for n in made.notes if "m is brought into m; another one is stated by unit='mm'" in n]
+    coarse = kaboum.decompose(bracket, epsilon="6%", effort="fast")
+    assert coarse.bytes != made.bytes
+    coarse.write(tmp_path / "coarse.glb")
+    for judged, bodies in ((made, result), (coarse, tmp_path / "coarse.glb")):
+        subprocess.run([f"{BIN}/bound-verify", "cover", bracket, bodies, "--epsilon", "6%", "--epsilon-map", file, "--report", report],
+                       capture_output=True)
+        said = json.loads(report.read_text())
+        verdict = kaboum.verify_cover(bracket, judged, epsilon="6%", epsilon_map=regions)
+        assert verdict.answer == said["verdict"]
+        assert [r["name"] for r in verdict.claims["regions"]] == ["'corner'", "region 2"]
+        for mine, its in zip(verdict.claims["regions"], said["claims"]["regions"]):
+            assert mine.pop("at") == pytest.approx(its.pop("at"), abs=0)
+            its.pop("pieces")
+            assert mine == its
+    assert kaboum.verify_cover(bracket, made, epsilon="6%", epsilon_map=[near])
+    assert "regions" not in kaboum.verify_cover(bracket, made).claims
+    fine = kaboum.verify_cover(bracket, coarse, epsilon_map=[near | {"epsilon": "0.1%"}])
+    assert fine.answer == fine.claims["regions"][0]["answer"] == "refuted"
+    with pytest.raises(kaboum.Error, match="epsilon_map: region 1: there is no member 'bocks'"):
+        kaboum.verify_cover(bracket, made, epsilon_map=[{"epsilon": 1, "bocks": []}])
+    with pytest.raises(kaboum.Error, match="no.json"):
+        kaboum.decompose(bracket, epsilon_map=tmp_path / "no.json")
 
 
 def test_balls_and_capsules_are_bodies(tmp_path):

@@ -76,14 +76,14 @@ FRONT_ENDS = {
     "prepare": (["prepare"], set(), "mesh-prepare"),
     "wrap": (["wrap"], {"precision"} | RUNS, "mesh-prepare"),
     "decimate": (["decimate"], {"output_format"} | RUNS, "bmesh-decimate"),
-    "decompose": (["decompose"], {"no_cache"} | RUNS, "bcd-decompose"),
+    "decompose": (["decompose"], {"epsilon_map", "no_cache"} | RUNS, "bcd-decompose"),
     "certify_robot": (["held_shapes", "certify_robot"], {"epsilons", "robot_bodies", "robot_vertices", "partial", "no_cache"} | RUNS,
                       "bcd-decompose"),
     "decimate_robot": (["held_shapes", "decimate_robot"], {"epsilons", "output_format", "partial", "no_cache"} | RUNS, "bmesh-decimate"),
     "sweep": (["sweep"], {"verify", "no_cache"} | RUNS, "sweep-approx"),
     "hausdorff": (["hausdorff"], RUNS, "hausdorff-eval"),
     "verify_mesh": (["verify_mesh"], {"relation"} | RUNS, "bound-verify mesh"),
-    "verify_cover": (["verify_cover"], RUNS, "bound-verify cover"),
+    "verify_cover": (["verify_cover"], {"epsilon_map"} | RUNS, "bound-verify cover"),
     "verify_robot": (["verify_robot"], RUNS, "bound-verify robot"),
     "verify_spheres": (["shapes"], {"epsilon"} | RUNS, "bound-verify robot"),
     "write_spheres": (["shapes"], {"epsilon", "robot_bodies", "share", "effort", "no_cache"} | RUNS, "bcd-decompose"),
@@ -154,6 +154,11 @@ def test_every_front_end_has_every_option(function):
     ({"drop_sheets": 1}, "drop_sheets must be True or False"),
     ({"seal": "1%"}, "seal needs prepare wrap"),
     ({"direction": "inner", "simplify": 0.25}, "simplify needs direction outer"),
+    ({"epsilon_map": [{}], "max_bodies": 3}, "epsilon_map does not go with max_bodies"),
+    ({"epsilon_map": [{}], "max_aspect": 8.0}, "epsilon_map does not go with max_aspect"),
+    ({"epsilon_map": [{}], "direction": "inner"}, "epsilon_map needs direction outer"),
+    ({"epsilon_map": {}}, "epsilon_map must be the name of a file, or a list of dicts"),
+    ({"epsilon_map": [{"epsilon": float("nan")}]}, "epsilon_map: numbers must be finite"),
 ])
 def test_wrong_values_are_named(given, says):
     with pytest.raises(kaboum.Error, match=re.escape(says)) as error:

@@ -3,6 +3,7 @@
 #include <kaboum/base/number_text.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/file_unit.h>
+#include <kaboum/io/region_file.h>
 #include <kaboum/page/set_page.h>
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
@@ -10,7 +11,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/epsilon_map.h"
 #include "common/set_format.h"
 #include "options.h"
 #include "robot.h"
@@ -81,7 +81,7 @@ int decompose_mesh(const DecomposeOptions& o) {
   }
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
-    if (!o.epsilon_map.empty()) inputs.push_back(o.epsilon_map);
+    if (o.epsilon_map) inputs.push_back(*o.epsilon_map);
     inputs.insert(inputs.end(), made.other_files.begin(), made.other_files.end());
     write_depfile(o.depfile, {o.output}, inputs);
   }
@@ -100,14 +100,14 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
   if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
   if (!o.repair.empty()) inputs.push_back(o.repair);
   if (!o.pairs.empty()) inputs.push_back(o.pairs);
-  if (!o.epsilon_map.empty()) inputs.push_back(o.epsilon_map);
+  if (o.epsilon_map) inputs.push_back(*o.epsilon_map);
   require_apart({{"--output", o.output},
                  {"--report", o.common.report},
                  {"--html-report", o.robot.html},
                  {"--preview", o.preview},
                  {"--depfile", o.depfile}},
                 inputs);
-  o.set.request.regions = read_epsilon_map(o.epsilon_map);
+  if (o.epsilon_map) o.set.request.regions = io::read_regions(*o.epsilon_map);
   const ThreadLimit threads(o.common.threads);
   if (is_robot(o.input) && o.robot_bodies + o.robot_vertices == 0) certify::be_of_robot(o.set);
   try {

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/epsilon_map.h"
 #include "common/request_options.h"
 #include "common/set_format.h"
 #include "inertia.h"
@@ -101,12 +100,17 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
 void describe(CLI::App& app, DecomposeOptions& o) {
   add_input(app, o);
   add_request_options(app, certify::set_options(), o.set, o.stated);
-  add_epsilon_map(
-      app, o.epsilon_map,
-      "Regions (boxes, half-spaces and balls in the coordinates of the bodies, which are "
-      "those of INPUT after --scale; a JSON file: docs/formats.md) with an epsilon each: no point "
-      "of the bodies in one is farther "
-      "than that from the solid, and elsewhere --epsilon counts; for one mesh");
+  app.add_option_function<std::string>(
+         "--epsilon-map",
+         [&o](const std::string& file) {
+           o.epsilon_map = file;
+           o.stated.insert(certify::kRegionsOption);
+         },
+         "Regions (boxes, half-spaces and balls in the coordinates of the bodies, which are "
+         "those of INPUT after --scale; a JSON file: docs/formats.md) with an epsilon each: no "
+         "point of the bodies in one is farther than that from the solid, and elsewhere --epsilon "
+         "counts; for one mesh")
+      ->type_name("FILE");
   add_require_closed(app, o.set.preparation);
   add_output(app, o);
   add_robot_options(app, o.robot, true);
@@ -149,13 +153,9 @@ void describe(CLI::App& app, DecomposeOptions& o) {
 
 void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   require_none(certify::contradiction(o.set, o.stated));
-  if (app.count("--epsilon-map") != 0) {
-    if (is_robot(o.input))
-      throw Error(ErrorCode::InvalidArgument,
-                  "--epsilon-map is for one mesh; --epsilons states those of a robot's links");
-    require_absent(app, "--epsilon-map",
-                   {"--max-bodies", "--max-total-vertices", "--min-thickness", "--direction"});
-  }
+  if (o.epsilon_map && is_robot(o.input))
+    throw Error(ErrorCode::InvalidArgument,
+                "--epsilon-map is for one mesh; --epsilons states those of a robot's links");
   if (o.set.preparation.mode != certify::PreparationOptions::Mode::Auto)
     require_absent(app, "--prepare", {"--require-closed"});
   if (is_robot(o.input))

@@ -4,6 +4,7 @@
 #include <kaboum/certify/sphere_shares.h>
 #include <kaboum/picture/bodies.h>
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -24,7 +25,7 @@ struct DecomposeOptions {
   double explode = picture::kExplode;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   certify::SphereShare share = certify::SphereShare::Farthest;
-  std::string epsilon_map;  ///< file of regions; empty: none
+  std::optional<std::string> epsilon_map;  ///< file of regions
   std::string repair;       ///< spheres of the robot that are to be changed; empty: none
   std::string pairs;        ///< file of pairs of links that need no check; empty: none
   std::string inertia;      ///< «mass» or a density; empty: what the file says stays

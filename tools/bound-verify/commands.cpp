@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "common/epsilon_map.h"
 #include "common/request_options.h"
 #include "robot_bodies.h"
 #include "robot_spheres.h"
@@ -131,10 +130,10 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
            "The mesh that is to be covered (- for standard input)");
   add_file(*c, "SET", o.mesh.approximation, "The bodies: .glb, .obj, a folder of .stl");
   add_mesh_options(*c, o, verify::cover_verdict_options(), "SET");
-  add_epsilon_map(
-      *c, o.mesh.epsilon_map,
-      "Also decide that no point of the union in a region is farther from the solid than "
-      "the region's own epsilon (a JSON file, as for bcd-decompose)");
+  c->add_option("--epsilon-map", o.mesh.epsilon_map,
+                "Also decide that no point of the union in a region is farther from the solid than "
+                "the region's own epsilon (a JSON file, as for bcd-decompose)")
+      ->type_name("FILE");
 }
 
 void add_robot_command(CLI::App& app, VerifyOptions& o) {

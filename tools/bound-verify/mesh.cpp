@@ -2,12 +2,13 @@
 #include "mesh.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/io/file_unit.h>
+#include <kaboum/io/region_file.h>
 
 #include <cmath>
 #include <iostream>
 
-#include "common/epsilon_map.h"
 #include "common/verdict.h"
 #include "mesh_report.h"
 #include "witness_file.h"
@@ -19,14 +20,31 @@ using verify::Answer;
 
 void require_possible(const VerifyMeshOptions& o, const CommonOptions& common) {
   require_apart({{"--report", common.report}, {"--witness", o.witness}},
-                {o.original, o.approximation, o.epsilon_map.empty() ? o.original : o.epsilon_map});
+                {o.original, o.approximation, o.epsilon_map.value_or(o.original)});
   require_witness_format(o.witness);
 }
 
+using Regions = std::vector<geom::RequestedRegion>;
+
+/// Notes that lengths with a unit are brought into that of the set, where the original states none.
+void note_unit(MeshCase& run, const Regions& regions) {
+  const std::string& unit = run.approximation.unit;
+  if (!run.original.unit.empty() || unit.empty()) return;
+  std::vector<Length> lengths;
+  if (run.asked.how.epsilon) lengths.push_back(*run.asked.how.epsilon);
+  for (const geom::RequestedRegion& one : regions) lengths.push_back(one.epsilon);
+  const std::string there =
+      " is brought into " + unit + ", which is that of " + run.asked.approximation + ".";
+  for (const std::string& text : texts_with_unit(lengths))
+    run.original.notes.push_back("The file does not state the unit of its vertices: " + text +
+                                 there);
+}
+
 /// Reads both files, and says what is to be known of them.
-MeshCase read(const VerifyMeshOptions& o, bool quiet) {
+MeshCase read(const VerifyMeshOptions& o, const Regions& regions, bool quiet) {
   MeshCase run{o, read_original(o), read_approximation(o), {}, 0, {}, {}};
   io::require_same_unit(o.original, run.original.unit, o.approximation, run.approximation.unit);
+  note_unit(run, regions);
   if (const geom::Provenance& made = run.approximation.set.provenance;
       made.source_sha256 == run.original.sha256)
     io::require_recorded_scale(o.approximation, made.parameters, o.unit.scale);
@@ -66,10 +84,8 @@ std::optional<verify::PointQuestion> points_of(const MeshCase& run) {
 }
 
 /// @throws Error where a length is none of this mesh's.
-std::vector<geom::BoundedRegion> regions_of(const MeshCase& run,
-                                            const std::vector<geom::RequestedRegion>& asked) {
+std::vector<geom::BoundedRegion> bounded(const MeshCase& run, Regions regions) {
   return naming(run.asked.original, [&] {
-    std::vector<geom::RequestedRegion> regions = asked;
     for (geom::RequestedRegion& one : regions) one.epsilon = one.epsilon.in(unit_of(run));
     return geom::bounded(regions, run.diagonal);
   });
@@ -82,8 +98,9 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   if (o.original == "-" && o.approximation == "-")
     throw Error(ErrorCode::InvalidArgument, "only one of the two files can be standard input");
-  const std::vector<geom::RequestedRegion> regions = read_epsilon_map(o.epsilon_map);
-  MeshCase run = read(o, common.quiet);
+  Regions regions;
+  if (o.epsilon_map) regions = io::read_regions(*o.epsilon_map);
+  MeshCase run = read(o, regions, common.quiet);
   if (o.how.epsilon)
     set_bound(run, naming(o.original, [&] { return o.how.epsilon->in(unit_of(run)); }));
 
@@ -107,7 +124,7 @@ int verify_mesh(const VerifyMeshOptions& o, const CommonOptions& common) {
                                       points_of(run),
                                       run.original.subject ? &*run.original.subject : nullptr,
                                       run.original.measured ? &*run.original.measured : nullptr,
-                                      regions_of(run, regions)};
+                                      bounded(run, regions)};
   run.verdict = verify::decide(question, [&](const verify::MeshVerdict& enclosure) {
     run.verdict = enclosure;
     say(lines_of_enclosure(run));  // at once: a distance may take long

@@ -3,6 +3,7 @@
 #include <kaboum/verify/mesh_verdict.h>
 #include <kaboum/verify/verdict_options.h>
 
+#include <optional>
 #include <string>
 
 #include "common/cli.h"
@@ -19,7 +20,7 @@ struct VerifyMeshOptions {
   std::string witness;
   bool set = false;  ///< the approximation is a set, whatever the file looks like
   verify::MeshVerdictOptions how;
-  std::string epsilon_map;  ///< file of regions with bounds of their own, of a cover; empty: none
+  std::optional<std::string> epsilon_map;  ///< file of regions with bounds of their own, of a cover
 };
 
 /// Decides the claims, prints and reports them.

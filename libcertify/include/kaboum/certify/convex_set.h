@@ -70,9 +70,13 @@ struct SetRequest : bcd::CoverSettings {
   [[nodiscard]] std::string parameters() const;
 };
 
-/// The request with lengths that are stated in a unit brought into its own one.
-/// @throws Error{InvalidArgument} where one is, and `unit` is empty.
-SetRequest in_own_unit(SetRequest request);
+/// The request in the unit of a file's vertices: its unit is that one, and lengths that state
+/// another are brought into it.
+/// @param unit   of the vertices; empty: the file does not say, and the request's own is taken
+/// @param notes  gets what of that a user should know
+/// @throws Error{InvalidArgument} where a length states a unit, and there is none.
+SetRequest in_unit_of_file(SetRequest request, const std::string& unit,
+                           std::vector<std::string>& notes);
 
 /// Certificate of a set. A claim only as part of a CertifiedSet.
 struct SetCertificate {

@@ -15,7 +15,7 @@ namespace kaboum::certify {
 /// A mesh file's certified set.
 struct CertifiedFile {
   std::string sha256;                    ///< of the file
-  std::vector<std::string> read_notes;   ///< what its reader noted; noted already
+  std::vector<std::string> read_notes;   ///< of its reader and its unit; noted already
   std::vector<std::string> other_files;  ///< read besides it
   FoundSet found;
 };

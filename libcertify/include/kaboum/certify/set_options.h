@@ -16,6 +16,9 @@ struct SetOptions {
   PreparationOptions preparation;
 };
 
+/// Name of the option that states SetRequest::regions, which front ends read: none of the table.
+inline constexpr const char* kRegionsOption = "epsilon-map";
+
 /// The options of a set, in the order in which records state them.
 const std::vector<Option<SetOptions>>& set_options();
 
@@ -34,7 +37,7 @@ void be_of_robot(SetOptions& options);
 
 /// Why the options do not go together, with names as OptionDescription::text has them; empty where
 /// they do.
-/// @param stated  names of those that a user stated
+/// @param stated  names of those that a user stated, kRegionsOption too
 std::string contradiction(const SetOptions& options, const std::set<std::string>& stated);
 
 /// Options of the sets of a robot's links as a user states them.

@@ -1,21 +1,16 @@
-// --epsilon-map: a file that says how near bodies are to be in regions.
-
-#include "epsilon_map.h"
+// JSON that says how near bodies are to be in regions.
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/json_damage.h>
 #include <kaboum/base/parse_length.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/region_file.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string_view>
 
-#include "cli.h"
-
-namespace kaboum::tools {
+namespace kaboum::io {
 namespace {
 
 using nlohmann::json;
@@ -24,16 +19,18 @@ constexpr const char* kMapForm =
     "give {\"regions\": [{\"epsilon\": \"0.2%\", \"box\": [[0, 0, 0], [1, 1, 1]]}, …]}, each with "
     "one of box, half_space and ball";
 
-/// One region of the file, with what messages call it.
+/// One region of the text.
 class RegionReader {
  public:
-  RegionReader(const json& entry, std::string what) : entry_(entry), what_(std::move(what)) {}
+  /// @param name  that messages call it by, after that of the text, unless it states one itself
+  RegionReader(const json& entry, std::string text, std::string name)
+      : entry_(entry), text_(std::move(text)), name_(std::move(name)) {}
 
   geom::RequestedRegion read() const {
     if (!entry_.is_object()) fail(kMapForm);
     int shapes = 0;
     geom::RequestedRegion out;
-    out.name = what_;
+    out.name = name_;
     for (const auto& [key, value] : entry_.items()) {
       if (key == "name") {
         if (!value.is_string()) fail("name is no text");
@@ -54,7 +51,8 @@ class RegionReader {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw Error(ErrorCode::InvalidInput, what_ + ": " + why);
+    throw Error(ErrorCode::InvalidInput,
+                std::string(text_).append(": ").append(name_).append(": ").append(why));
   }
 
   Length length(const json& value) const {
@@ -109,12 +107,12 @@ class RegionReader {
   }
 
   const json& entry_;
-  std::string what_;
+  std::string text_, name_;
 };
 
 /// Refuses members that are given twice, of which a parser would take the last one.
-/// @throws Error{InvalidInput} naming file and region
-json parse_map(std::string_view text, const std::string& file) {
+/// @throws Error{InvalidInput} naming the text and the region
+json parse_json(std::string_view text, const std::string& name) {
   using Event = json::parse_event_t;
   constexpr int kRegionDepth = 2;  // brackets round the one that begins a region
   std::size_t regions = 0;         // that have begun
@@ -122,7 +120,7 @@ json parse_map(std::string_view text, const std::string& file) {
   const auto fail = [&](const std::string& why) -> void {
     const std::string place =
         members.size() > 1 ? "region " + std::to_string(regions) + ": " : std::string();
-    throw Error(ErrorCode::InvalidInput, file + ": " + place + why);
+    throw Error(ErrorCode::InvalidInput, std::string(name).append(": ").append(place).append(why));
   };
   if (is_nested_too_deep(text)) fail(describe_json_depth());
   const auto look = [&](int depth, Event event, json& value) {
@@ -148,23 +146,22 @@ json parse_map(std::string_view text, const std::string& file) {
 
 }  // namespace
 
-void add_epsilon_map(CLI::App& app, std::string& file, const std::string& text) {
-  app.add_option("--epsilon-map", file, text)->type_name("FILE");
-}
-
-std::vector<geom::RequestedRegion> read_epsilon_map(const std::string& file) {
-  if (file.empty()) return {};
-  const std::vector<char> bytes = io::read_file(file);
-  const json all = parse_map({bytes.data(), bytes.size()}, file);
+std::vector<geom::RequestedRegion> parse_regions(std::string_view text, const std::string& name) {
+  const json all = parse_json(text, name);
   if (!all.is_object() || all.size() != 1 || !all.contains("regions") ||
       !all["regions"].is_array() || all["regions"].empty())
-    throw Error(ErrorCode::InvalidInput, file + ": " + kMapForm);
+    throw Error(ErrorCode::InvalidInput, name + ": " + kMapForm);
   std::vector<geom::RequestedRegion> out;
   for (const json& entry : all["regions"]) {
-    const std::string name = "region " + std::to_string(out.size() + 1);
-    out.push_back(naming(file, [&] { return RegionReader(entry, name).read(); }));
+    const std::string region = "region " + std::to_string(out.size() + 1);
+    out.push_back(RegionReader(entry, name, region).read());
   }
   return out;
 }
 
-}  // namespace kaboum::tools
+std::vector<geom::RequestedRegion> read_regions(const std::string& file) {
+  const std::vector<char> bytes = read_file(file);
+  return parse_regions({bytes.data(), bytes.size()}, file == "-" ? "standard input" : file);
+}
+
+}  // namespace kaboum::io
