@@ -63,11 +63,16 @@ std::string Length::text() const {
 }
 
 std::optional<Length> parse_length(std::string_view text) {
+  const std::optional<Length> out = parse_distance(text);
+  return out && out->value > 0 ? out : std::nullopt;
+}
+
+std::optional<Length> parse_distance(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   Length length;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, length.value);
-  if (error != std::errc() || !std::isfinite(length.value) || !(length.value > 0))
+  if (error != std::errc() || !std::isfinite(length.value) || !(length.value >= 0))
     return std::nullopt;
   const std::string_view rest(stop, static_cast<std::size_t>(end - stop));
   if (rest.empty()) return length;

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <sstream>
 
 namespace kaboum {
@@ -88,48 +89,80 @@ bool is_within(const OptionDescription& option, double number) {
                         : number >= option.low && number <= option.high;
 }
 
-/// "finger=0.04", or "0.04", whose name is empty; nullopt: it is something else.
-std::optional<std::pair<std::string, double>> parsed_setting(const std::string& text) {
-  const std::size_t sign = text.rfind('=');
-  if (sign == 0) return std::nullopt;
-  const std::size_t digits = sign == std::string::npos ? 0 : sign + 1;
-  const auto value = parsed<double>(std::string_view(text).substr(digits));
-  if (!value || !std::isfinite(*value)) return std::nullopt;
-  return std::pair(text.substr(0, digits == 0 ? 0 : sign), *value);
-}
-
-std::string settings_flaw(const OptionDescription& option, const std::string& value) {
-  std::map<std::string, double> known;
-  for (const std::string& text : option_text::parts(value, option)) {
-    const auto setting = parsed_setting(text);
-    if (!setting || (setting->first.empty() && !option.for_all))
-      return std::string("must be ") + (option.for_all ? "NUMBER or " : "") +
-             "NAME=NUMBER, as in finger=0.04, not " + text;
-    if (!is_within(option, setting->second)) return limits_flaw(option, text, false);
-    if (!known.insert(*setting).second)
-      return setting->first.empty() ? "gives a number for all twice"
-                                    : "gives '" + setting->first + "' twice";
-  }
-  return known.empty() ? "must be NAME=NUMBER, as in finger=0.04" : "";
-}
-
 /// "m, dm, cm"
 std::string joined_units() { return joined({kLengthUnits.begin(), kLengthUnits.end()}, ", "); }
 
+/// What an absolute length is, after "must be ".
+std::string absolute_words(const OptionDescription& option, const char* kind) {
+  return std::string(kind) + " in " + option.own_unit + ", or with a unit (" + joined_units() +
+         "), as in 5mm, without blanks";
+}
+
+/// Why a length is no absolute one, at the end of what is said of it.
+std::string percent_words(const std::optional<Length>& length) {
+  return length && length->percent ? " (there is no diagonal that it could be a percentage of)"
+                                   : "";
+}
+
+/// Name and value of "finger=0.04", or of "0.04", whose name is empty; nullopt: a name is missing.
+std::optional<std::pair<std::string, std::string>> split_setting(const std::string& text) {
+  const std::size_t sign = text.rfind('=');
+  if (sign == 0) return std::nullopt;
+  if (sign == std::string::npos) return std::pair(std::string(), text);
+  return std::pair(text.substr(0, sign), text.substr(sign + 1));
+}
+
+/// The value of a setting that is a number or, in the same way, a length; nullopt: it is neither.
+std::optional<Length> parsed_value(const std::string& text, bool length) {
+  if (length) return parse_distance(text);
+  const auto number = parsed<double>(text);
+  return number && std::isfinite(*number) ? std::optional(Length{*number}) : std::nullopt;
+}
+
+/// What a setting is, after "must be ".
+std::string setting_words(const OptionDescription& option) {
+  const std::string value = option.absolute ? "LENGTH" : "NUMBER";
+  return (option.for_all ? value + " or " : "") + "NAME=" + value +
+         (option.absolute
+              ? ", as in arm=5mm, each " + absolute_words(option, "a length of at least 0")
+              : ", as in finger=0.04");
+}
+
+std::string settings_flaw(const OptionDescription& option, const std::string& value) {
+  std::set<std::string> known;
+  for (const std::string& text : option_text::parts(value, option)) {
+    const auto setting = split_setting(text);
+    const auto number = setting ? parsed_value(setting->second, option.absolute) : std::nullopt;
+    if (!number || number->percent || (setting->first.empty() && !option.for_all))
+      return "must be " + setting_words(option) + ", not " + text + percent_words(number);
+    if (!is_within(option, number->value)) return limits_flaw(option, text, false);
+    if (!known.insert(setting->first).second)
+      return setting->first.empty() ? "gives a number for all twice"
+                                    : "gives '" + setting->first + "' twice";
+  }
+  return known.empty() ? "must be " + setting_words(option) : "";
+}
+
 std::string length_flaw(const OptionDescription& option, const std::string& value) {
   const auto length = parse_length(value);
-  const bool may_have_unit = !option.absolute || option.metres;
-  const bool has_unit = length && length->unit != Length::Unit::Own;
-  if (length && !(option.absolute && length->percent) && (may_have_unit || !has_unit)) return {};
-  if (!option.absolute)
-    return "must be a positive number, perhaps with a unit (" + joined_units() +
-           "), as in 5mm, or a percentage such as 0.5%, without blanks, not " + value;
-  return std::string("must be a positive length") +
-         (may_have_unit ? ", perhaps with a unit, as in 5mm, not "
-                        : " without a unit, as in 0.005, not ") +
-         value +
-         (length && length->percent ? " (there is no diagonal that it could be a percentage of)"
-                                    : "");
+  if (length && !(option.absolute && length->percent)) return {};
+  if (option.absolute)
+    return "must be " + absolute_words(option, "a positive length") + ", not " + value +
+           percent_words(length);
+  return "must be a positive number, perhaps with a unit (" + joined_units() +
+         "), as in 5mm, or a percentage such as 0.5%, without blanks, not " + value;
+}
+
+/// Values by name, as `of` makes them.
+template <class Value, class Of>
+std::map<std::string, Value> by_name(const std::vector<std::string>& settings, bool lengths,
+                                     const Of& of) {
+  std::map<std::string, Value> out;
+  for (const std::string& text : settings)
+    if (const auto setting = split_setting(text))
+      if (const auto value = parsed_value(setting->second, lengths))
+        out.emplace(setting->first, of(*value));
+  return out;
 }
 
 }  // namespace
@@ -156,7 +189,9 @@ std::string value_words(const OptionDescription& option) {
     case Kind::Names:
       return "A,B";
     case Kind::Settings:
-      return option.for_all ? "X|NAME=X" : "NAME=X";
+      return option.absolute  ? option.for_all ? "LENGTH|NAME=LENGTH" : "NAME=LENGTH"
+             : option.for_all ? "X|NAME=X"
+                              : "NAME=X";
     case Kind::Text:
       break;
   }
@@ -174,6 +209,15 @@ std::string range_words(const OptionDescription& option) {
   if (option.between) return "between " + digits(option.low) + " and " + digits(option.high);
   if (std::isinf(option.high)) return "at least " + digits(option.low);
   return digits(option.low) + " to " + digits(option.high);
+}
+
+std::string unit_words(const OptionDescription& option) {
+  return option.absolute ? option.own_unit + ", or with a unit, as in 5mm" : "";
+}
+
+std::string facts_of(const OptionDescription& option) {
+  const std::string range = range_words(option), unit = unit_words(option);
+  return range + (range.empty() || unit.empty() ? "" : "; ") + unit;
 }
 
 std::string meaning(const std::string& text,
@@ -265,10 +309,11 @@ bool is_repeated(const OptionDescription& option) {
 }
 
 std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings) {
-  std::map<std::string, double> out;
-  for (const std::string& text : settings)
-    if (const auto setting = parsed_setting(text)) out.insert(*setting);
-  return out;
+  return by_name<double>(settings, false, [](const Length& value) { return value.value; });
+}
+
+std::map<std::string, Length> lengths_by_name(const std::vector<std::string>& settings) {
+  return by_name<Length>(settings, true, [](const Length& value) { return value; });
 }
 
 std::optional<std::size_t> parse_memory(const std::string& text) {

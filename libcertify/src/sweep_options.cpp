@@ -112,7 +112,6 @@ std::vector<Option<R>> table() {
        .text = "Largest margin round the bodies, by which they are enlarged. How far they then "
                "reach beyond what is swept is part of the result, and limited by {max-reach}",
        .absolute = true,
-       .metres = true,
        .always_recorded = true},
       [](auto& r) -> auto& { return r.epsilon; })));
   out.push_back(choice<R>(
@@ -127,7 +126,6 @@ std::vector<Option<R>> table() {
        .text = "Largest distance of a hull, its margin apart, from what it bounds; takes more "
                "bodies",
        .absolute = true,
-       .metres = true,
        .otherwise = "no limit"},
       [](auto& r) -> auto& { return r.max_reach; })));
   out.push_back(option<R>(

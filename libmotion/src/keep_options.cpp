@@ -2,7 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
-#include <kaboum/base/parse_numbers.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/kinematics/inverse.h>
 #include <kaboum/motion/keep_options.h>
@@ -111,11 +111,17 @@ std::vector<std::string> split(const std::vector<std::string>& texts) {
   return out;
 }
 
-double tolerance_of(const std::string& name, const std::string& text) {
-  const std::optional<std::vector<double>> number = parse_numbers(text);
-  if (!number || number->size() != 1 || !(number->front() > 0) || !std::isfinite(number->front()))
-    refuse_keep("'" + name + "=" + text + "': a tolerance is a number above 0");
-  return number->front();
+/// An angle, or a length in the unit.
+double tolerance_of(const std::string& name, const std::string& text, bool angle,
+                    const std::string& unit) {
+  const std::optional<Length> given = parse_length(text);
+  if (!given || given->percent || (angle && given->unit != Length::Unit::Own))
+    refuse_keep(
+        "'" + name + "=" + text + "': a tolerance of '" + name + "' is " +
+        (angle ? "an angle above 0, in radians, without a unit"
+               : "a length above 0, in the scene's unit or with one, as in 1mm") +
+        (given && given->percent ? " (there is nothing that it could be a percentage of)" : ""));
+  return given->in(unit).value;
 }
 
 std::vector<Option<KeepRequest>> keep_table() {
@@ -128,7 +134,8 @@ std::vector<Option<KeepRequest>> keep_table() {
                "turn), line (the tool's origin stays on the straight line through start and goal), "
                "level (it stays at its height), each perhaps with a tolerance (upright=0.1 [0.05 "
                "rad], "
-               "line=0.001 [0.002, in the scene's unit]); or constraints of the scene by their "
+               "line=0.001 or line=1mm [0.002, in the scene's unit]); or constraints of the scene "
+               "by their "
                "name",
            .values = "NAME[=TOLERANCE],…",
            .kind = OptionDescription::Kind::Names},
@@ -190,7 +197,7 @@ std::vector<PathConstraint> constraints_of(const world::World& world,
     if (world::is_usual_constraint(name)) {
       const bool angle = name == "upright" || name == "orientation";
       const double within = equals != std::string::npos
-                                ? tolerance_of(name, text.substr(equals + 1))
+                                ? tolerance_of(name, text.substr(equals + 1), angle, world.unit)
                                 : (angle ? kUsualAngle : kUsualLength);
       const world::ToolFrame tool = moving_frame(model, request.tool);
       more = UsualConstraints(model, tool, start, goals).make(name, within);

@@ -671,7 +671,8 @@ std::vector<world::Feature> derive_places(const world::World& world, std::size_t
   const std::vector<Vec3> tops = tops_of(faces, level, surfaces, epsilon);
   for (std::size_t i = 0; i < std::min(request.most, tops.size()); ++i)
     out.push_back({numbered("top", i), world::Feature::Kind::Point, tops[i], Vec3::Zero()});
-  if (request.inset) surfaces = upper_surfaces(faces, level, epsilon + *request.inset);
+  if (request.inset)
+    surfaces = upper_surfaces(faces, level, epsilon + request.inset->in(world.unit).of(0));
   std::size_t next = 0;
   for (std::size_t i = 0; i < std::min(request.most, surfaces.size()); ++i) {
     // A name that is there in two kinds is of none.
@@ -826,9 +827,6 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
       option<R>(
           {.name = "opening",
            .text = "Largest distance between two faces: how far the fingers open",
-           .values = "LENGTH",
-           .low = 0,
-           .between = true,
            .absolute = true,
            .otherwise = "any"},
           [](auto& r) -> auto& { return r.opening; }),
@@ -836,7 +834,6 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
           {.name = "tip",
            .text = "Of families: width of the fingers' tips, or diameter of the suction cup; it "
                    "stays within the faces, wherever it is turned",
-           .high = 1e9,
            .absolute = true,
            .otherwise = "none"},
           [](auto& r) -> auto& { return r.tip; }),
@@ -857,8 +854,6 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
           {.name = "gap",
            .text = "From the tool to the face that it holds by suction, beyond the sets' "
                    "epsilon",
-           .low = 0,
-           .high = 1e9,
            .absolute = true},
           [](auto& r) -> auto& { return r.gap; })};
   return options;
@@ -878,8 +873,8 @@ const std::vector<Option<PlaceRequest>>& place_options() {
           {.name = "inset",
            .text = "How much smaller than faces surfaces are taken all round, beyond the set's "
                    "epsilon: the radius of what is to stand there with all of its base",
-           .high = 1e9,
            .absolute = true,
+           .own_unit = "the scene's unit",
            .otherwise = "none"},
           [](auto& r) -> auto& { return r.inset; }),
       option<R>(

@@ -12,6 +12,16 @@ const std::vector<Option<Checker::Options>>& state_options() {
   return options;
 }
 
+OptionDescription cloud_radius_option() {
+  return {.name = "cloud-radius",
+          .text =
+              "How far from a point of a cloud what the sensor saw may be: free is what is "
+              "apart from all balls of this radius",
+          .absolute = true,
+          .own_unit = "the scene's unit",
+          .kind = OptionDescription::Kind::Length};
+}
+
 const std::vector<Option<MotionOptions>>& motion_options() {
   using R = MotionOptions;
   static const std::vector<Option<R>> options{

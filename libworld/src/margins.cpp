@@ -137,13 +137,15 @@ const std::vector<Option<MarginRequest>>& margin_options() {
   static const std::vector<Option<MarginRequest>> options{option<MarginRequest>(
       {.name = "margin",
        .text =
-           "Distance that things are kept from each other, in the scene's unit, besides what "
+           "Distance that things are kept from each other, besides what "
            "their sets add: of any two, of one thing from all others (arm=0.02, "
-           "arm/tool=0.02, box=0.02), or of two things (arm/tool,box=0). A pair's goes before "
+           "arm/tool=20mm, box=0.02), or of two things (arm/tool,box=0). A pair's goes before "
            "a thing's, a link's before its robot's, and the one of all comes last. What a robot "
            "carries has its margin, but in pairs, which name it by itself. Links of one robot "
            "and what it carries are kept apart only where a pair states it",
        .low = 0,
+       .absolute = true,
+       .own_unit = "the scene's unit",
        .for_all = true,
        .otherwise = "0"},
       [](auto& r) -> auto& { return r.margins; })};
@@ -153,15 +155,17 @@ const std::vector<Option<MarginRequest>>& margin_options() {
 std::string words_of(const MarginRequest& request) {
   std::string out;
   for (const auto& [name, margin] : request.margins)
-    out += (out.empty() ? "" : "; ") + (name.empty() ? name : name + '=') + number_text(margin);
+    out += (out.empty() ? "" : "; ") + (name.empty() ? name : name + '=') + margin.text();
   return out;
 }
 
 Margins margins_of(const World& world, const MarginRequest& request) {
   Margins out;
   std::array<Pairs, 3> stated;
-  for (const auto& [name, margin] : request.margins) {
-    if (!(margin >= 0) || !std::isfinite(margin)) refuse("a distance must be 0 or above");
+  for (const auto& [name, stated] : request.margins) {
+    const double margin = stated.in(world.unit).value;
+    if (stated.percent || !(margin >= 0) || !std::isfinite(margin))
+      refuse("a distance must be a length of 0 or above");
     if (name.empty()) {
       out.all = margin;
     } else if (name.find(',') != std::string::npos) {

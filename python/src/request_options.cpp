@@ -37,13 +37,13 @@ const char* type_words(const OptionDescription& option) {
     case Kind::Memory:
       return "int or str";
     case Kind::Length:
-      return option.absolute && !option.metres ? "float" : "float or str";
+      return "float or str";
     case Kind::Files:
       return "path or sequence of paths";
     case Kind::Names:
       return "str or sequence of str";
     case Kind::Settings:
-      return option.for_all ? "float or dict" : "dict";
+      return option.absolute ? "float, str or dict" : option.for_all ? "float or dict" : "dict";
     case Kind::Choice:
       if (!option.implied.empty()) return "bool or str";
       break;
@@ -93,18 +93,28 @@ std::string text_of_texts(const OptionDescription& option, const py::object& val
 }
 
 std::string text_of_settings(const OptionDescription& option, const py::object& value) {
-  const char* what =
-      option.for_all ? "a number, or a dict of names and numbers" : "a dict of names and numbers";
-  if (const auto one = option.for_all ? number_of(value) : std::nullopt)
-    return option_text::of(*one) + '\n';
+  const char* what = option.absolute  ? "a length, or a dict of names and lengths"
+                     : option.for_all ? "a number, or a dict of names and numbers"
+                                      : "a dict of names and numbers";
+  // A number or, of lengths, a text such as '5mm'.
+  const auto text_of_one = [&](const py::handle& one) -> std::optional<std::string> {
+    if (option.absolute && py::isinstance<py::str>(one)) {
+      auto text = one.cast<std::string>();
+      if (text.find_first_of("=\n") != std::string::npos) refuse(option, what, value);
+      return text;
+    }
+    const auto number = number_of(one);
+    return number ? std::optional(option_text::of(*number)) : std::nullopt;
+  };
+  if (const auto one = option.for_all ? text_of_one(value) : std::nullopt) return *one + '\n';
   if (!py::isinstance<py::dict>(value)) refuse(option, what, value);
   std::string out;
   for (const auto& [name, number] : value.cast<py::dict>()) {
-    const auto given = number_of(number);
+    const auto given = text_of_one(number);
     if (!py::isinstance<py::str>(name) || !given) refuse(option, what, value);
     const auto key = name.cast<std::string>();
     if (key.find('\n') != std::string::npos) refuse(option, what, value);
-    out += (key.empty() && option.for_all ? key : key + '=') + option_text::of(*given) + '\n';
+    out += (key.empty() && option.for_all ? key : key + '=') + *given + '\n';
   }
   return out;
 }
@@ -149,7 +159,7 @@ std::string entry_of(const Keyword& keyword) {
   const OptionDescription& o = keyword.option;
   const auto spelled = [](const std::string& text) { return meaning(text, with_underscores); };
   std::string text = spelled(o.text);
-  if (const std::string range = range_words(o); !range.empty()) text += " (" + range + ")";
+  if (const std::string facts = facts_of(o); !facts.empty()) text += " (" + facts + ")";
   text += '.';
   if (!o.otherwise.empty()) text += " By default " + spelled(o.otherwise) + ".";
   return keyword_of(o) + " : " + type_words(o) + (keyword.initial ? "" : ", optional") + "\n" +
@@ -230,7 +240,7 @@ std::optional<std::string> text_of(const OptionDescription& option, const py::ob
       else if (const auto given = number_of(value))
         text = option_text::of(*given);
       else if (option.absolute)
-        refuse(option, "a positive length", value);
+        refuse(option, "a positive number, or a length such as '5mm'", value);
       else
         refuse(option,
                "a positive number, a length such as '5mm', or a percentage of the diagonal such as "
@@ -348,6 +358,7 @@ py::list table_of(const std::vector<Keyword>& keywords) {
     entry["choices"] = py::cast(o.values.empty() ? o.choices : std::vector<std::string>());
     entry["values"] = value_words(o);
     entry["range"] = range_words(o);
+    entry["unit"] = unit_words(o);
     entry["default"] = literal(keyword);
     entry["otherwise"] = meaning(o.otherwise, [](const std::string& n) { return "`" + n + "`"; });
     entry["text"] = meaning(o.text, [](const std::string& n) { return "`" + n + "`"; });

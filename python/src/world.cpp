@@ -1,5 +1,6 @@
 // Worlds: kaboum.World, as kaboum-check and kaboum-move.
 
+#include <kaboum/base/parse_length.h>
 #include <kaboum/engines/engine_options.h>
 #include <kaboum/filter/batch_checker.h>
 #include <kaboum/io/point_cloud.h>
@@ -209,18 +210,22 @@ io::PointCloud cloud_of(const py::object& points, bool drop_invalid) {
   return out;
 }
 
-WorldValue with_cloud(const WorldValue& in, const py::object& points, double radius,
+WorldValue with_cloud(const WorldValue& in, const py::object& points, const py::object& radius,
                       const std::string& name, const py::object& pose,
                       const std::vector<std::string>& allow, bool drop_invalid) {
   io::PointCloud read = cloud_of(points, drop_invalid);
   const geom::Transform place = pose.is_none() ? geom::Transform() : pose_from(pose);
+  OptionDescription described = world::cloud_radius_option();
+  described.name = "radius";
+  const auto length = parse_length(text_of(described, radius).value_or(""));
+  if (!length) throw Error(ErrorCode::InvalidArgument, "radius must be a length");
   return run(0, [&] {
     WorldValue out;
     auto scene = std::make_shared<world::SceneFile>(*in.scene);
     add_cloud(scene->world, {.name = name,
                              .points = std::move(read.points),
                              .numbers = std::move(read.numbers),
-                             .radius = radius,
+                             .radius = length->in(in.world().unit).of(0),
                              .pose = place,
                              .allow = allow});
     out.scene = std::move(scene);

@@ -155,11 +155,10 @@ TEST(Options, OtherMembers) {
           {.name = "work", .text = "Work"}, [](auto& r) -> auto& { return r.work; })};
   EXPECT_EQ(record_of(all, motion), "");
   EXPECT_EQ(value_words(all[1]), "LENGTH");
-  EXPECT_NE(flaw_of(all[1], "1%"), "");
-  EXPECT_NE(flaw_of(all[1], "5mm"), "") << "its unit is not known";
-  OptionDescription of_robots = all[1];
-  of_robots.metres = true;
-  EXPECT_EQ(flaw_of(of_robots, "5mm"), "");
+  EXPECT_EQ(facts_of(all[1]), "metres, or with a unit, as in 5mm");
+  EXPECT_NE(flaw_of(all[1], "1%").find("no diagonal"), std::string::npos);
+  EXPECT_NE(flaw_of(all[1], "0"), "");
+  EXPECT_EQ(flaw_of(all[1], "5mm"), "");
   all[1].assign(motion, "5mm");
   EXPECT_EQ(motion.resolution, 0.005);
   motion.resolution = 1e-5;
@@ -170,6 +169,36 @@ TEST(Options, OtherMembers) {
   EXPECT_EQ(record_of(options_named(all, {"work", "joint"}), motion),
             "--work 3 --joint a=1 --joint b=0.25");
   EXPECT_THROW(option_named(all, "none"), Error);
+}
+
+/// Lengths by name, which keep their units until somebody knows the unit of what they are about.
+TEST(Options, LengthsByName) {
+  struct Kept {
+    std::map<std::string, Length> margins;
+  } kept;
+  const Option<Kept> margin = option<Kept>(
+      {.name = "margin",
+       .text = "Margin",
+       .low = 0,
+       .absolute = true,
+       .own_unit = "the scene's unit",
+       .for_all = true},
+      [](auto& r) -> auto& { return r.margins; });
+  EXPECT_EQ(value_words(margin), "LENGTH|NAME=LENGTH");
+  EXPECT_EQ(facts_of(margin), "at least 0; the scene's unit, or with a unit, as in 5mm");
+  for (const char* sound : {"0", "0mm", "5mm", "arm=5mm\n0.01", "arm,box=0", "arm=0m"})
+    EXPECT_EQ(flaw_of(margin, sound), "") << sound;
+  for (const char* wrong :
+       {"", "-1", "arm=-1mm", "arm=", "=1", "5 mm", "arm=5nm", "arm=nan", "arm=1\narm=1mm", "1\n2"})
+    EXPECT_NE(flaw_of(margin, wrong), "") << wrong;
+  for (const char* share : {"1%", "arm=0%"})
+    EXPECT_NE(flaw_of(margin, share).find("no diagonal"), std::string::npos) << share;
+  margin.assign(kept, "0.01\narm=5mm\narm,box=0");
+  EXPECT_EQ(kept.margins[""], Length{0.01});
+  EXPECT_EQ(kept.margins["arm"].in("mm"), Length{5});
+  EXPECT_EQ(kept.margins["arm"].in("m"), Length{0.005});
+  EXPECT_EQ(kept.margins["arm,box"], Length{0});
+  EXPECT_EQ(margin.value(kept), "0.01\narm=5mm\narm,box=0");
 }
 
 TEST(Options, RecordsAreReadBack) {

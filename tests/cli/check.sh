@@ -220,9 +220,18 @@ expect 2 "'box,box' names one thing twice" "$BIN/kaboum-check" free.json --margi
 expect 2 "a link is named with its robot: 'arm/tip'" "$BIN/kaboum-check" free.json --margin tip=13
 expect 2 "no object, robot or link 'arm/tpi'; did you mean 'arm/tip'" "$BIN/kaboum-check" free.json --margin arm/tpi=1
 expect 2 'at least 0' "$BIN/kaboum-check" free.json --margin=-1
+# Lengths with units.
+shows 0 '^free, with margins kept: 15m; arm,box=13900mm$' "$BIN/kaboum-check" free.json --margin 15m --margin arm,box=13900mm
+shows 1 'arm/tip and box are within the margin of 14.1: ' "$BIN/kaboum-check" free.json --margin 1410cm
+shows 1 'scan (point 3)' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 10cm --configuration 1.57,0 --report cloud.json
+json cloud.json "r['clouds'][0]['radius'] == 0.1"
+for option in --margin --cloud-radius --resolution; do
+  expect 2 "${option}.* there is no diagonal" "$BIN/kaboum-check" free.json --cloud scan.xyz $option 1%
+done
+expect 2 'arm=1% (there is no diagonal' "$BIN/kaboum-check" free.json --margin arm=1%
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv
-shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 0.001
+shows 0 'free at every instant' "$BIN/kaboum-check" near.json --path away.csv --robot arm --resolution 1mm
 shows 7 'undecided' "$BIN/kaboum-check" near.json --path through.csv --max-intervals 1
 # Degrees, limits, names.
 shows 1 'within epsilon' "$BIN/kaboum-check" near.json --configuration 90,0 --degrees
@@ -479,5 +488,13 @@ shows 0 '^free$' "$BIN/kaboum-check" apart.json --resting
 for bad in floor=plane floor=plane:4,4 ball=sphere:0 ball=sphere:1,2 can=cylinder:1 tube=tube:1 =box:1,1,1 ball=sphere:nan; do
   expect 2 'primitive: NAME=box:X,Y,Z' "$BIN/kaboum-scene" make bad.json --primitive $bad
 done
+for bad in floor=box:1m,1m ball=sphere:1% ball=sphere:0mm ball=sphere:1e10m; do
+  expect 2 'primitive: .*; \(box has\|sizes are\)' "$BIN/kaboum-scene" make bad.json --primitive $bad
+done
 absent bad.json bad
+# A scene in another unit than metres: two cubes of 10 mm, 20 mm apart.
+expect 0 '0 sets' "$BIN/kaboum-scene" make mm.json --unit mm --primitive a=box:1cm,10,0.01m --primitive b=box:10,10,10 --at b=30,0,0
+shows 0 '^free, with margins kept: 1.99cm$' "$BIN/kaboum-check" mm.json --resting --margin 1.99cm
+shows 1 'within the margin of 20.1' "$BIN/kaboum-check" mm.json --resting --margin 20.1
+shows 1 'within the margin of 20.1' "$BIN/kaboum-check" mm.json --resting --margin a,b=0.0201m
 finish

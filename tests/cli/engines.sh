@@ -39,7 +39,7 @@ for engine in fcl bullet ode; do
     grep -q '"certified": false' meets.json || fail "$engine: the report does not say that nothing is certified"
     grep -q '"answer": "free"' free.json && fail "$engine: 'free' is for what is certified"
     shows 0 '^no contact seen at [0-9]* samples, no point moving farther than 0.1 in between, by .*, not certified$' \
-      "$CHECK" cell.json --path away.csv "$@" --engine-step 0.1 --report motion.json
+      "$CHECK" cell.json --path away.csv "$@" --engine-step 10cm --report motion.json
     shows 1 '^arm/tip and box meet at waypoint 1 + 0\.[34][0-9]* of the way to the next, by .*, not certified$' \
       "$CHECK" cell.json --path through.csv "$@"
     for report in free.json meets.json motion.json; do schema $report; done

@@ -54,6 +54,8 @@ expect 2 "cell.json: .*no object 'shelv'; did you mean 'shelf'" "$S" grasps cell
 expect 2 "cell.json: .*no tool 'hamd'; did you mean 'hand'" "$S" grasps cell.json --tool hamd
 expect 2 'directions' "$S" grasps cell.json --directions 0
 expect 2 'opening' "$S" grasps cell.json --opening -1
+for option in --opening --tip --gap; do expect 2 "${option}.* there is no diagonal" "$S" grasps cell.json $option 1%; done
+expect 2 'inset.* there is no diagonal' "$S" places cell.json --inset 1%
 # A report is written over nothing that the scene names.
 for command in grasps places update pairs; do
   expect 2 'report would overwrite' "$S" "$command" cell.json --report cell/arm/hand.glb
@@ -68,7 +70,7 @@ expect 0 'b3: ' "$S" grasps cell.json --object b1 --object b2 --object b3 --clos
 expect 1 'table: none; no two parallel faces' "$S" grasps cell.json --object table --closing x --opening 0.03 --quiet
 # Again: the same grasps, not twice as many.
 cp cell.json once.json
-expect 0 '' "$S" grasps cell.json --object b1 --object b2 --object b3 --closing x --opening 0.03
+expect 0 '' "$S" grasps cell.json --object b1 --object b2 --object b3 --closing x --opening 3cm --gap 1mm
 expect 0 'the points and surfaces that it has are kept; --force' "$S" places cell.json --report kept.json
 grep -q 'b1: 3 kept (bottom' err.txt || fail "does not say what is kept: $(cat err.txt)"
 cmp cell.json once.json || fail "deriving again changed the scene"
@@ -120,7 +122,7 @@ mate anywhere: bottom distance face 1.5 mm within 0.5 mm; .z angle .z 0 deg with
 put b1 b2 b3 on shelf by anywhere
 END
 cp cell.json shelf.json
-expect 0 'shelf: 3' "$S" places shelf.json --object shelf --inset 0.017 --force --preview shelf.html
+expect 0 'shelf: 3' "$S" places shelf.json --object shelf --inset 17mm --force --preview shelf.html
 expect 0 'solved: ' "$BIN/kaboum-plan" solve stow.task -o plan.json
 shows 0 'valid' "$BIN/kaboum-plan" check stow.task --plan plan.json
 shows 0 '^good' "$BIN/kaboum-plan" run stow.task --plan plan.json

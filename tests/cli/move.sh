@@ -150,8 +150,8 @@ cell["constraints"][0]["all"][0]["second"] = "arm/ende.origin"
 json.dump(cell, open("misspelt.json", "w"))
 END
 POSE=$(python3 -c "from math import *; print(cos(1.2) + cos(1.8), sin(1.2) + sin(1.8), 0, 0, 0, 1.8, sep=',')")
-expect 0 'kept: line within 0.001 (' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep line=0.001 -o line.csv --trajectory line-samples.csv --report line.json
-shows 0 'kept at every instant: line within 0.001' "$BIN/kaboum-check" kept.json --path line.csv --keep line=0.001 --report kept-report.json
+expect 0 'kept: line within 0.001 (' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep line=1mm --margin 0mm --resolution 0.01mm -o line.csv --trajectory line-samples.csv --report line.json
+shows 0 'kept at every instant: line within 0.001' "$BIN/kaboum-check" kept.json --path line.csv --keep line=1mm --report kept-report.json
 shows 0 'kept at every instant' "$BIN/kaboum-check" kept.json --path line-samples.csv --keep line=0.001 --resolution 1e-8 --max-intervals 100000000
 python3 - <<'END' || fail "the end is not on the line"
 import csv, json, math

@@ -18,7 +18,7 @@ for task in 'stacked 3' 'remove 5'; do
     expect 0 solved "$P" solve "$@" -o "$name/plan$threads.json" --seed 3 --threads $threads
   done
   cmp -s "$name/plan1.json" "$name/plan2.json" || fail "$name: another plan on two threads"
-  shows 0 valid "$P" check "$@" --plan "$name/plan1.json"
+  shows 0 valid "$P" check "$@" --plan "$name/plan1.json" --margin 0mm
   shows 0 '^good: 1 branch, .* 0 collisions, 0 limit violations, 0 jumps' "$P" run "$@" --plan "$name/plan1.json" --rate 250
   python3 "$HERE/execute_boxes.py" "$name" "$name/plan1.json" >said.txt 2>&1 || fail "$name: $(tail -1 said.txt)"
   grep -q 'actions, [0-9]* samples' said.txt || fail "$name: $(cat said.txt)"

@@ -87,7 +87,7 @@ done
 cp all0.urdf all.urdf
 sed -n 's/.*filename="\([^"]*\)".*/\1/p' all.urdf | while read -r f; do [ -s "$f" ] || echo lost; done | grep -q lost &&
   fail "a body's file is missing"
-expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 0.01
+expect 0 '' "$S" "$R" --path path.csv -o d.glb --max-reach 1cm
 expect 0 '' "$S" "$R" --path path.csv -o e.glb --simplify 0.3 --report e.json --implicit-margin
 [ "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' e.json)" -lt "$(sed -n 's/.*"vertices": \([0-9]*\).*/\1/p' a.json)" ] ||
   fail "simplified hulls have as many vertices"
@@ -212,7 +212,7 @@ sed 's/1.5/1.6/' path.csv >other.csv
 shows 1 'refuted' "$V" sweep "$R" other.csv a.glb
 shows 1 'refuted' "$V" sweep "$R" path.csv swept.obj
 expect 0 '' "$V" sweep "$R" path.csv swept.obj --links hand
-shows 7 'undecided' "$V" sweep "$R" path.csv a.glb --gap 1
+shows 7 'undecided' "$V" sweep "$R" path.csv a.glb --gap 100cm
 shows 7 'undecided' "$V" sweep "$R" path.csv a.glb --max-cells 1
 expect 3 'none.csv' "$V" sweep "$R" none.csv a.glb
 expect 3 'cut.urdf' "$V" sweep cut.urdf path.csv a.glb

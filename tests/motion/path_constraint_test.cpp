@@ -555,6 +555,8 @@ TEST_F(UsualNames, AreConstraintsOfTheTool) {
   EXPECT_TRUE(std::holds_alternative<Point>(both[1].moving));
   EXPECT_TRUE(std::holds_alternative<Plane>(both[1].resting));
   EXPECT_EQ(both[1].within, 0.1);
+  EXPECT_EQ(make({{"line=10mm"}, "flange"})[0].within, 0.01);
+  EXPECT_EQ(make({{"level=1cm"}, "flange"})[0].within, 0.01);
   EXPECT_EQ(make({{"of-box"}, ""})[0].link, 2U);
   EXPECT_EQ(words_of(both, std::vector<double>{0.5, 0.25}),
             "line within 0.01 (50 % of it seen); on-wall within 0.1 (25 % of it seen)");
@@ -589,8 +591,11 @@ TEST_F(UsualNames, ComeWithWhatIsCarriedUpright) {
 TEST_F(UsualNames, AreRefusedWithWhatWouldHelp) {
   expect_refused({{"uprigt"}, ""}, "did you mean 'upright'?");
   expect_refused({{"on-wal"}, ""}, "did you mean 'on-wall'?");
-  expect_refused({{"upright=0"}, ""}, "a tolerance is a number above 0");
-  expect_refused({{"upright=nan"}, ""}, "a tolerance is a number above 0");
+  expect_refused({{"upright=0"}, ""}, "a tolerance of 'upright' is an angle above 0");
+  expect_refused({{"upright=nan"}, ""}, "a tolerance of 'upright' is an angle above 0");
+  expect_refused({{"upright=5mm"}, ""}, "in radians, without a unit");
+  expect_refused({{"level=5 mm"}, ""}, "a tolerance of 'level' is a length above 0");
+  expect_refused({{"level=1%"}, ""}, "nothing that it could be a percentage of");
   expect_refused({{"line=2"}, ""}, "less than 10 tolerances");
   expect_refused({{"on-wall"}, "flang"}, "did you mean 'flange'?");
   expect_refused({{"on-wall=2"}, ""}, "the scene states the tolerances");

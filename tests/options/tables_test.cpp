@@ -1,6 +1,7 @@
 // The tables of options of all libraries: names, texts, defaults, ranges, records.
 
 #include <gtest/gtest.h>
+#include <kaboum/base/length_unit.h>
 #include <kaboum/certify/mesh_options.h>
 #include <kaboum/certify/set_options.h>
 #include <kaboum/certify/sweep_options.h>
@@ -69,6 +70,25 @@ void check_ranges(const Option<Request>& o) {
   }
 }
 
+/// All lengths take units; what they are shares of, or that they are none, is said.
+template <class Request>
+void check_lengths(const Option<Request>& o) {
+  const bool lengths = o.kind == Kind::Length || (o.kind == Kind::Settings && o.absolute);
+  EXPECT_EQ(unit_words(o).empty(), !(lengths && o.absolute)) << o.name;
+  if (!lengths) return;
+  const std::string name = o.kind == Kind::Settings ? "another=" : "";
+  for (const char* wrong : {"5 mm", "5mn", "mm"}) EXPECT_NE(flaw_of(o, name + wrong), "") << o.name;
+  for (const std::string_view unit : kLengthUnits)
+    EXPECT_EQ(flaw_of(o, name + "5" + std::string(unit)), "") << o.name;
+  const std::string share = flaw_of(o, name + "1%");
+  EXPECT_EQ(share.empty(), !o.absolute) << o.name;
+  EXPECT_EQ(share.find("no diagonal") != std::string::npos, o.absolute) << o.name;
+  Request stated;
+  o.assign(stated, name + "5mm");
+  const std::string kept = o.value(stated).value_or("");
+  EXPECT_TRUE(kept == name + "5mm" || kept == "0.005") << o.name << " " << kept;
+}
+
 template <class Request>
 void check_record(const std::vector<Option<Request>>& table, const Option<Request>& o) {
   Request changed;
@@ -93,6 +113,7 @@ void check(const char* name, const std::vector<Option<Request>>& table) {
   check_names_and_texts(table);
   for (const Option<Request>& o : table) {
     check_ranges(o);
+    check_lengths(o);
     check_record(table, o);
   }
 }

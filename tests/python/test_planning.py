@@ -420,6 +420,36 @@ def test_margins_keep_things_apart(cell):
         kaboum.World(cell, margin={"nobody": 1.0})
 
 
+def test_lengths_take_units(cell):
+    world = kaboum.World(cell)
+    home = world.home()
+    (robot,), thing = world.robots, world.objects[0]
+    near = kaboum.World(cell, margin={"": "10000cm", thing: 100.0, f"{robot},{thing}": "1km"})
+    assert near.margins == f"10000cm; {robot},{thing}=1km; {thing}=100"
+    assert {c["margin"] for c in near.check(home).pairs} <= {100.0, 1000.0}
+    assert kaboum.World(cell, margin="100m").check(home).pairs == kaboum.World(cell, margin=100).check(home).pairs
+    for wrong in ("1%", "5 mm", "robot=5mm", "", -1, {"": "1%"}, {robot: "5nm"}, {robot: [1]}):
+        with pytest.raises(kaboum.Error, match="margin must be"):
+            kaboum.World(cell, margin=wrong)
+    with pytest.raises(kaboum.Error, match="no diagonal"):
+        kaboum.World(cell, margin="1%")
+    points = np.random.default_rng(12).uniform(-1, 1, (300, 3))
+    rows = home + np.random.default_rng(13).uniform(-2, 2, (40, len(home)))
+    seen = [world.with_cloud(points, radius).are_free(rows) for radius in (0.04, "40mm", "4cm")]
+    assert (seen[0] == seen[1]).all() and (seen[0] == seen[2]).all()
+    for wrong in ("1%", "0mm", "40 mm", None, True, [0.04]):
+        with pytest.raises(kaboum.Error, match="radius must be"):
+            world.with_cloud(points, wrong)
+    path = np.stack([home, home + 0.01])
+    answers = [world.check_motion(path, resolution=r).answer for r in (0.0001, "0.1mm")]
+    assert answers[0] == answers[1]
+    assert world.check_motion(np.stack([home, home]), keep="level=1mm")
+    with pytest.raises(kaboum.Error, match="no diagonal"):
+        world.check_motion(path, resolution="1%")
+    with pytest.raises(kaboum.Error, match="in radians, without a unit"):
+        world.check_motion(path, keep="upright=1mm")
+
+
 def test_trajectories_are_those_of_the_program(cell, tmp_path):
     world = kaboum.World(cell)
     home = world.home()

@@ -50,7 +50,7 @@ def test_grasps_and_places_are_the_programs(parts, monkeypatch):
     assert places["names"]["post"] == ["bottom", "top", "face"] and "stands on no face" in places["without"]["ball"]
     assert "ball: none; it stands on no face" in said
     program(parts, "grasps", "a.json", "--object", "post", "--closing", "x", "--opening", "0.05", "--directions", 3, "--tip", 0.01)
-    grasps = kaboum.add_grasps("b.json", "post", closing="x", opening=0.05, directions=3, tip=0.01)
+    grasps = kaboum.add_grasps("b.json", "post", closing="x", opening="5cm", directions=3, tip="10mm")
     assert grasps["names"] == {"post": [f"tip/side-{i}" for i in (1, 2, 3, 4)]} and grasps["without"] == {}
     family = json.loads((parts / "b.json").read_text())["objects"][0]["grasps"][3]
     assert len(family["slides"]) == 2 and family["slides"][0]["to"] == 0.095 and family["rank"] == 1

@@ -94,7 +94,7 @@ TEST(UpperSurfaces, AreOverBlocksAndUnderNone) {
     const double epsilon = i % 3 == 0 ? 0 : 0.03, inset = i % 4 == 0 ? 0.02 : 0;
     const world::World world = standing(blocks, frame, epsilon);
     const std::vector<std::vector<Vec3>> found =
-        surfaces_of(world, frame, {.most = 100, .inset = inset});
+        surfaces_of(world, frame, {.most = 100, .inset = Length{inset}});
     double before = std::numeric_limits<double>::infinity();
     for (std::size_t s = 0; s < found.size(); ++s) {
       const std::vector<Vec3>& outline = found[s];

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/world/checker.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/scene.h>
 
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -32,7 +34,27 @@ std::vector<Contact> contacts(const World& world) {
 }
 
 Margins of(const World& world, const std::map<std::string, double>& margins) {
-  return margins_of(world, {margins});
+  MarginRequest request;
+  for (const auto& [name, margin] : margins) request.margins[name] = Length{margin};
+  return margins_of(world, request);
+}
+
+/// Lengths with a unit are brought into the scene's, whatever that is.
+TEST(Margins, TakeUnits) {
+  World world = boxes(0.5);
+  const auto of_left = [&](const std::string& unit, const Length& margin) {
+    world.unit = unit;
+    return margins_of(world, {{{"left", margin}}}).of.at({Item::kObject, 0});
+  };
+  const auto length = [](const char* text) { return parse_distance(text).value(); };
+  EXPECT_EQ(of_left("m", length("5mm")), 0.005);
+  EXPECT_EQ(of_left("mm", length("5mm")), 5);
+  EXPECT_EQ(of_left("mm", length("0.005")), 0.005);
+  EXPECT_EQ(of_left("mm", length("0m")), 0);
+  EXPECT_THROW(of_left("m", length("1%")), Error);
+  EXPECT_THROW(of_left("m", Length{-1}), Error);
+  EXPECT_THROW(of_left("m", Length{std::nan("")}), Error);
+  EXPECT_EQ(words_of({{{"", length("5mm")}, {"left,right", length("0")}}}), "5mm; left,right=0");
 }
 
 class MarginsOfAnArm : public ::testing::Test {

@@ -5,7 +5,6 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/length_unit.h>
 #include <kaboum/base/option.h>
-#include <kaboum/base/parse_length.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -34,8 +33,6 @@ std::string extension_of(const std::string& name) {
 }
 
 }  // namespace
-
-std::optional<Length> parse_length(const std::string& text) { return kaboum::parse_length(text); }
 
 std::size_t parse_memory(const std::string& text, const char* option) {
   if (text.empty()) return 0;

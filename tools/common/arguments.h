@@ -15,9 +15,6 @@ namespace kaboum::tools {
 
 using kaboum::Length;
 
-/// "0.005", "+0.005" or "0.5%"; nullopt unless it is a positive finite number.
-std::optional<Length> parse_length(const std::string& text);
-
 /// Bytes of "500M", "2G" or "1000". Empty: 0.
 /// @throws Error{InvalidArgument} naming the option
 std::size_t parse_memory(const std::string& text, const char* option);

@@ -10,11 +10,10 @@
 namespace kaboum::tools {
 namespace {
 
-/// "Most bodies (1 to 100000) [64]"
+/// "Most bodies (1 to 100000) [64]", "Largest margin (metres, or with a unit, as in 5mm) [0.005]"
 std::string text_of(const OptionDescription& option, const std::optional<std::string>& initial) {
   std::string out = with_dashes(option.text);
-  const std::string range = range_words(option);
-  if (!range.empty()) out += " (" + range + ")";
+  if (const std::string facts = facts_of(option); !facts.empty()) out += " (" + facts + ")";
   if (!option.otherwise.empty())
     out += " [" + with_dashes(option.otherwise) + "]";
   else if (initial && !initial->empty() && option.kind != OptionDescription::Kind::Flag)

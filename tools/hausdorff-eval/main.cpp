@@ -1,6 +1,7 @@
 // The program hausdorff-eval: options, distance::Comparison, lines, report and pictures.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/distance/compare_options.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/file_unit.h>
@@ -13,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "common/cli.h"
@@ -30,7 +32,7 @@ struct Options {
   std::string a, b, input_format, a_as = "auto", b_as = "auto";
   distance::CompareOptions compare;
   std::set<std::string> stated;  ///< names of these options that were stated
-  std::string at_most;
+  std::optional<Length> at_most;
   std::string csv, heatmap;
   tools::UnitOption unit;  // of A
   tools::CommonOptions common;
@@ -60,18 +62,16 @@ void describe(CLI::App& app, Options& o) {
                "several bodies that are all convex; sets with a margin above 0 need --solid [auto]")
         ->check(CLI::IsMember({"auto", "mesh", "set"}).description(""))
         ->type_name(kinds);
-  app.add_option(
-         "--at-most", o.at_most,
-         "Exit with 1 unless the Hausdorff distance is certainly at most this: a length, or "
-         "a percentage of the diagonal of both bounding boxes, as in 0.5%; of STEP and IGES "
-         "the deviation of the exact faces from the triangles counts, too")
-      ->check([](const std::string& s) {
-        return tools::parse_length(s)
-                   ? std::string()
-                   : "must be a positive number, perhaps with a unit, as in 5mm, or a "
-                     "percentage such as 0.5%";
-      })
-      ->type_name("LENGTH|P%");
+  tools::add_request_option(
+      app,
+      {.name = "at-most",
+       .text =
+           "Exit with 1 unless the Hausdorff distance is certainly at most this: a length in the "
+           "files' unit or its own, as in 5mm, or a percentage of the diagonal of both bounding "
+           "boxes, as in 0.5%; of STEP and IGES the deviation of the exact faces from the "
+           "triangles counts, too",
+       .kind = OptionDescription::Kind::Length},
+      std::nullopt, [&o](const std::string& value) { o.at_most = parse_length(value); });
   app.add_option("--csv", o.csv, "Write the numbers as CSV, a line each way (- for stdout)")
       ->type_name("FILE");
   app.add_option("--heatmap", o.heatmap,
@@ -132,8 +132,8 @@ void note_what_bounds_nothing(tools::ShapeFile& file) {
 /// @param unit  of both files; empty: not known
 int conclude(const Options& o, double diagonal, const std::string& unit, double deviations,
              const distance::Compared& result) {
-  if (!o.at_most.empty()) {
-    const double limit = tools::parse_length(o.at_most)->in(unit).of(diagonal);
+  if (o.at_most) {
+    const double limit = o.at_most->in(unit).of(diagonal);
     if (deviations > 0 ? (result.upper() + deviations) * (1 + 0x1p-50) > limit
                        : result.upper() > limit) {
       tools::log(false, "hausdorff-eval: " +

@@ -63,6 +63,7 @@ void require_cloud_meaning(const CheckOptions& o) {
 void add_clouds(const CheckOptions& o, world::World& world, std::vector<std::string>& notes,
                 Json& report) {
   if (o.clouds.empty()) return;
+  const double radius = o.cloud_radius->in(world.unit).of(0);
   const geom::Transform pose =
       o.cloud_pose.empty() ? geom::Transform() : robot::parse_pose(o.cloud_pose, "--cloud-pose");
   for (const std::string& file : o.clouds) {
@@ -76,11 +77,11 @@ void add_clouds(const CheckOptions& o, world::World& world, std::vector<std::str
                                 {"sha256", io::sha256(bytes)},
                                 {"points", cloud.points.size()},
                                 {"invalid", cloud.invalid},
-                                {"radius", *o.cloud_radius}});
+                                {"radius", radius}});
     add_cloud(world, {.name = name,
                       .points = std::move(cloud.points),
                       .numbers = std::move(cloud.numbers),
-                      .radius = *o.cloud_radius,
+                      .radius = radius,
                       .pose = pose,
                       .allow = o.cloud_allow});
   }

@@ -2,6 +2,7 @@
 
 #include "options.h"
 
+#include <kaboum/base/parse_length.h>
 #include <kaboum/engines/engine_options.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
@@ -22,12 +23,8 @@ void describe_clouds(CLI::App& app, CheckOptions& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("FILE");
-  app.add_option(
-         "--cloud-radius", o.cloud_radius,
-         "How far from a point of --cloud what the sensor saw may be: free is what is apart "
-         "from all balls of this radius")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("LENGTH");
+  add_request_option(app, world::cloud_radius_option(), std::nullopt,
+                     [&o](const std::string& value) { o.cloud_radius = parse_length(value); });
   app.add_option("--cloud-pose", o.cloud_pose,
                  "Where the frame of the points is, as X,Y,Z or X,Y,Z,ROLL,PITCH,YAW or "
                  "X,Y,Z,QX,QY,QZ,QW [the scene's]")

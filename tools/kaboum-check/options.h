@@ -23,7 +23,7 @@ namespace kaboum::tools {
 struct CheckOptions {
   std::string scene, robot, configuration, configurations, batch, motions, verdicts, preview;
   std::vector<std::string> paths, inside, clouds, cloud_allow;
-  std::optional<double> cloud_radius;
+  std::optional<Length> cloud_radius;
   std::string cloud_pose;
   bool cloud_drop_invalid = false;
   robot::PathOptions reading;

@@ -57,7 +57,8 @@ int make_scene(const tools::SceneOptions& o) {
   maker.robots = named_files(o.robots, "--robot");
   maker.objects = named_files(o.objects, "--object");
   for (const std::string& text : o.primitives)
-    maker.primitives.push_back(tools::parse_primitive(text, "--primitive"));
+    maker.primitives.push_back(
+        tools::parse_primitive(text, "--primitive", maker.options.sets.unit));
   maker.regions = named_files(o.regions, "--region");
   maker.places = tools::parse_places(o.places, "--at");
   maker.scales = tools::parse_scales(o.scales, "--scale");

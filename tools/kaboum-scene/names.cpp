@@ -4,11 +4,11 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/parse_length.h>
-#include <kaboum/base/parse_numbers.h>
 #include <kaboum/robot/base_pose.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <ranges>
+#include <string_view>
 
 #include "common/arguments.h"
 
@@ -23,7 +23,8 @@ scene::NamedFile parse_named_file(const std::string& text, const char* option) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-scene::NamedPrimitive parse_primitive(const std::string& text, const char* option) {
+scene::NamedPrimitive parse_primitive(const std::string& text, const char* option,
+                                      const std::string& unit) {
   using Kind = world::Primitive::Kind;
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorCode::InvalidArgument,
@@ -36,11 +37,15 @@ scene::NamedPrimitive parse_primitive(const std::string& text, const char* optio
   if (equals == std::string::npos || equals == 0 || colon == std::string::npos || colon < equals)
     refuse("");
   const std::string kind = text.substr(equals + 1, colon - equals - 1);
-  const std::vector<double> sizes =
-      parse_numbers(std::string_view(text).substr(colon + 1)).value_or(std::vector<double>());
-  if (sizes.empty() ||
-      std::ranges::any_of(sizes, [](double size) { return !(size >= 1e-9 && size <= 1e9); }))
-    refuse("; sizes are numbers from 1e-9 to 1e9");
+  std::vector<double> sizes;
+  for (const auto part : std::views::split(std::string_view(text).substr(colon + 1), ',')) {
+    const std::optional<Length> length = parse_length({part.begin(), part.end()});
+    if (!length || length->percent)
+      refuse("; sizes are lengths in " + unit + ", or with a unit, as in 40cm");
+    sizes.push_back(length->in(unit).value);
+    if (!(sizes.back() >= 1e-9 && sizes.back() <= 1e9))
+      refuse("; sizes are from 1e-9 to 1e9 " + unit);
+  }
   scene::NamedPrimitive out{text.substr(0, equals), {}};
   world::Primitive& p = out.primitive;
   const auto need = [&](std::size_t count) {

@@ -14,8 +14,10 @@ namespace kaboum::tools {
 scene::NamedFile parse_named_file(const std::string& text, const char* option);
 
 /// "NAME=KIND:SIZES": box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH or plane:X,Y,Z.
+/// @param unit  that sizes are brought into
 /// @throws Error{InvalidArgument} naming the option.
-scene::NamedPrimitive parse_primitive(const std::string& text, const char* option);
+scene::NamedPrimitive parse_primitive(const std::string& text, const char* option,
+                                      const std::string& unit);
 
 /// "NAME=POSE" for each, see robot::parse_pose.
 /// @throws Error{InvalidArgument} naming the option.

@@ -42,10 +42,12 @@ CLI::App* describe_make(CLI::App& app, SceneOptions& o) {
       ->required();
   make->add_option("--robot", o.robots, "A robot; may be repeated")->type_name("NAME=URDF");
   make->add_option("--object", o.objects, "An object; may be repeated")->type_name("NAME=MESH");
-  make->add_option("--primitive", o.primitives,
-                   "An object that is a box, sphere, cylinder, capsule or plane, in its middle and "
-                   "along z: box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH (without "
-                   "caps) or plane:X,Y,Z (so wide, and so thick below); may be repeated")
+  make->add_option(
+          "--primitive", o.primitives,
+          "An object that is a box, sphere, cylinder, capsule or plane, in its middle and "
+          "along z: box:X,Y,Z, sphere:R, cylinder:R,LENGTH, capsule:R,LENGTH (without "
+          "caps) or plane:X,Y,Z (so wide, and so thick below), lengths in the scene's unit, or "
+          "with one, as in 5mm; may be repeated")
       ->type_name("NAME=KIND:SIZES");
   make->add_option("--region", o.regions, "A region: its inner set; may be repeated")
       ->type_name("NAME=MESH");

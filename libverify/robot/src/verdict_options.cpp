@@ -66,7 +66,6 @@ std::vector<Option<MotionVerdictOptions>> motion_table() {
            .text = "Parts that move and measure less are not divided further; where they are "
                    "not known to be inside, the answer is undecided",
            .absolute = true,
-           .metres = true,
            .otherwise = "margin / 10^6"},
           [](auto& r) -> auto& { return r.gap; }),
       option<R>(

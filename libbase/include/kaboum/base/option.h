@@ -31,7 +31,8 @@ struct OptionDescription {
     Text,
     Files,     ///< files or folders, each stated by itself
     Names,     ///< different names with commas between them: "arm,hand"
-    Settings,  ///< numbers by name, each stated by itself: "finger=0.04"; limits are of each
+    Settings,  ///< numbers by name, each stated by itself: "finger=0.04"; limits are of each.
+               ///< Or lengths, also 0: "arm=5mm"
   };
 
   std::string name;  ///< words in small letters, joined by hyphens: "max-bodies"
@@ -42,9 +43,10 @@ struct OptionDescription {
   double low = -std::numeric_limits<double>::infinity();  ///< least count or number
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
   bool between = false;   ///< a number lies between the limits and is none of them
-  bool absolute = false;  ///< a length is no percentage; a number is such a length
-  bool metres = false;    ///< an absolute length is one of robots, and may state another unit
-  bool for_all = false;   ///< of settings: a number without a name is of all, with an empty name
+  bool absolute = false;  ///< a length is no percentage; a number is such a length, in metres
+  /// Unit of an absolute length that states none, in words.
+  std::string own_unit = "metres";
+  bool for_all = false;  ///< of settings: a number without a name is of all, with an empty name
   /// Name of a list where all its parts are stated at once: "plugins"; empty: `name`.
   std::string plural = {};
   /// Default in words; empty: that of the request, if it has one.
@@ -67,6 +69,12 @@ std::string value_words(const OptionDescription& option);
 
 /// The range of a count or number: "1 to 100000", "at least 0"; empty without limits.
 std::string range_words(const OptionDescription& option);
+
+/// The unit of an absolute length: "metres, or with a unit, as in 5mm"; empty for all else.
+std::string unit_words(const OptionDescription& option);
+
+/// Range and unit: "at least 0; metres, or with a unit, as in 5mm"; empty without either.
+std::string facts_of(const OptionDescription& option);
 
 /// Text of an option with the names of other ones as a front end spells them.
 /// @param spelled  of a name: "--max-bodies", "max_bodies"
@@ -93,6 +101,8 @@ bool is_repeated(const OptionDescription& option);
 /// Numbers by name, of texts such as "finger=0.04"; the name of a number alone is empty.
 /// @pre flaw_of finds nothing.
 std::map<std::string, double> numbers_by_name(const std::vector<std::string>& settings);
+/// Lengths by name, of texts such as "arm=5mm", in the same way.
+std::map<std::string, Length> lengths_by_name(const std::vector<std::string>& settings);
 
 /// Bytes of "500M", "2G" or "1000"; nullopt unless it is a size from 1 to 1e15.
 std::optional<std::size_t> parse_memory(const std::string& text);
@@ -211,7 +221,7 @@ Option<Request> list(OptionDescription description, Member member) {
           }};
 }
 
-/// An option of numbers by name; none states nothing.
+/// An option of numbers or lengths by name; none states nothing.
 template <class Request, class Member>
 Option<Request> settings(OptionDescription description, Member member) {
   description.kind = OptionDescription::Kind::Settings;
@@ -224,21 +234,27 @@ Option<Request> settings(OptionDescription description, Member member) {
             return option_text::of(lines, description);
           },
           [member, description](Request& request, const std::string& text) {
-            member(request) = numbers_by_name(option_text::parts(text, description));
+            const std::vector<std::string> parts = option_text::parts(text, description);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member(request))>,
+                                         std::map<std::string, Length>>)
+              member(request) = lengths_by_name(parts);
+            else
+              member(request) = numbers_by_name(parts);
           }};
 }
 }  // namespace option_detail
 
 /// An option whose value is a member of the request: a bool, size_t, double, Length, string,
-/// vector of size_t or strings, or map of numbers by name, or an optional one. An empty vector or
-/// map states nothing.
+/// vector of size_t or strings, or map of numbers or lengths by name, or an optional one. An empty
+/// vector or map states nothing.
 /// @param member  of a request, const or not: a reference to the value
 template <class Request, class Member>
 Option<Request> option(OptionDescription description, Member member) {
   using Stored = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
   if constexpr (std::is_same_v<Stored, std::vector<std::string>>)
     return option_detail::list<Request>(std::move(description), member);
-  else if constexpr (std::is_same_v<Stored, std::map<std::string, double>>)
+  else if constexpr (std::is_same_v<Stored, std::map<std::string, double>> ||
+                     std::is_same_v<Stored, std::map<std::string, Length>>)
     return option_detail::settings<Request>(std::move(description), member);
   else
     return option_detail::single<Request>(std::move(description), member);

@@ -86,8 +86,8 @@ geom::Transform pose_at_first(const world::World& world, std::size_t object);
 /// Request for places where objects stand.
 struct PlaceRequest {
   std::size_t most = 8;  ///< points on top of an object, and surfaces
-  /// By which surfaces are smaller all round, beyond the set's ε; > 0 [length]
-  std::optional<double> inset = {};
+  /// By which surfaces are smaller all round, beyond the set's ε; no percentage
+  std::optional<Length> inset = {};
   bool replace = false;  ///< points and surfaces of these names that the scene has already
 };
 

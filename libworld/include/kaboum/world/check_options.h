@@ -9,6 +9,9 @@ namespace kaboum::world {
 /// The options of looking at one state: resting.
 const std::vector<Option<Checker::Options>>& state_options();
 
+/// The option of a cloud's radius: cloud-radius.
+OptionDescription cloud_radius_option();
+
 /// The options of deciding a motion: resolution, max-intervals.
 const std::vector<Option<MotionOptions>>& motion_options();
 

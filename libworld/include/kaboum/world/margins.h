@@ -13,11 +13,11 @@ namespace kaboum::world {
 /// carries, are kept apart only where their pair states it. [length]
 double margin_between(const World& world, const WorldState& state, const Item& a, const Item& b);
 
-/// Margins by names, as users state them. [length]
+/// Margins by names, as users state them; no percentages.
 struct MarginRequest {
   /// By "OBJECT", "ROBOT", "ROBOT/LINK", or two of them with a comma between; the empty name is of
   /// all things that are not named.
-  std::map<std::string, double> margins = {};
+  std::map<std::string, Length> margins = {};
 };
 
 /// The option of margins: margin.
@@ -27,8 +27,8 @@ const std::vector<Option<MarginRequest>>& margin_options();
 std::string words_of(const MarginRequest& request);
 
 /// The margins that are asked for.
-/// @throws Error{InvalidArgument} for names that the world lacks, distances that are negative or
-///   not finite
+/// @throws Error{InvalidArgument} for names that the world lacks, distances that are negative, not
+///   finite or percentages
 Margins margins_of(const World& world, const MarginRequest& request);
 
 }  // namespace kaboum::world
