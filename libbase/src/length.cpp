@@ -82,11 +82,14 @@ std::optional<Length> parse_distance(std::string_view text) {
   return length;
 }
 
-std::vector<std::string> texts_with_unit(std::span<const Length> lengths) {
+std::vector<std::string> notes_on_unit(std::span<const Length> lengths, const std::string& taken) {
   std::vector<std::string> out;
-  for (const Length& length : lengths)
-    if (length.unit != Length::Unit::Own && std::ranges::find(out, length.text()) == out.end())
-      out.push_back(length.text());
+  for (const Length& length : lengths) {
+    if (length.unit == Length::Unit::Own) continue;
+    std::string note = "The file does not state the unit of its vertices: ";
+    note.append(length.text()).append(" is brought into ").append(taken).append(".");
+    if (std::ranges::find(out, note) == out.end()) out.push_back(std::move(note));
+  }
   return out;
 }
 

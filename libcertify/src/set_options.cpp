@@ -247,10 +247,9 @@ SetRequest in_unit_of_file(SetRequest request, const std::string& unit,
   if (unit.empty()) {
     std::vector<Length> stated;
     for (const Length* length : lengths) stated.push_back(*length);
-    const std::string there =
-        " is brought into " + request.unit + "; another one is stated by «unit=mm».";
-    for (const std::string& text : texts_with_unit(stated))
-      notes.push_back("The file does not state the unit of its vertices: " + text + there);
+    for (std::string& note :
+         notes_on_unit(stated, request.unit + "; another one is stated by «unit=mm»"))
+      notes.push_back(std::move(note));
   } else {
     if (unit != request.unit && !request.unit.empty())
       notes.push_back("Its vertices are in " + unit + " as read, and so is its set, not in " +

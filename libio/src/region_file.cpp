@@ -34,7 +34,7 @@ class RegionReader {
     for (const auto& [key, value] : entry_.items()) {
       if (key == "name") {
         if (!value.is_string()) fail("name is no text");
-        out.name = "'" + value.get<std::string>() + "'";
+        out.name = std::string("'").append(value.get<std::string>()).append("'");
       } else if (key == "epsilon") {
         out.epsilon = length(value);
       } else if (key == "box" || key == "half_space" || key == "ball") {

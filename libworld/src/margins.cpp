@@ -162,9 +162,9 @@ std::string words_of(const MarginRequest& request) {
 Margins margins_of(const World& world, const MarginRequest& request) {
   Margins out;
   std::array<Pairs, 3> stated;
-  for (const auto& [name, stated] : request.margins) {
-    const double margin = stated.in(world.unit).value;
-    if (stated.percent || !(margin >= 0) || !std::isfinite(margin))
+  for (const auto& [name, length] : request.margins) {
+    const double margin = length.in(world.unit).value;
+    if (length.percent || !(margin >= 0) || !std::isfinite(margin))
       refuse("a distance must be a length of 0 or above");
     if (name.empty()) {
       out.all = margin;

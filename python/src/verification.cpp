@@ -1,5 +1,6 @@
 // Claims about meshes and sets: kaboum.verify_mesh and verify_cover, as bound-verify.
 
+#include <kaboum/base/parse_length.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/exact_points.h>
@@ -88,8 +89,25 @@ py::list regions_of(const verify::MeshVerdict& found, const geom::ConvexSet& set
   return out;
 }
 
+/// Brings lengths into the unit of the original or, where it states none, into that of the set.
+void bring_into_unit(const MeshValue& original, const geom::ConvexSet* set, Options& asked,
+                     std::vector<geom::RequestedRegion>& regions, std::vector<std::string>& notes) {
+  std::vector<Length*> lengths;
+  if (asked.epsilon) lengths.push_back(&*asked.epsilon);
+  for (geom::RequestedRegion& one : regions) lengths.push_back(&one.epsilon);
+  std::string unit = original.unit;
+  if (unit.empty() && set != nullptr && !set->provenance.unit.empty()) {
+    unit = set->provenance.unit;
+    std::vector<Length> stated;
+    for (const Length* length : lengths) stated.push_back(*length);
+    for (std::string& note : notes_on_unit(stated, unit + ", which is that of the set"))
+      notes.push_back(std::move(note));
+  }
+  for (Length* length : lengths) *length = length->in(unit);
+}
+
 Verdict decide(verify::Relation relation, const MeshValue& original,
-               const geom::Mesh& approximation, const geom::ConvexSet* set, const Options& asked,
+               const geom::Mesh& approximation, const geom::ConvexSet* set, Options asked,
                std::vector<geom::RequestedRegion> regions, const RunKeywords& running) {
   Watch watch(running.progress);
   Verdict out;
@@ -99,13 +117,10 @@ Verdict decide(verify::Relation relation, const MeshValue& original,
     const bool cover = relation == verify::Relation::Cover && set != nullptr;
     const double margin = cover ? geom::margin_of(*set).value_or(0) : 0;
     const double diagonal = geom::bounding_box(mesh).diagonal();
-    // Of both: one may leave it out.
-    const std::string& unit =
-        original.unit.empty() && set != nullptr ? set->provenance.unit : original.unit;
-    for (geom::RequestedRegion& one : regions) one.epsilon = one.epsilon.in(unit);
+    bring_into_unit(original, set, asked, regions, out.notes);
     std::optional<double> bound;
     if (asked.epsilon) {
-      bound = asked.epsilon->in(unit).of(diagonal);
+      bound = asked.epsilon->of(diagonal);
       if (!std::isfinite(*bound) || !(*bound > margin))
         throw Error(ErrorCode::InvalidArgument,
                     "epsilon must be larger than the set's margin, and finite");

@@ -83,7 +83,7 @@ for other in '--max-bodies 3' '--max-total-vertices 99' '--min-thickness 0.1' '-
   expect 2 "epsilon-map .*${other%% *}" "$B" notched.off -o out.glb $other --epsilon-map left.json
 done
 for program in "$B notched.off -o out.glb" "$V cover notched.off coarse.glb"; do
-  expect 3 '' $program --epsilon 0.6 --epsilon-map ''
+  expect 2 'epsilon-map is empty' $program --epsilon 0.6 --epsilon-map ''
   expect 3 'none.json' $program --epsilon 0.6 --epsilon-map none.json
 done
 # A map with a unit, of a file without one: what it is taken for is noted on the terminal and in the report.

@@ -170,6 +170,7 @@ def test_regions_as_the_tool(bracket, tmp_path):
             assert mine.pop("at") == pytest.approx(its.pop("at"), abs=0)
             its.pop("pieces")
             assert mine == its
+        assert [n for n in verdict.notes if "m is brought into m, which is that of the set" in n]
     assert kaboum.verify_cover(bracket, made, epsilon="6%", epsilon_map=[near])
     assert "regions" not in kaboum.verify_cover(bracket, made).claims
     fine = kaboum.verify_cover(bracket, coarse, epsilon_map=[near | {"epsilon": "0.1%"}])

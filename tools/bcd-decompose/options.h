@@ -26,9 +26,9 @@ struct DecomposeOptions {
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   certify::SphereShare share = certify::SphereShare::Farthest;
   std::optional<std::string> epsilon_map;  ///< file of regions
-  std::string repair;       ///< spheres of the robot that are to be changed; empty: none
-  std::string pairs;        ///< file of pairs of links that need no check; empty: none
-  std::string inertia;      ///< «mass» or a density; empty: what the file says stays
+  std::string repair;   ///< spheres of the robot that are to be changed; empty: none
+  std::string pairs;    ///< file of pairs of links that need no check; empty: none
+  std::string inertia;  ///< «mass» or a density; empty: what the file says stays
   bool no_cache = false, srdf = false;
   RobotOptions robot;
   CommonOptions common;

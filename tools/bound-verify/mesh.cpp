@@ -33,11 +33,9 @@ void note_unit(MeshCase& run, const Regions& regions) {
   std::vector<Length> lengths;
   if (run.asked.how.epsilon) lengths.push_back(*run.asked.how.epsilon);
   for (const geom::RequestedRegion& one : regions) lengths.push_back(one.epsilon);
-  const std::string there =
-      " is brought into " + unit + ", which is that of " + run.asked.approximation + ".";
-  for (const std::string& text : texts_with_unit(lengths))
-    run.original.notes.push_back("The file does not state the unit of its vertices: " + text +
-                                 there);
+  for (std::string& note :
+       notes_on_unit(lengths, unit + ", which is that of " + run.asked.approximation))
+    run.original.notes.push_back(std::move(note));
 }
 
 /// Reads both files, and says what is to be known of them.

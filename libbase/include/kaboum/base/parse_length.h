@@ -16,7 +16,9 @@ std::optional<Length> parse_length(std::string_view text);
 /// The same, or zero: "0", "0mm".
 std::optional<Length> parse_distance(std::string_view text);
 
-/// The texts of those lengths that state a unit, each once.
-std::vector<std::string> texts_with_unit(std::span<const Length> lengths);
+/// Notes that a file does not state the unit which those lengths that state one are brought into:
+/// one for each text.
+/// @param taken  that unit, and why it is: "m, which is that of set.glb"
+std::vector<std::string> notes_on_unit(std::span<const Length> lengths, const std::string& taken);
 
 }  // namespace kaboum
