@@ -49,8 +49,11 @@ void store_known(const CacheFolder& cache, const std::filesystem::path& file,
                  std::optional<io::Format> format, double scale, std::size_t bytes,
                  const std::string& sha256, const std::string& mesh_hash,
                  const io::ReadResult& read) {
-  // Of files with quads that are not plane more counts than what is kept here.
-  if (!read.other_files.empty() || bytes < kReadAtOnce || !read.bent_quads.empty()) return;
+  // Of files with quads that are not plane more counts than what is kept here. Assimp may be
+  // another one the next time.
+  if (!read.other_files.empty() || bytes < kReadAtOnce || !read.bent_quads.empty() ||
+      read.format == io::Format::Assimp)
+    return;
   const Json json = {{"mesh", mesh_hash}, {"notes", read.notes}, {"unit", read.unit}};
   cache.store(kKind, key_of_file(file, format, scale, sha256),
               json.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -1,6 +1,7 @@
-// FBX through assimp, which delivers float32 coordinates in a tree of nodes. No post-processing
-// step runs: none of them may merge, drop or reorder geometry; polygons are split by our own
-// splitter. It runs in a child process: damaged and even some valid files make it crash.
+// FBX, and on request what has no reader of ours, through assimp, which delivers float32
+// coordinates in a tree of nodes. No post-processing step runs: none of them may merge, drop or
+// reorder geometry; polygons are split by our own splitter. It runs in a child process: damaged and
+// even some valid files make it crash.
 
 #include <assimp/scene.h>
 #include <kaboum/base/error.h>
@@ -8,6 +9,7 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +17,10 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <set>
 
 #include "builder.h"
+#include "bytes.h"
 #include "child.h"
 #include "fbx_objects.h"
 #include "formats.h"
@@ -27,7 +31,6 @@ namespace kaboum::io {
 namespace {
 
 constexpr int kMaxNodeDepth = 1000;
-constexpr const char* kName = "kaboum-input.fbx";
 
 class MemoryStream : public Assimp::IOStream {
  public:
@@ -63,9 +66,10 @@ class MemoryStream : public Assimp::IOStream {
 /// Shows assimp the file in memory and no other.
 class OnlyThisFile : public Assimp::IOSystem {
  public:
-  explicit OnlyThisFile(const Source& source) : source_(source) {}
+  /// @param name  by which assimp knows the file, and its format
+  OnlyThisFile(const Source& source, std::string name) : source_(source), name_(std::move(name)) {}
 
-  bool Exists(const char* file) const override { return std::string_view(file) == kName; }
+  bool Exists(const char* file) const override { return file == name_; }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     return Exists(file) && mode[0] == 'r' ? new MemoryStream(source_.bytes) : nullptr;
@@ -74,6 +78,90 @@ class OnlyThisFile : public Assimp::IOSystem {
 
  private:
   const Source& source_;
+  std::string name_;
+};
+
+/// What assimp says of colours, pictures, cameras and animations, as errors, where all surfaces are
+/// there.
+constexpr std::array<std::string_view, 14> kOfAppearance = {
+    "3DS: Failed to read ambient base color",
+    "3DS: Skipping FOV animation track",
+    "3DS: Unable to read proper camera look-at vector",
+    "3DS: Unknown material: ",
+    "Failed to find source file for material",
+    "LWO2: Clip index is out of bounds",
+    "LWO2: Clip referrer index is out of range",
+    "LWO2: Clip references another clip reference",
+    "LWO2: Clip type is not supported",
+    "LWO2: Found gradient texture, this is not supported",
+    "LWO2: Found procedural texture, this is not supported",
+    "LWO2: Ill-formed SURF.BLOK ordinal string",
+    "LWO2: Unsupported texture mapping: ",
+    "LWOB: Unsupported legacy texture: "};
+
+/// A message without numbers and names, of which assimp may have hundreds alike.
+std::string kind_of(std::string_view message) {
+  std::string kind;
+  bool named = false;  // within `...`
+  for (const char c : message) {
+    if (c == '`') named = !named;
+    if (!named && (c < '0' || c > '9')) kind += c;
+  }
+  return kind;
+}
+
+/// Messages of assimp: the first ones of the first few kinds, and how many others there were.
+class Messages : public Assimp::LogStream {
+ public:
+  void write(const char* line) override {
+    std::string_view text(line);
+    while (text.ends_with('\n')) text.remove_suffix(1);
+    constexpr std::string_view kThread = "T0: ";  // before it the kind of message
+    const std::size_t at = text.find(kThread);
+    if (at == std::string_view::npos)
+      return;  // "Skipping one or more lines with the same contents"
+    text.remove_prefix(at + kThread.size());
+    const auto says = [&](std::string_view words) { return text.starts_with(words); };
+    if (std::ranges::any_of(kOfAppearance, says)) return;
+    if (kinds_.size() < kMost && kinds_.insert(kind_of(text)).second)
+      first_.push_back(in_quotes(text, kLongest));
+    else
+      ++others_;
+  }
+
+  [[nodiscard]] bool empty() const { return first_.empty(); }
+  /// "'this', 'that' and 3 more"
+  [[nodiscard]] std::string words() const {
+    std::string list;
+    for (const std::string& message : first_) list.append(list.empty() ? "" : ", ").append(message);
+    return others_ == 0 ? list : list.append(" and ").append(std::to_string(others_)) + " more";
+  }
+
+ private:
+  static constexpr std::size_t kMost = 5, kLongest = 120;
+  std::set<std::string> kinds_;
+  std::vector<std::string> first_;
+  std::size_t others_ = 0;
+};
+
+/// Has assimp say its messages while it lives.
+class Listening {
+ public:
+  Listening(Messages& errors, Messages& warnings) : errors_(errors), warnings_(warnings) {
+    Assimp::Logger* logger = Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    logger->attachStream(&errors_, Assimp::Logger::Err);
+    logger->attachStream(&warnings_, Assimp::Logger::Warn);
+  }
+  Listening(const Listening&) = delete;
+  Listening& operator=(const Listening&) = delete;
+  ~Listening() {
+    Assimp::DefaultLogger::get()->detachStream(&errors_, Assimp::Logger::Err);
+    Assimp::DefaultLogger::get()->detachStream(&warnings_, Assimp::Logger::Warn);
+    Assimp::DefaultLogger::kill();
+  }
+
+ private:
+  Messages &errors_, &warnings_;
 };
 
 Placement placement_of(const aiMatrix4x4& m) {
@@ -83,6 +171,13 @@ Placement placement_of(const aiMatrix4x4& m) {
     result.translation[i] = static_cast<double>(m[i][3]);
   }
   return result;
+}
+
+/// Whether (x, y, z) becomes (x, z, -y), perhaps scaled.
+bool turns_up(const aiMatrix4x4& m) {
+  const float scale = m.a1;
+  aiMatrix4x4 turned(scale, 0, 0, 0, 0, 0, scale, 0, 0, -scale, 0, 0, 0, 0, 0, 1);
+  return scale > 0 && m == turned;
 }
 
 /// Copies the scene's meshes, once per node that refers to them, into the builder.
@@ -98,6 +193,9 @@ class AssimpReader {
     copier_.add_notes();
   }
 
+  /// Meshes that no node shows.
+  [[nodiscard]] std::size_t hidden() const { return scene_.mNumMeshes - shown_.size(); }
+
  private:
   void read_node(const aiNode& node, const Placement& parent, int depth) {
     if (depth > kMaxNodeDepth)
@@ -107,17 +205,32 @@ class AssimpReader {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       if (node.mMeshes[i] >= scene_.mNumMeshes)
         fail(source_, "a node refers to a mesh that does not exist; the file is damaged");
+      shown_.insert(node.mMeshes[i]);
       read_mesh(*scene_.mMeshes[node.mMeshes[i]], placement);
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i)
+    for (unsigned i = 0; i < node.mNumChildren; ++i) {
+      if (node.mChildren[i] == nullptr)
+        fail(source_, "a part of the scene is lost in the importer; export it as one group");
       read_node(*node.mChildren[i], placement, depth + 1);
+    }
   }
 
   void read_mesh(const aiMesh& mesh, const Placement& placement) {
+    const auto called = [&] {
+      const std::string_view name(mesh.mName.data, mesh.mName.length);
+      return name.empty() ? std::string("a mesh") : "the mesh " + in_quotes(name);
+    };
+    if (mesh.mNumBones > 0 || mesh.mNumAnimMeshes > 0)
+      fail(source_, called() +
+                        " has a skin or morph targets, which are not supported; apply the "
+                        "deformation before exporting");
     points_.clear();
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D& v = mesh.mVertices[i];
       points_.emplace_back(v.x, v.y, v.z);
+      if (!points_.back().allFinite())
+        fail(source_,
+             "vertex " + std::to_string(i) + " of " + called() + " is not finite; mend the file");
     }
     copier_.add_points(points_, placement, source_.begin());
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
@@ -135,6 +248,7 @@ class AssimpReader {
   const Source& source_;
   const aiScene& scene_;
   SceneCopier copier_;
+  std::set<unsigned> shown_;
   std::vector<geom::Vec3> points_;
 };
 
@@ -150,22 +264,30 @@ double centimetres_of(const aiScene& scene) {
   return std::isfinite(unit) ? unit : 0;
 }
 
-ReadResult read_here(const Source& source) {
-  Assimp::Importer importer;
-  importer.SetIOHandler(std::make_unique<OnlyThisFile>(source).release());
+/// The scene, as long as the importer lives.
+const aiScene& imported(const Source& source, Assimp::Importer& importer,
+                        const std::string& format) {
+  const std::string name = "kaboum-input." + format;
+  importer.SetIOHandler(std::make_unique<OnlyThisFile>(source, name).release());
   const aiScene* scene = nullptr;
   try {
-    scene = importer.ReadFile(kName, 0);
+    scene = importer.ReadFile(name, 0);
   } catch (const std::exception& e) {
     fail(source, std::string("the importer failed: ") + e.what());
   }
   if (scene == nullptr)
-    fail(source, std::string("the file cannot be read as fbx: ") + importer.GetErrorString() +
-                     "; check its format");
+    fail(source, "the file cannot be read as " + format + ": " +
+                     in_quotes(importer.GetErrorString(), 200) + "; check its format");
+  return *scene;
+}
+
+ReadResult read_fbx_here(const Source& source) {
+  Assimp::Importer importer;
+  const aiScene& scene = imported(source, importer, "fbx");
   MeshBuilder builder(source);
   builder.note("The importer (assimp) delivers 32-bit floats; those are taken as the input.");
-  AssimpReader(source, *scene, builder).read();
-  if (const double unit = centimetres_of(*scene); unit > 0) {
+  AssimpReader(source, scene, builder).read();
+  if (const double unit = centimetres_of(scene); unit > 0) {
     builder.set_unit(unit * 0.01);
     if (unit != 1)
       builder.note("The file's unit is " + shortest_digits(unit) +
@@ -174,16 +296,70 @@ ReadResult read_here(const Source& source) {
   return builder.finish(Format::Fbx, true);
 }
 
+/// Refuses a file that is cut, where it says how long it is or how it ends, and assimp does not
+/// look.
+void require_whole(const Source& source, std::string_view extension) {
+  bool whole = true;
+  if (extension == "dxf") {
+    const std::size_t end = source.bytes.find_last_not_of(" \t\r\n");
+    whole = source.bytes.substr(0, end + 1).ends_with("EOF");
+  } else if (extension == "lwo" || extension == "lxo") {
+    constexpr std::size_t kHead = 8;  // of an IFF file: its kind, and the size of what follows
+    whole =
+        source.bytes.size() >= kHead &&
+        load<std::uint32_t>(source.begin() + 4, std::endian::big) <= source.bytes.size() - kHead;
+  }
+  if (!whole) fail(source, "the file is cut: its end is not there; get it again");
+}
+
+ReadResult read_imported_here(const Source& source, std::string_view extension) {
+  Messages errors, warnings;
+  const Listening listening(errors, warnings);
+  Assimp::Importer importer;
+  const aiScene& scene = imported(source, importer, std::string(extension));
+  if (!errors.empty())
+    fail(source, "assimp says that something is wrong or left out: " + errors.words() +
+                     "; mend the file, or export it as STL, OBJ or GLB");
+  if ((scene.mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
+    fail(source, "assimp says that its scene is incomplete; export it with its geometry");
+  MeshBuilder builder(source);
+  builder.note(
+      "Warning: assimp read this file, and delivers 32-bit floats, which are taken as the "
+      "input. It leaves out without a message what it does not know: what is claimed is "
+      "about the triangles that it delivered.");
+  if (!warnings.empty()) builder.note("assimp warns: " + warnings.words() + ".");
+  AssimpReader reader(source, scene, builder);
+  reader.read();
+  if (turns_up(scene.mRootNode->mTransformation))
+    builder.note("assimp turns what files of this format hold: their z is y here, their y is -z.");
+  if (reader.hidden() > 0)
+    builder.note(
+        counted(reader.hidden(), "mesh that no node shows was", "meshes that no node shows were") +
+        " left out.");
+  if (scene.mNumAnimations > 0)
+    builder.note("Animations were left out: the meshes are where they are without them.");
+  return builder.finish(Format::Assimp, true);
+}
+
 }  // namespace
 
 bool has_assimp() { return true; }
 
 ReadResult read_fbx(const Source& source) {
   std::vector<std::string> notes = check_fbx_objects(source);
-  ReadResult result =
-      read_in_child(source, child_limits(source.bytes.size()), [&] { return read_here(source); });
+  ReadResult result = read_in_child(source, child_limits(source.bytes.size()),
+                                    [&] { return read_fbx_here(source); });
   std::ranges::move(notes, std::back_inserter(result.notes));
   return result;
+}
+
+ReadResult read_by_assimp(const Source& source) {
+  const std::string_view extension = imported_extension(source.name);
+  if (extension.empty())
+    fail(source, "assimp is not asked for files of this name: it knows formats by extensions");
+  require_whole(source, extension);
+  return read_in_child(source, child_limits(source.bytes.size()),
+                       [&] { return read_imported_here(source, extension); });
 }
 
 }  // namespace kaboum::io

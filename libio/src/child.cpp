@@ -128,7 +128,7 @@ class Receiver {
   ReadResult mesh() {
     ReadResult r;
     const auto format = value<std::underlying_type_t<Format>>();
-    ok_ = ok_ && format >= 0 && format <= static_cast<int>(Format::Iges);
+    ok_ = ok_ && format >= 0 && format <= static_cast<int>(Format::Assimp);
     if (ok_) r.format = static_cast<Format>(format);
     r.single_precision = value<std::uint8_t>() != 0;
     for (std::size_t* n :

@@ -461,14 +461,11 @@ geom::ConvexSet read_convex_set(const fs::path& path, std::optional<Format> form
   std::error_code error;
   if (path != "-" && fs::is_directory(path, error)) return read_directory(path, out);
   const std::string name = path == "-" ? "standard input" : path.string();
-  if (!format && path != "-") format = format_from_name(path.extension().string());
-  if (!format)
-    throw Error(ErrorCode::InvalidInput,
-                name + ": the format is not known from the name; state it");
+  const Format known = format_of_file(path, format);
   out.bytes = read_file(path);
   fs::path directory;
   if (path != "-") directory = path.has_parent_path() ? path.parent_path() : ".";
-  return parse_convex_set(out.bytes, *format, name, &out, directory);
+  return parse_convex_set(out.bytes, known, name, &out, directory);
 }
 
 bool is_meant_as_set(const geom::ConvexSet& set, const SetReadDetails& details) {

@@ -20,7 +20,11 @@ ReadResult read_collada(const Source& source);
 ReadResult read_gltf(const Source& source, Format format);
 /// @throws Error{NotBuilt} without assimp.
 ReadResult read_fbx(const Source& source);
+/// Format::Assimp: by the extension of the source's name. @throws as read_fbx.
+ReadResult read_by_assimp(const Source& source);
 bool has_assimp();
+/// The extension of a name as assimp is told it, "3ds"; empty where Format::Assimp is not for it.
+std::string_view imported_extension(const std::filesystem::path& path);
 /// STEP and IGES. @throws Error{NotBuilt} where the module is not there.
 ReadResult read_cad(const Source& source, Format format);
 bool has_cad();

@@ -82,7 +82,19 @@ constexpr std::array kFormats = {
                .read = read<read_scene>,
                .doubles = true},
     MeshFormat{Format::X3d, "x3d", "", read<read_scene>},
+    MeshFormat{.format = Format::Assimp,
+               .name = "",  // of no file: it is asked for
+               .other_name = "",
+               .read = read<read_by_assimp>,
+               .available = has_assimp},
 };
+
+/// Files that Format::Assimp is for: one file holds the geometry, in a format of which some is
+/// triangles and polygons, and assimp 5.2 reads files of it. docs/formats.md says what is not here.
+constexpr std::array<std::string_view, 36> kImported = {
+    "3ds", "ac",  "ac3d",   "acc", "amf", "ase", "ask", "b3d", "blend", "cob", "dxf",  "enff",
+    "hmp", "ifc", "ifczip", "iqm", "lwo", "lxo", "md2", "md3", "mdc",   "mdl", "mesh", "ms3d",
+    "ndo", "nff", "ogex",   "prj", "q3o", "q3s", "raw", "scn", "sib",   "x",   "xgl",  "zgl"};
 
 const MeshFormat& format_of(Format format) {
   for (const MeshFormat& known : kFormats)
@@ -100,7 +112,7 @@ template <typename Accept>
 std::vector<std::string> names_of(const Accept& accept) {
   std::vector<std::string> names;
   for (const MeshFormat& known : kFormats)
-    if (accept(known)) names.emplace_back(known.name);
+    if (!known.name.empty() && accept(known)) names.emplace_back(known.name);
   return names;
 }
 
@@ -159,9 +171,44 @@ std::vector<std::string> writable_formats() {
   return names_of([](const MeshFormat& known) { return known.write != nullptr; });
 }
 
+std::vector<std::string> imported_extensions() { return {kImported.begin(), kImported.end()}; }
+
+std::string_view imported_extension(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  for (const std::string_view known : kImported)
+    if (!extension.empty() && same_word(std::string_view(extension).substr(1), known)) return known;
+  return {};
+}
+
+std::string route_to_assimp(const std::filesystem::path& path) {
+  if (imported_extension(path).empty()) return {};
+  return "files of this format are read by assimp, on request only: «importer=assimp»; where "
+         "that is no option, let mesh-prepare make a mesh of it first";
+}
+
+Format format_of_file(const std::filesystem::path& path, std::optional<Format> stated) {
+  const bool file = path != "-", imports = stated == Format::Assimp;
+  if (stated && !imports) return *stated;
+  if (const auto known = format_from_name(file ? path.extension().string() : "")) return *known;
+  if (imports && !imported_extension(path).empty()) return Format::Assimp;
+  std::string why = route_to_assimp(path);
+  if (imports && !file) why = "assimp knows formats by the names of files; name one";
+  if (why.empty()) {
+    why = "the format is not known from the name; state one of " + joined(readable_formats());
+    if (imports) why += ", or name one as assimp knows it: " + joined(imported_extensions());
+  }
+  throw Error(ErrorCode::InvalidInput, (file ? path.string() : "standard input") + ": " + why);
+}
+
 bool holds_double(Format format) { return format_of(format).doubles; }
 
 bool is_cad(Format format) { return format == Format::Step || format == Format::Iges; }
+
+std::string about_import(const ReadResult& read) {
+  if (read.format != Format::Assimp) return {};
+  return ", of the triangles that assimp delivered: of what it may have left out of the file "
+         "nothing is said";
+}
 
 ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::string& name,
                       const std::filesystem::path& base_directory) {
@@ -175,15 +222,11 @@ ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::str
 ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> format,
                      std::vector<char>* bytes_out) {
   const std::string name = path == "-" ? "standard input" : path.string();
-  if (!format) format = format_from_name(path == "-" ? "" : path.extension().string());
-  if (!format)
-    throw Error(ErrorCode::InvalidInput,
-                name + ": the format is not known from the name; state one of " +
-                    joined(readable_formats()));
+  const Format known = format_of_file(path, format);
   std::vector<char> bytes = read_file(path);
   std::filesystem::path directory;
   if (path != "-") directory = path.has_parent_path() ? path.parent_path() : ".";
-  ReadResult result = parse_mesh(bytes, *format, name, directory);
+  ReadResult result = parse_mesh(bytes, known, name, directory);
   if (bytes_out != nullptr) *bytes_out = std::move(bytes);
   return result;
 }

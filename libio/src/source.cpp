@@ -18,11 +18,10 @@ std::string place(const Source& source, const char* where) {
   return "line " + std::to_string(line);
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
+std::string in_quotes(std::string_view text, std::size_t longest) {
   std::string result = "'";
-  for (const char c : text.substr(0, kLongest)) result += c < ' ' || c > '~' ? '?' : c;
-  if (text.size() > kLongest) result += "...";
+  for (const char c : text.substr(0, longest)) result += c < ' ' || c > '~' ? '?' : c;
+  if (text.size() > longest) result += "...";
   return result + "'";
 }
 

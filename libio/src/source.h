@@ -21,7 +21,7 @@ struct Source {
 std::string place(const Source& source, const char* where);
 
 /// `text` in quotes, shortened, control characters replaced: fit for a message.
-std::string in_quotes(std::string_view text);
+std::string in_quotes(std::string_view text, std::size_t longest = 40);
 
 /// "1 thing" or "2 things".
 std::string counted(std::size_t count, std::string_view singular, std::string_view plural);

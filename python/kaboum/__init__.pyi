@@ -637,7 +637,7 @@ class World:
 _Set = Union[ConvexSet, CertifiedSet, SweptSet, _Path, list[Any]]
 _Robot = Union[Robot, _Path]
 
-def read(path: _Path, *, format: str | None = None) -> Mesh: ...
+def read(path: _Path, *, format: str | None = None, importer: Literal["assimp"] | None = None) -> Mesh: ...
 def write(
     mesh: _Mesh,
     path: _Path,

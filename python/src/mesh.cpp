@@ -68,8 +68,7 @@ geom::Mesh mesh_from(const py::object& vertices, const py::object& faces, const 
   return mesh;
 }
 
-MeshValue read(const std::string& path, const std::optional<std::string>& format) {
-  const auto known = format_of(format, "format");
+MeshValue read(const std::string& path, std::optional<io::Format> known) {
   return run(0, [&] {
     std::vector<char> bytes;
     io::ReadResult read = io::read_mesh(path, known, &bytes);
@@ -220,12 +219,18 @@ void bind_meshes(py::module_& module) {
   bind_mesh_class(module);
   module.def(
       "read",
-      [](const py::object& path, const std::optional<std::string>& format) {
+      [](const py::object& path, const std::optional<std::string>& format,
+         const std::optional<std::string>& importer) {
         const auto file = path_of(path);
         if (!file) refuse("path", "it must be a str or an os.PathLike");
-        return read(*file, format);
+        if (importer && *importer != "assimp")
+          refuse("importer", "it must be 'assimp', not '" + *importer + "'");
+        if (importer && format)
+          refuse("importer", "it is told the format by the file's name; leave format out");
+        return read(*file, importer ? io::Format::Assimp : format_of(format, "format"));
       },
-      py::arg("path"), py::kw_only(), py::arg("format") = py::none(), R"(Reads a mesh file.
+      py::arg("path"), py::kw_only(), py::arg("format") = py::none(),
+      py::arg("importer") = py::none(), R"(Reads a mesh file.
 
 Coordinates are the doubles nearest to the numbers in the file; equal vertices are merged.
 
@@ -235,6 +240,11 @@ path : str or os.PathLike
     STL, OBJ, PLY, OFF, VRML, X3D, COLLADA, 3MF, glTF, FBX, STEP or IGES.
 format : str, optional
     'stl', 'ply', ...; by default by the extension.
+importer : str, optional
+    'assimp': have assimp read files of formats that have no reader here (3DS, LWO, AC3D, DXF, X,
+    ...: docs/formats.md). It delivers float32 and leaves out without a message what it does not
+    know: all that is claimed of the mesh is about the triangles that it delivered. Its notes say
+    so.
 
 Raises
 ------

@@ -239,3 +239,40 @@ def test_files_of_sets_are_sets(tmp_path):
     inner.write(tmp_path / "inner.glb")
     for set_ in (tmp_path / "inner.glb", inner):
         assert kaboum.verify_mesh(part, set_, relation="inner", prepare=True, epsilon="5%")
+
+
+TETRAHEDRON_AC3D = """AC3Db
+MATERIAL "m" rgb 1 1 1  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0
+OBJECT world
+kids 1
+OBJECT poly
+numvert 4
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+numsurf 4
+""" + "".join(f"SURF 0x0\nmat 0\nrefs 3\n{a} 0 0\n{b} 0 0\n{c} 0 0\n" for a, b, c in [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]) + "kids 0\n"
+
+
+def test_what_only_assimp_reads_is_asked_for(tmp_path):
+    file = tmp_path / "tetrahedron.ac"
+    file.write_text(TETRAHEDRON_AC3D)
+    for refused in (lambda: kaboum.read(file), lambda: kaboum.decimate(file, ratio=0.5)):
+        with pytest.raises(kaboum.Error, match=r"tetrahedron\.ac: .*importer='assimp'") as caught:
+            refused()
+        assert caught.value.code == "invalid_input"
+    for keywords, says in [({"importer": "magic"}, "'assimp', not 'magic'"), ({"importer": "assimp", "format": "obj"}, "leave format out")]:
+        with pytest.raises(kaboum.Error, match=says):
+            kaboum.read(file, **keywords)
+    try:
+        mesh = kaboum.read(file, importer="assimp")
+    except kaboum.Error as error:
+        assert error.code == "not_built"
+        return
+    assert {tuple(p) for p in mesh.vertices} == {(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)} and len(mesh.faces) == 4
+    assert any(note.startswith("Warning: assimp") for note in mesh.notes)
+    verdict = kaboum.verify_mesh(mesh, mesh, relation="outer")
+    assert verdict and any(note.startswith("Warning: assimp") for note in verdict.notes)
+    result = kaboum.decimate(mesh, vertices=4)
+    assert any(note.startswith("Warning: assimp") for note in result.notes)

@@ -26,7 +26,7 @@ certify::CertifiedFile certify_mesh(const DecomposeOptions& o) {
       [&](const std::string& stage) { progress.show(stage); },
       [&](const std::string& text) { log(o.common.quiet, o.input + ": " + text); }};
   const certify::SetCache cache(certify::SetCache::default_folder());
-  const io::Format format = format_for(o.input, o.input_format, "--input-format");
+  const io::Format format = format_for(o.input, o.input_format);
   return certify::certify_file(o.input, format, certify::request_of(o.set),
                                o.no_cache ? nullptr : &cache, hooks);
 }
@@ -35,8 +35,7 @@ certify::CertifiedFile certify_mesh(const DecomposeOptions& o) {
 std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& certificate,
                     const geom::ConvexSet& set) {
   const certify::SetRequest request = certify::request_of(o.set);
-  io::ReadResult read =
-      io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"));
+  io::ReadResult read = io::read_mesh(o.input, format_for(o.input, o.input_format));
   io::scale(read, request.scale, o.input);
   return naming(o.input, [&] {
     return page::page_of_set({o.input, read.mesh, request.preparation}, certificate, set,

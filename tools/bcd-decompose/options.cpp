@@ -136,8 +136,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
          "Write a Makefile dependency rule; names that have no place in one are refused. If "
          "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
-  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
-      ->type_name("NAME");
+  add_input_format(app, o.input_format, "Format of INPUT [by extension]");
   add_set_format_option(app, o.output_format);
   add_common_options(app, o.common);
   app.footer(

@@ -21,7 +21,8 @@ namespace kaboum::tools {
 struct DecomposeOptions {
   certify::SetOptions set;
   std::set<std::string> stated;  ///< names of the set's options that were stated
-  std::string input, output, input_format, output_format, preview, depfile;
+  std::string input, output, output_format, preview, depfile;
+  InputFormat input_format;
   double explode = picture::kExplode;
   std::size_t robot_bodies = 0, robot_vertices = 0;  ///< 0: not given
   certify::SphereShare share = certify::SphereShare::Farthest;

@@ -48,13 +48,13 @@ certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::Robo
                                     const robot::ShapeChoice& choice) {
   certify::RobotRequest r{
       certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
-  if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
+  r.format = o.input_format.stated();
   return r;
 }
 
 certify::InertiaRequest inertia_request(const DecomposeOptions& o) {
   certify::InertiaRequest r{o.robot.shapes, density_of(o.inertia), o.set.preparation, {}};
-  if (!o.input_format.empty()) r.format = io::format_from_name(o.input_format);
+  r.format = o.input_format.stated();
   return r;
 }
 

@@ -42,7 +42,7 @@ tools::DecimationCase case_of(const tools::DecimationOptions& o) {
     throw Error(ErrorCode::InvalidArgument, "--depfile needs a result that is a file");
   std::optional<io::Format> format;  // none: only the progressive file is written
   if (!o.output.empty()) format = tools::format_for(o.output, o.output_format, "--output-format");
-  run.input.format = tools::format_for(o.input, o.input_format, "--input-format");
+  run.input.format = tools::format_for(o.input, o.input_format);
   tools::require_sound_formats(o, format);
   if (wraps_exact_faces(o, run.input.format) && o.records())
     throw Error(ErrorCode::InvalidArgument,
@@ -132,8 +132,9 @@ int decimate(const tools::DecimationOptions& options) {
 
 /// Takes results from a progressive file: what makes a result is in there.
 int extract(const CLI::App& app, const tools::DecimationOptions& o) {
-  std::vector<std::string> others{"INPUT",     "--progressive",  "--require-closed", "--log",
-                                  "--preview", "--input-format", "--unit",           "--scale"};
+  std::vector<std::string> others{"INPUT",      "--progressive", "--require-closed",
+                                  "--log",      "--preview",     "--input-format",
+                                  "--importer", "--unit",        "--scale"};
   for (const auto& option : certify::mesh_options())
     if (option.name != "vertices") others.push_back("--" + option.name);
   tools::require_absent(app, "--from", others);

@@ -50,8 +50,7 @@ void describe_files(CLI::App& app, DecimationOptions& o) {
          "Write a Makefile dependency rule; names that have no place in one are refused. If "
          "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
-  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
-      ->type_name("NAME");
+  add_input_format(app, o.input_format, "Format of INPUT [by extension]");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
   add_unit_options(app, o.unit, "INPUT");

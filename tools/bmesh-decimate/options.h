@@ -20,7 +20,8 @@ namespace kaboum::tools {
 struct DecimationOptions {
   certify::MeshOptions mesh;
   std::set<std::string> stated;  ///< names of the mesh's options that were stated
-  std::string input, output, input_format, output_format;
+  std::string input, output, output_format;
+  InputFormat input_format;
   std::string progressive, from, log, depfile, preview;
   UnitOption unit;
   RobotOptions robot;

@@ -254,7 +254,7 @@ int decimate_robot(const CLI::App& app, DecimationOptions o) {
                  {},
                  read_epsilons(o.robot.epsilons, run.robot.robot)};
   run.request.partial = true;
-  if (!o.input_format.empty()) run.request.format = io::format_from_name(o.input_format);
+  run.request.format = o.input_format.stated();
   const certify::WantedMeshes meshes =
       certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
   output.plan(meshes);

@@ -16,7 +16,8 @@ namespace {
 using namespace kaboum;  // the tool's own names are few
 
 struct Options {
-  std::string original, log, result, original_format, result_format;
+  std::string original, log, result, result_format;
+  tools::InputFormat original_format;
   double scale = 1;
   tools::CommonOptions common;
 };
@@ -46,14 +47,15 @@ std::string claim(const bmesh::Log& log, const verify::ReplayResult& r) {
 
 int check(const Options& o) {
   std::vector<char> bytes;
-  io::ReadResult input = io::read_mesh(
-      o.original, tools::format_for(o.original, o.original_format, "--input-format"), &bytes);
+  io::ReadResult input =
+      io::read_mesh(o.original, tools::format_for(o.original, o.original_format), &bytes);
   const bmesh::Log log = bmesh::parse_log(io::read_file(o.log), o.log);
   if (log.input_sha256 != io::sha256(bytes))
     throw Error(ErrorCode::InvalidInput,
                 o.log + ": the log was made from another file than " + o.original);
   io::require_recorded_scale(o.log, log.tool, o.scale);
   io::scale(input, o.scale, o.original);
+  for (const std::string& note : input.notes) tools::log(o.common.quiet, o.original + ": " + note);
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));
@@ -63,6 +65,7 @@ int check(const Options& o) {
   tools::write_report(o.common, "bmesh-replay",
                       {{"verified", r.verified},
                        {"scale", o.scale},
+                       {"notes", input.notes},
                        {"violation", r.violation},
                        {"closed", r.closed},
                        {"steps", r.steps},
@@ -74,8 +77,8 @@ int check(const Options& o) {
     std::cout << "refuted: " << r.violation << '\n';
     return tools::kNo;
   }
-  std::string text = claim(log, r) + "; " + std::to_string(r.steps) + " steps, " +
-                     std::to_string(r.predicates) + " exact tests";
+  std::string text = claim(log, r) + io::about_import(input) + "; " + std::to_string(r.steps) +
+                     " steps, " + std::to_string(r.predicates) + " exact tests";
   if (r.dropped != 0) text += ", " + std::to_string(r.dropped) + " input triangles dropped";
   if (!o.common.quiet) std::cout << text << '\n';
   return tools::kDone;
@@ -95,8 +98,7 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("FILE");
   app.add_option("RESULT", o.result, "The mesh that it wrote")->required()->type_name("FILE");
-  app.add_option("--input-format", o.original_format, "Format of ORIGINAL [by extension]")
-      ->type_name("NAME");
+  tools::add_input_format(app, o.original_format, "Format of ORIGINAL [by extension]");
   app.add_option("--result-format", o.result_format, "Format of RESULT [by extension]")
       ->type_name("NAME");
   tools::add_scale_option(app, o.scale, "ORIGINAL");

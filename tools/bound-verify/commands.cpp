@@ -46,8 +46,8 @@ void add_witness(CLI::App& app, std::string& witness) {
       ->type_name("FILE");
 }
 
-void add_input_format(CLI::App& app, std::string& format) {
-  app.add_option("--input-format", format, "Format of ORIGINAL [by extension]")->type_name("NAME");
+void add_original_format(CLI::App& app, InputFormat& format) {
+  add_input_format(app, format, "Format of ORIGINAL [by extension]");
 }
 
 /// @param of  the file
@@ -80,7 +80,7 @@ void add_mesh_options(CLI::App& app, VerifyOptions& o,
   add_raw(app, o.mesh.how.claims);
   add_witness(app, o.mesh.witness);
   add_unit_options(app, o.mesh.unit, "ORIGINAL");
-  add_input_format(app, o.mesh.original_format);
+  add_original_format(app, o.mesh.original_format);
   add_approximation_format(app, o.mesh.approximation_format, result);
   add_common_options(app, o.common);
 }
@@ -247,7 +247,7 @@ void add_progressive_command(CLI::App& app, VerifyOptions& o) {
            "The mesh that it was made from (- for standard input)");
   add_file(*c, "FILE", o.progressive.progressive, "The progressive file");
   add_unit_options(*c, o.progressive.unit, "ORIGINAL");
-  add_input_format(*c, o.progressive.original_format);
+  add_original_format(*c, o.progressive.original_format);
   add_common_options(*c, o.common);
 }
 

@@ -15,7 +15,8 @@ namespace kaboum::tools {
 struct VerifyMeshOptions {
   verify::Relation relation = verify::Relation::Outer;
   std::string original, approximation;  ///< `-`: standard input
-  std::string original_format, approximation_format;
+  InputFormat original_format;
+  std::string approximation_format;
   UnitOption unit;  ///< of the original
   std::string witness;
   bool set = false;  ///< the approximation is a set, whatever the file looks like

@@ -10,15 +10,17 @@ namespace kaboum::tools {
 
 namespace {
 
-MeshInput read(const std::string& path, const std::string& format, const char* option,
-               const UnitOption& unit = {}, std::size_t density = 0) {
+MeshInput read(const std::string& path, io::Format format, const UnitOption& unit = {},
+               std::size_t density = 0) {
   std::vector<char> bytes;
-  io::ReadResult r = io::read_mesh(path, format_for(path, format, option), &bytes);
+  io::ReadResult r = io::read_mesh(path, format, &bytes);
   apply(r, unit, path);
   MeshInput out;
   out.unit = r.unit;
   out.deviation = r.deviation;
   out.about_exact = io::about_exact_faces(r);
+  out.about_import = io::about_import(r);
+  out.single_precision = r.single_precision;
   if (density > 0 && io::is_cad(r.format))
     out.exact =
         verify::read_exact_points(bytes, r.format, path, density, unit.scale, r.exact_faces);
@@ -47,8 +49,8 @@ MeshInput read_original(const VerifyMeshOptions& o) {
   using Diagonal = geom::PrepareOptions::Diagonal;
   const bool inner = o.relation == verify::Relation::Inner;
   // Whether points of exact faces are inside what encloses, or is covered, is what they can tell.
-  MeshInput out =
-      read(o.original, o.original_format, "--input-format", o.unit, inner ? 0 : o.how.exact_points);
+  MeshInput out = read(o.original, format_for(o.original, o.original_format), o.unit,
+                       inner ? 0 : o.how.exact_points);
   out.diagonal = inner ? Diagonal::Inward : Diagonal::Outward;
   return out;
 }
@@ -79,7 +81,7 @@ ApproximationInput read_approximation(const VerifyMeshOptions& o) {
     }
     out.set = {};
   }
-  static_cast<MeshInput&>(out) = read(o.approximation, o.approximation_format, kOption);
+  static_cast<MeshInput&>(out) = read(o.approximation, *format);
   return out;
 }
 

@@ -21,8 +21,10 @@ struct MeshInput {
   std::string unit;  ///< io::ReadResult::unit
   std::vector<std::string> notes;
   std::size_t filled_triangles = 0, dropped_sheets = 0;
-  double deviation = 0;          ///< of exact faces from the triangles; 0: there are none [length]
-  std::string about_exact = {};  ///< what is to be known where the triangles stand for exact faces
+  bool single_precision = false;  ///< io::ReadResult::single_precision
+  std::string about_import = {};  ///< io::about_import
+  double deviation = 0;           ///< of exact faces from the triangles; 0: there are none [length]
+  std::string about_exact = {};   ///< what is to be known where the triangles stand for exact faces
   std::optional<verify::ExactPoints> exact = {};  ///< of these, where they are looked at
   /// How preparing splits quads that are not plane: as the programs that make results do.
   std::vector<std::uint32_t> quads = {};

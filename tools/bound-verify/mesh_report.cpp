@@ -203,10 +203,11 @@ std::vector<std::string> lines_of_distances(const MeshCase& run) {
 
 namespace {
 
-/// What a verdict has to say where exact faces are meant.
+/// What a verdict has to say where more may be meant than the triangles.
 std::string about_triangles(const MeshCase& run) {
   const MeshInput& original = run.original;
-  if (original.about_exact.empty() || run.verdict.answer != Answer::Verified) return {};
+  if (run.verdict.answer != Answer::Verified) return {};
+  if (original.about_exact.empty()) return original.about_import;
   return std::string(", of the triangles, which stand for exact faces within ") +
          number_up(original.deviation) +
          (original.exact ? "; no point of these that was looked at sticks out"
@@ -423,6 +424,8 @@ Json report_of(const MeshCase& run) {
     json["approximation"]["margin"] = margin_json(run.approximation.set);
   }
   json["original"]["scale"] = run.asked.unit.scale;
+  json["original"]["single_precision"] = run.original.single_precision;
+  if (!run.original.about_import.empty()) json["original"]["importer"] = "assimp";
   if (!run.original.about_exact.empty()) json["original"]["deviation"] = run.original.deviation;
   if (const auto& exact = run.original.exact) {
     json["original"]["exact_faces"] = exact->faces;

@@ -29,7 +29,9 @@ std::string claim(const bmesh::Progressive& p, const verify::ReplayResult& r) {
 /// What was asked, of which files, and what was found.
 struct ProgressiveCase {
   const std::string &original, &file;
-  double scale;  // of the original
+  double scale;                           // of the original
+  const std::vector<std::string>& notes;  // on it
+  const std::string& about_import;        // io::about_import, of it
   const bmesh::Progressive& progressive;
   const verify::ReplayResult& result;
 };
@@ -37,20 +39,23 @@ struct ProgressiveCase {
 Json report_of(const ProgressiveCase& run) {
   const verify::ReplayResult& r = run.result;
   const bmesh::Progressive& p = run.progressive;
-  Json json{
-      {"relation", "progressive"},
-      {"verdict", r.verified ? "verified" : "refuted"},
-      {"violation", r.violation},
-      {"original", {{"file", run.original}, {"sha256", p.log.input_sha256}, {"scale", run.scale}}},
-      {"progressive", {{"file", run.file}, {"made_by", p.log.tool}}},
-      {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
-      {"closed", r.closed},
-      {"steps", r.steps},
-      {"predicates", r.predicates},
-      {"against_solids", r.against_original},
-      {"dropped_triangles", r.dropped},
-      {"turned_triangles", r.reversed},
-      {"filled_triangles", r.filled}};
+  Json json{{"relation", "progressive"},
+            {"verdict", r.verified ? "verified" : "refuted"},
+            {"violation", r.violation},
+            {"original",
+             {{"file", run.original},
+              {"sha256", p.log.input_sha256},
+              {"scale", run.scale},
+              {"notes", run.notes}}},
+            {"progressive", {{"file", run.file}, {"made_by", p.log.tool}}},
+            {"direction", p.log.direction == Direction::Outer ? "outer" : "inner"},
+            {"closed", r.closed},
+            {"steps", r.steps},
+            {"predicates", r.predicates},
+            {"against_solids", r.against_original},
+            {"dropped_triangles", r.dropped},
+            {"turned_triangles", r.reversed},
+            {"filled_triangles", r.filled}};
   for (std::size_t i = 0; i < r.levels; ++i)
     json["levels"].push_back({{"wished", p.levels[i].requested},
                               {"vertices", p.levels[i].vertices},
@@ -79,8 +84,9 @@ std::vector<std::string> lines_of(const ProgressiveCase& run) {
   if (r.dropped != 0)
     lines.push_back(std::to_string(r.dropped) +
                     " triangles of the original are dropped, harmlessly");
-  lines.push_back("verified: " + claim(run.progressive, r) + "; " + std::to_string(r.steps) +
-                  " steps, " + std::to_string(r.predicates) + " exact tests");
+  lines.push_back("verified: " + claim(run.progressive, r) + run.about_import + "; " +
+                  std::to_string(r.steps) + " steps, " + std::to_string(r.predicates) +
+                  " exact tests");
   return lines;
 }
 
@@ -90,8 +96,7 @@ int verify_progressive(const VerifyProgressiveOptions& o, const CommonOptions& c
   const auto& [original, original_format, progressive, unit] = o;
   require_apart({{"--report", common.report}}, {original, progressive});
   std::vector<char> bytes;
-  io::ReadResult input =
-      io::read_mesh(original, format_for(original, original_format, "--input-format"), &bytes);
+  io::ReadResult input = io::read_mesh(original, format_for(original, original_format), &bytes);
   const bmesh::Progressive p = bmesh::parse_progressive(io::read_file(progressive), progressive);
   if (p.log.input_sha256 != io::sha256(bytes))
     throw Error(ErrorCode::InvalidInput,
@@ -103,7 +108,9 @@ int verify_progressive(const VerifyProgressiveOptions& o, const CommonOptions& c
   apply(input, unit, original);
   bytes = {};
   const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
-  const ProgressiveCase run{original, progressive, unit.scale, p, r};
+  const std::string about = io::about_import(input);
+  const ProgressiveCase run{original, progressive, unit.scale, input.notes, about, p, r};
+  for (const std::string& note : input.notes) log(common.quiet, original + ": " + note);
   if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   if (!r.verified)

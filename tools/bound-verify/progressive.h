@@ -9,7 +9,9 @@ namespace kaboum::tools {
 
 /// What `bound-verify progressive ORIGINAL FILE` is asked.
 struct VerifyProgressiveOptions {
-  std::string original, original_format, progressive;
+  std::string original;
+  InputFormat original_format;
+  std::string progressive;
   UnitOption unit;  ///< of the original
 };
 

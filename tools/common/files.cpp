@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -23,6 +24,7 @@ std::string lower_extension(const std::string& path) {
 
 /// What to do with a file of a kind that is no mesh to read; empty when there is nothing to say.
 std::string route(const std::string& path) {
+  if (std::string way = io::route_to_assimp(path); !way.empty()) return way;
   const std::string extension = lower_extension(path);
   if (extension == ".brep") return "this kind of CAD file is not read; export it as STEP";
   const auto is = [&](std::initializer_list<const char*> names) {
@@ -86,6 +88,31 @@ io::Format format_for(const std::string& path, const std::string& name, const ch
     throw Error(ErrorCode::InvalidInput, path + ": " + way);
   throw Error(reading ? ErrorCode::InvalidInput : ErrorCode::InvalidArgument,
               path + ": unknown file extension; use one of " + choices + ", or give " + option);
+}
+
+std::optional<io::Format> InputFormat::stated() const {
+  if (!importer.empty()) return io::Format::Assimp;
+  return io::format_from_name(name);
+}
+
+void add_input_format(CLI::App& app, InputFormat& format, const std::string& text) {
+  CLI::Option* name = app.add_option("--input-format", format.name, text)->type_name("NAME");
+  std::string extensions;
+  for (const std::string& extension : io::imported_extensions())
+    extensions.append(extensions.empty() ? "" : ", ").append(extension);
+  app.add_option("--importer", format.importer,
+                 "Have assimp read files of formats that have no reader here: " + extensions +
+                     ". It delivers 32-bit floats and leaves out without a message what it does "
+                     "not know: what is claimed is about the triangles that it delivers")
+      ->check(CLI::IsMember({"assimp"}).description(""))
+      ->excludes(name)
+      ->type_name("assimp");
+}
+
+io::Format format_for(const std::string& path, const InputFormat& format) {
+  if (format.importer.empty() || is_folder(path))
+    return format_for(path, format.name, "--input-format");
+  return io::format_of_file(path, format.stated());
 }
 
 namespace {

@@ -3,9 +3,14 @@
 #include <kaboum/io/mesh_io.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 /// Files that a command line names: their formats, and whether they can be written.
 namespace kaboum::tools {
@@ -16,6 +21,21 @@ bool is_folder(const std::filesystem::path& path);
 /// Format named by --input-format/--output-format, else by the file name's extension.
 /// @throws Error{InvalidArgument} when unknown.
 io::Format format_for(const std::string& path, const std::string& name, const char* option);
+
+/// What a user says about the format of meshes that are read.
+struct InputFormat {
+  std::string name;      ///< empty: by the files' extensions
+  std::string importer;  ///< of formats that have no reader here; empty: none
+
+  /// nullopt: by the files' extensions.
+  [[nodiscard]] std::optional<io::Format> stated() const;
+};
+
+/// Adds --input-format and --importer. @param text  of the former
+void add_input_format(CLI::App& app, InputFormat& format, const std::string& text);
+
+/// @throws Error as the one above, and as io::format_of_file
+io::Format format_for(const std::string& path, const InputFormat& format);
 
 /// Refuses to write a file twice, over an input, or into a folder that does not exist or cannot be
 /// looked into; outputs are (option, file), empty files are none. With a --depfile, --output,

@@ -29,7 +29,8 @@ using distance::Comparison;
 using tools::Json;
 
 struct Options {
-  std::string a, b, input_format, a_as = "auto", b_as = "auto";
+  std::string a, b, a_as = "auto", b_as = "auto";
+  tools::InputFormat input_format;
   distance::CompareOptions compare;
   std::set<std::string> stated;  ///< names of these options that were stated
   std::optional<Length> at_most;
@@ -78,8 +79,7 @@ void describe(CLI::App& app, Options& o) {
                  "Colours by distance: .png draws A and B with a scale, .html is a page that shows "
                  "them in a browser, .ply is A with colours and the distance as `quality`")
       ->type_name("FILE");
-  app.add_option("--input-format", o.input_format, "Format of - and of unknown extensions")
-      ->type_name("NAME");
+  tools::add_input_format(app, o.input_format, "Format of - and of unknown extensions");
   tools::add_unit_options(app, o.unit, "A");
   tools::add_common_options(app, o.common);
   app.footer(

@@ -119,8 +119,7 @@ ShapeFile read_shape(const std::string& path, const ShapeOptions& options) {
   }
   const bool known =
       path != "-" && io::format_from_name(fs::path(path).extension().string()).has_value();
-  const io::Format format =
-      format_for(path, known ? std::string() : options.format, "--input-format");
+  const io::Format format = format_for(path, known ? InputFormat{} : options.format);
   const std::vector<char> bytes = io::read_file(path);
   out.sha256 = io::sha256(bytes);
   const bool may_be_set = format == io::Format::Glb || format == io::Format::Obj;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/files.h"
 #include "common/unit_option.h"
 
 namespace kaboum::tools {
@@ -26,7 +27,7 @@ struct ShapeOptions {
   /// auto: a set if it is a folder, a container, or a GLB or OBJ file with several bodies that are
   /// all convex.
   std::string as = "auto";  ///< auto, mesh or set
-  std::string format;       ///< of standard input and unknown extensions
+  InputFormat format;       ///< of standard input and unknown extensions
   UnitOption unit = {};     ///< of a mesh
 };
 

@@ -17,7 +17,8 @@ using namespace kaboum;  // the tool's own names are few
 
 struct Options {
   std::vector<std::string> inputs;
-  std::string output, input_format;
+  std::string output;
+  tools::InputFormat input_format;
   picture::PanelOptions panels;
   std::set<std::string> stated;  ///< names of these options that were stated
 };
@@ -32,7 +33,7 @@ int make_picture(const Options& options) {
   tools::require_apart({{"--output", options.output}}, options.inputs);
   std::vector<geom::Mesh> meshes;
   for (const std::string& input : options.inputs)
-    meshes.push_back(read(input, tools::format_for(input, options.input_format, "--input-format")));
+    meshes.push_back(read(input, tools::format_for(input, options.input_format)));
   io::write_file(options.output, picture::encode_png(picture::draw_panels(meshes, options.panels)));
   return 0;
 }
@@ -49,6 +50,6 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   tools::add_request_options(app, picture::panel_options(), options.panels, options.stated);
   app.add_option("--colors", options.panels.colours)->group("");  // as others spell it
-  app.add_option("--input-format", options.input_format, "Format, when extensions do not tell");
+  tools::add_input_format(app, options.input_format, "Format, when extensions do not tell");
   return tools::run(app, argc, argv, [&] { return make_picture(options); });
 }

@@ -20,7 +20,8 @@ namespace kaboum::tools {
 namespace {
 
 struct PrepareToolOptions {
-  std::string input, output, input_format, output_format, depfile;
+  std::string input, output, output_format, depfile;
+  InputFormat input_format;
   bool verify = false;
   certify::PreparationOptions preparation;
   certify::WrapOptions wrap;     ///< its epsilon; offset and seal are those of preparation
@@ -138,7 +139,7 @@ void bring_lengths(PrepareCase& run) {
 void read(PrepareCase& run) {
   const PrepareToolOptions& o = run.asked;
   std::vector<char> bytes;
-  run.input = io::read_mesh(o.input, format_for(o.input, o.input_format, "--input-format"), &bytes);
+  run.input = io::read_mesh(o.input, format_for(o.input, o.input_format), &bytes);
   apply(run.input, o.unit, o.input);
   if (io::is_cad(run.input.format)) run.report["deviation"] = run.input.deviation;
   run.sha256 = io::sha256(bytes);
@@ -202,8 +203,7 @@ void describe(CLI::App& app, PrepareToolOptions& o) {
          "Write a Makefile dependency rule; names that have no place in one are refused. If "
          "FILE ends in .list: the inputs, each followed by a zero byte")
       ->type_name("FILE");
-  app.add_option("--input-format", o.input_format, "Format of INPUT [by extension]")
-      ->type_name("NAME");
+  add_input_format(app, o.input_format, "Format of INPUT [by extension]");
   app.add_option("--output-format", o.output_format, "Format of the result [by extension]")
       ->type_name("NAME");
   add_common_options(app, o.common);

@@ -2,14 +2,18 @@
 
 #include "bodies.h"
 
-#include "common/files.h"
+#include <kaboum/base/error.h>
 
 namespace kaboum::tools {
 
-void require_formats(const robot::LinkMeshes& meshes, const std::string& format) {
+void require_formats(const robot::LinkMeshes& meshes, const InputFormat& format) {
+  if (!format.importer.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--importer: the meshes of robots are read without it, here and by what checks the "
+                "result; let the robot name what mesh-prepare makes of a mesh (mesh-prepare MESH "
+                "--importer assimp -o MESH.obj)");
   for (const robot::LinkMesh& mesh : meshes.meshes)
-    if (mesh.missing.empty())
-      static_cast<void>(format_for(mesh.file.string(), format, "--input-format"));
+    if (mesh.missing.empty()) static_cast<void>(format_for(mesh.file.string(), format));
 }
 
 std::vector<std::string> strings(const std::vector<std::filesystem::path>& files) {

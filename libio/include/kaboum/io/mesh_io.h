@@ -30,7 +30,8 @@ enum class Format {
   X3d,
   Vrml,
   Step,
-  Iges
+  Iges,
+  Assimp  ///< what has no reader here and assimp reads: never by itself, only where it is stated
 };
 
 /// Format named by `text`: a format name ("stl", "ply-ascii") or a file name's extension (".stl").
@@ -40,6 +41,17 @@ std::optional<Format> format_from_name(std::string_view text);
 /// Names accepted by format_from_name that can be read / written by this build, sorted.
 std::vector<std::string> readable_formats();
 std::vector<std::string> writable_formats();
+
+/// Extensions of the files that Assimp is for, sorted: "3ds", "ac", ...
+std::vector<std::string> imported_extensions();
+
+/// What to do with a file that has such an extension; empty for others.
+std::string route_to_assimp(const std::filesystem::path& path);
+
+/// Format that a file is read in: what is stated, else what the extension of its name says. Assimp,
+/// stated, is for files of which the extension says no other.
+/// @throws Error{InvalidInput} where neither says one, with the remedy.
+Format format_of_file(const std::filesystem::path& path, std::optional<Format> stated = {});
 
 /// True when the format stores coordinates as text or as 64-bit floats, so that doubles survive.
 bool holds_double(Format format);
@@ -82,18 +94,27 @@ struct ReadResult {
 /// about the triangles alone; empty where they are what is meant.
 std::string about_exact_faces(const ReadResult& read);
 
+/// End of a verdict on triangles that assimp delivered (Format::Assimp), which may not be all that
+/// the file holds; empty for others.
+std::string about_import(const ReadResult& read);
+
 /// Parses a file held in memory.
 ///
 /// Coordinates become the doubles nearest to the numbers in the file. Polygons are triangulated
 /// without adding vertices; the directed edges of the triangles sum up to those of the polygon, so
-/// that closed polygon meshes stay closed. `name` appears in messages only. Time and memory are
-/// bounded by the size of the input, whatever it states about itself (assimp's formats excepted).
+/// that closed polygon meshes stay closed. `name` appears in messages only, but for its extension,
+/// by which assimp knows formats. Time and memory are bounded by the size of the input, whatever it
+/// states about itself.
 ///
 /// Scenes (VRML, X3D, COLLADA, 3MF, glTF and FBX): all meshes are merged, moved by their
 /// nodes' transforms, which are applied in rounded double precision; a mirroring transform reverses
 /// the faces. COLLADA: scaled to metres by its <unit>, its <up_axis> is ignored, as robot
 /// descriptions expect. FBX, 3MF and X3D: not scaled. A note says so in each case. VRML and X3D:
 /// LOD gives its finest level, Switch its choice. What is refused: docs/formats.md.
+///
+/// Assimp: in a child process with limits of memory and time; float32, axes and units as it has
+/// them, no other file. It leaves out without a message what it does not know: a note says so, and
+/// more of them what it warned of. Skins and morph targets are refused.
 ///
 /// STEP and IGES: millimetres; triangles that stand for the exact faces within `deviation`, made by
 /// OpenCASCADE, a module that is loaded in a child process with limits of memory and time.
@@ -108,8 +129,8 @@ std::string about_exact_faces(const ReadResult& read);
 ReadResult parse_mesh(std::span<const char> bytes, Format format, const std::string& name,
                       const std::filesystem::path& base_directory = {});
 
-/// Reads a file; the format is taken from the extension unless given. `-` is standard input and
-/// needs `format`. Also fills `bytes_out`, when not null, with the file's bytes (for hashing).
+/// Reads a file in the format of format_of_file. `-` is standard input and needs `format`, other
+/// than Assimp. Also fills `bytes_out`, when not null, with the file's bytes (for hashing).
 /// @throws as parse_mesh; Error{InvalidInput} when the file cannot be read or its format is
 /// unknown.
 ReadResult read_mesh(const std::filesystem::path& path, std::optional<Format> format = {},
