@@ -56,7 +56,7 @@ absent none.ply
 # shellcheck disable=SC2086
 {
   expect 0 'note: Warning: assimp' "$D" slab.ac -o slab.ply --vertices 8 --log slab.log --report r.json $A
-  json r.json 'r["input"]["reader_delivers_float32"] and any(n.startswith("Warning: assimp") for n in r["notes"])'
+  json r.json 'r["input"]["reader_delivers_float32"] and any(n.startswith("Warning: assimp") for n in r["preparation"]["notes"])'
   shows 0 '^verified, of the triangles that assimp delivered: of what it may have left out' \
     "$V" mesh --outer slab.ac slab.ply --report v.json $A
   grep -q 'slab.ac: Warning: assimp' err.txt || fail "the verdict comes without the warning: $(cat err.txt)"
@@ -82,8 +82,9 @@ grep -q 'assimp delivered' out.txt && fail "a refutation ends as a verdict: $(ca
 # The triangles are those of the same block in OFF; scaled and with a unit as others are.
 # shellcheck disable=SC2086
 {
-  shows 0 'Hausdorff' "$H" slab.ac slab.off --at-most 1e-9 $A
+  shows 0 'Hausdorff' "$H" slab.ac slab.off --at-most 1e-9 --report h.json $A
   grep -q 'note: slab.ac: Warning: assimp' err.txt || fail "distances come without the warning: $(cat err.txt)"
+  json h.json 'any(n.startswith("Warning: assimp") for n in r["a"]["notes"])'
   expect 0 '' "$P" slab.ac -o slab.obj --report s.json --scale 0.001 --unit m $A
   json s.json 'r["unit"] == "m" and r["scale"] == 0.001'
   shows 0 '^verified$' "$V" mesh --outer slab.off slab.obj --scale 0.001

@@ -113,8 +113,8 @@ std::string about_import(const ReadResult& read);
 /// LOD gives its finest level, Switch its choice. What is refused: docs/formats.md.
 ///
 /// Assimp: in a child process with limits of memory and time; float32, axes and units as it has
-/// them, no other file. It leaves out without a message what it does not know: a note says so, and
-/// more of them what it warned of. Skins and morph targets are refused.
+/// them, no other file. It leaves out without a message what it does not know: a note says so.
+/// Another has what it warned of. Skins, morph targets and what it calls an error are refused.
 ///
 /// STEP and IGES: millimetres; triangles that stand for the exact faces within `deviation`, made by
 /// OpenCASCADE, a module that is loaded in a child process with limits of memory and time.
