@@ -462,7 +462,7 @@ class World:
         scene: Scene | _Path,
         *,
         # options of margins
-        margin: float | Mapping[str, float] | None = None,
+        margin: _Length | Mapping[str, _Length] | None = None,
         # end of options
     ) -> None: ...
     @property
@@ -497,7 +497,7 @@ class World:
         # options of engines
         engine: Literal["own", "fcl", "bullet", "ode"] = "own",
         engine_shapes: Literal["sets", "meshes"] = "sets",
-        engine_step: float = 0.01,
+        engine_step: _Length = 0.01,
         package_path: _Path | Sequence[_Path] | None = None,
         # end of options
         progress: _Progress | None = None,
@@ -521,7 +521,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check_motion
-        resolution: float = 1e-05,
+        resolution: _Length = 1e-05,
         max_intervals: int = 1000000,
         # end of options
         # options of keep
@@ -537,7 +537,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check_motion
-        resolution: float = 1e-05,
+        resolution: _Length = 1e-05,
         max_intervals: int = 1000000,
         # end of options
         progress: _Progress | None = None,
@@ -554,7 +554,7 @@ class World:
         timeout: float | None = None,
         shortcuts: int = 60,
         seed: int = 1,
-        resolution: float = 1e-05,
+        resolution: _Length = 1e-05,
         # end of options
         # options of keep
         keep: str | Sequence[str] | None = None,
@@ -618,7 +618,7 @@ class World:
         *,
         robot: str | None = None,
         # options of check_motion
-        resolution: float = 1e-05,
+        resolution: _Length = 1e-05,
         max_intervals: int = 1000000,
         # end of options
         progress: _Progress | None = None,
@@ -1102,11 +1102,11 @@ def add_grasps(
     hold: Literal["sides", "face"] = "sides",
     form: Literal["both", "families", "poses"] = "both",
     closing: Literal["x", "y"] = "y",
-    opening: float | None = None,
-    tip: float | None = None,
+    opening: _Length | None = None,
+    tip: _Length | None = None,
     directions: int = 8,
     most: int = 24,
-    gap: float = 0.001,
+    gap: _Length = 0.001,
     # end of options
 ) -> dict[str, Any]: ...
 def add_places(
@@ -1115,7 +1115,7 @@ def add_places(
     *,
     # options of add_places
     most: int = 8,
-    inset: float | None = None,
+    inset: _Length | None = None,
     force: bool = False,
     # end of options
 ) -> dict[str, Any]: ...
@@ -1156,7 +1156,7 @@ def solve(
     plugins: _Path | Sequence[_Path] | None = None,
     # end of options
     # options of margins
-    margin: float | Mapping[str, float] | None = None,
+    margin: _Length | Mapping[str, _Length] | None = None,
     # end of options
     no_cache: bool = False,
     threads: int = 0,
@@ -1176,7 +1176,7 @@ def check_plan(
     plugins: _Path | Sequence[_Path] | None = None,
     # end of options
     # options of margins
-    margin: float | Mapping[str, float] | None = None,
+    margin: _Length | Mapping[str, _Length] | None = None,
     # end of options
     threads: int = 0,
     progress: _Progress | None = None,

@@ -226,7 +226,7 @@ shows 1 'arm/tip and box are within the margin of 14.1: ' "$BIN/kaboum-check" fr
 shows 1 'scan (point 3)' "$BIN/kaboum-check" free.json --cloud scan.xyz --cloud-radius 10cm --configuration 1.57,0 --report cloud.json
 json cloud.json "r['clouds'][0]['radius'] == 0.1"
 for option in --margin --cloud-radius --resolution; do
-  expect 2 "${option}.* there is no diagonal" "$BIN/kaboum-check" free.json --cloud scan.xyz $option 1%
+  expect 2 "${option}.*there is no diagonal" "$BIN/kaboum-check" free.json --cloud scan.xyz $option 1%
 done
 expect 2 'arm=1% (there is no diagonal' "$BIN/kaboum-check" free.json --margin arm=1%
 printf 'j1,j2\n0,0\n-3,1\n' >away.csv
@@ -493,8 +493,8 @@ for bad in floor=box:1m,1m ball=sphere:1% ball=sphere:0mm ball=sphere:1e10m; do
 done
 absent bad.json bad
 # A scene in another unit than metres: two cubes of 10 mm, 20 mm apart.
-expect 0 '0 sets' "$BIN/kaboum-scene" make mm.json --unit mm --primitive a=box:1cm,10,0.01m --primitive b=box:10,10,10 --at b=30,0,0
-shows 0 '^free, with margins kept: 1.99cm$' "$BIN/kaboum-check" mm.json --resting --margin 1.99cm
-shows 1 'within the margin of 20.1' "$BIN/kaboum-check" mm.json --resting --margin 20.1
-shows 1 'within the margin of 20.1' "$BIN/kaboum-check" mm.json --resting --margin a,b=0.0201m
+expect 0 '0 sets' "$BIN/kaboum-scene" make cubes.json --unit mm --primitive a=box:1cm,10,0.01m --primitive b=box:10,10,10 --at b=30,0,0
+shows 0 '^free, with margins kept: 1.99cm$' "$BIN/kaboum-check" cubes.json --resting --margin 1.99cm
+shows 1 'within the margin of 20.1' "$BIN/kaboum-check" cubes.json --resting --margin 20.1
+shows 1 'within the margin of 20.1' "$BIN/kaboum-check" cubes.json --resting --margin a,b=0.0201m
 finish

@@ -54,8 +54,8 @@ expect 2 "cell.json: .*no object 'shelv'; did you mean 'shelf'" "$S" grasps cell
 expect 2 "cell.json: .*no tool 'hamd'; did you mean 'hand'" "$S" grasps cell.json --tool hamd
 expect 2 'directions' "$S" grasps cell.json --directions 0
 expect 2 'opening' "$S" grasps cell.json --opening -1
-for option in --opening --tip --gap; do expect 2 "${option}.* there is no diagonal" "$S" grasps cell.json $option 1%; done
-expect 2 'inset.* there is no diagonal' "$S" places cell.json --inset 1%
+for option in --opening --tip --gap; do expect 2 "${option}.*there is no diagonal" "$S" grasps cell.json $option 1%; done
+expect 2 'inset.*there is no diagonal' "$S" places cell.json --inset 1%
 # A report is written over nothing that the scene names.
 for command in grasps places update pairs; do
   expect 2 'report would overwrite' "$S" "$command" cell.json --report cell/arm/hand.glb
