@@ -43,7 +43,7 @@ certify::CertifiedBodies make_bodies(const SweepApproxOptions& o, const robot::R
   request.partial = true;
   const certify::SetCache cache(o.cache.empty() ? certify::SetCache::default_folder()
                                                 : std::filesystem::path(o.cache));
-  require_formats(certify::wanted_meshes(robot, request.shapes), "");
+  require_formats(certify::wanted_meshes(robot, request.shapes), {});
   notes = {};
   for (const std::string& note :
        robot::notes_on_flat_shapes(robot, request.shapes.visual, request.shapes.links))
