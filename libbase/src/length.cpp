@@ -50,7 +50,11 @@ Length Length::in(std::string_view other) const {
   const std::int64_t common = std::gcd(tenths_of(unit), tenths_of(to));
   // One of the two is 1 between units of ten.
   const std::int64_t times = tenths_of(unit) / common, over = tenths_of(to) / common;
-  return {value * static_cast<double>(times) / static_cast<double>(over), false};
+  const Length out{value * static_cast<double>(times) / static_cast<double>(over), false};
+  if (!std::isfinite(out.value) || (out.value == 0) != (value == 0))
+    throw Error(ErrorCode::InvalidArgument,
+                text() + ": no number holds that in " + std::string(other));
+  return out;
 }
 
 std::string Length::text() const {

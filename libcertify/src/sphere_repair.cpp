@@ -94,7 +94,8 @@ Error named(const Error& error, const robot::RobotFile& robot, const std::string
 
 RepairedBalls begin(const robot::RobotFile& robot, std::uint32_t index,
                     const robot::SphereFile& given, const RepairRequest& request,
-                    const RobotHooks& hooks, std::vector<std::string>& notes) {
+                    robot::MeshFiles& files, const RobotHooks& hooks,
+                    std::vector<std::string>& notes) {
   const robot::Link& link = robot.robot.links[index];
   geom::PrepareOptions preparation;
   preparation.holes = geom::Holes::Fill;
@@ -105,7 +106,6 @@ RepairedBalls begin(const robot::RobotFile& robot, std::uint32_t index,
   double beyond = 0;
   const std::vector<Geometry> shapes =
       held_shapes(request.shapes.shapes_of(link), out.given, beyond);
-  robot::MeshFiles files(robot.path, request.shapes.packages);
   const geom::Mesh mesh = robot::exact_shapes(shapes, files);
   try {
     geom::Prepared prepared = geom::prepare(mesh, preparation);
@@ -180,12 +180,13 @@ RepairedSpheres repair_spheres(const robot::RobotFile& robot, const std::string&
   verify::require_spheres_of(robot, given, file);
   RepairedSpheres out;
   std::vector<RepairedBalls> links;
+  robot::MeshFiles files(robot.path, request.shapes.packages);
   for (std::uint32_t i = 0; i < robot.robot.links.size(); ++i) {
     const robot::Link& link = robot.robot.links[i];
     if (request.shapes.has(link) &&
         std::ranges::any_of(request.shapes.shapes_of(link),
                             [](const Geometry& g) { return !robot::is_point(g); }))
-      links.push_back(begin(robot, i, given, request, hooks, out.notes));
+      links.push_back(begin(robot, i, given, request, files, hooks, out.notes));
   }
   for (int round = 0;; ++round) {
     std::vector<robot::LinkSpheres> wanted;

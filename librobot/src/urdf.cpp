@@ -123,7 +123,6 @@ class Elements {
 
   std::map<std::string, Link> links;         ///< by name
   std::map<std::string, JointEntry> joints;  ///< by name
-  std::vector<std::string> notes;            ///< what is taken to be meant
 
  private:
   /// Roll, pitch and yaw become a quaternion, and that a matrix, as in urdfdom: the same bits.
@@ -161,35 +160,25 @@ class Elements {
     return file_.vector(mesh, "scale");
   }
 
-  /// What no engine reads: of several shapes in one <geometry> they take the first. One that is
-  /// only drawn is not worth the robot.
-  void look_at_others(const XMLElement& shape, const XMLElement& first, Link& link) {
-    for (const auto* e = first.NextSiblingElement(); e != nullptr; e = e->NextSiblingElement()) {
-      if (is_mark(*e)) continue;
-      const std::string what = "a second shape in one <geometry>";
-      if (std::string_view(shape.Name()) != "visual")
-        fail_at(
-            name_, e->GetLineNum(),
-            "link '" + link.name + "': " + what + ": give it a <" + shape.Name() + "> of its own");
-      link.unread.push_back({true, what});
-      notes.push_back(name_ + ":" + std::to_string(e->GetLineNum()) + ": link '" + link.name +
-                      "': " + what + " of a <visual> is not read, as by engines");
-    }
-  }
-
   /// Drake's mark of a mesh that is convex, in or beside it.
   static bool is_mark(const XMLElement& e) {
     return std::string_view(e.Name()) == "drake:declare_convex" && e.NoChildren();
   }
 
-  [[nodiscard]] Geometry read_geometry(const XMLElement& shape, Link& in) {
-    const std::string& link = in.name;
+  [[nodiscard]] Geometry read_geometry(const XMLElement& shape, const std::string& link) const {
     const XMLElement* geometry = file_.only_child(shape, "geometry");
-    const XMLElement* e = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
+    const auto shape_from = [](const XMLElement* e) {
+      while (e != nullptr && is_mark(*e)) e = e->NextSiblingElement();
+      return e;
+    };
+    const XMLElement* e = geometry != nullptr ? shape_from(geometry->FirstChildElement()) : nullptr;
     const std::string place = "link '" + link + "': ";
     if (e == nullptr)
       fail_at(name_, shape.GetLineNum(), place + "a <" + shape.Name() + "> without geometry");
-    look_at_others(shape, *e, in);
+    if (const XMLElement* second = shape_from(e->NextSiblingElement()); second != nullptr)
+      fail_at(
+          name_, second->GetLineNum(),
+          place + "a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own");
     const XMLElement* inside = e->FirstChildElement();
     if (inside != nullptr && !is_mark(*inside))
       fail_at(name_, inside->GetLineNum(),
@@ -232,7 +221,7 @@ class Elements {
     return g;
   }
 
-  [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) {
+  [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) const {
     refuse_unread(element, {"collision", "visual"}, name_);
     Link out;
     out.name = link;
@@ -240,7 +229,7 @@ class Elements {
          {std::pair{"collision", &out.collision}, std::pair{"visual", &out.visual}})
       for (const auto* e = element.FirstChildElement(tag); e != nullptr;
            e = e->NextSiblingElement(tag))
-        to->push_back(read_geometry(*e, out));
+        to->push_back(read_geometry(*e, link));
     return out;
   }
 
@@ -321,7 +310,6 @@ class Assembly {
  public:
   Assembly(Elements elements, const std::string& name)
       : elements_(std::move(elements)), name_(name) {
-    robot_.notes = std::move(elements_.notes);
     imply_world();
     for (const auto& named : elements_.joints) {
       const JointEntry& entry = named.second;

@@ -210,4 +210,16 @@ done
 expect 0 '' "$BIN/bcd-decompose" kinds/d.xml -o kind-both --epsilon 2% --robot-format mjcf
 [ -s kind-both/d.urdf ] && [ -s kind-both/d.xml ] || fail "both: $(ls kind-both)"
 
+# A joint begins at a link `world` that the file does not have: what is written has it.
+{
+  echo '<robot name="r"><link name="a"><collision><geometry><mesh filename="t.off"/></geometry></collision></link>'
+  echo '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>'
+} >implied.urdf
+tetrahedron >t.off
+for program in bcd-decompose bmesh-decimate; do
+  expect 0 "joint 'j' begins at link 'world'" "$BIN/$program" implied.urdf -o "implied-$program" --epsilon 2% --verbose
+  grep -q '<link name="world"/>' "implied-$program/implied.urdf" || fail "$program: world is not stated"
+  shows 0 '^verified' "$BIN/bound-verify" robot implied.urdf "implied-$program/implied.urdf"
+done
+
 finish

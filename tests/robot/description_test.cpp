@@ -239,23 +239,18 @@ TEST(Urdf, ShapesOfSizeZeroAreKept) {
   }
 }
 
-TEST(Urdf, WhatNobodyReadsIsNoted) {
-  // Of shapes in one <geometry> engines take the first; what collides is not to be lost so.
+TEST(Urdf, OneShapeInAGeometry) {
   const std::string two = "<geometry><sphere radius='1'/>\n<box size='1 2 3'/></geometry>";
-  const Robot drawn = parse(robot_of("<link name='a'><visual>" + two + "</visual></link>"));
-  ASSERT_EQ(drawn.links[0].visual.size(), 1U);
-  EXPECT_EQ(drawn.links[0].visual[0].shape, Geometry::Shape::Sphere);
-  ASSERT_EQ(drawn.links[0].unread.size(), 1U);
-  EXPECT_TRUE(drawn.links[0].unread[0].visual);
-  ASSERT_EQ(drawn.notes.size(), 1U);
-  EXPECT_NE(drawn.notes[0].find(":2: link 'a': a second shape"), std::string::npos)
-      << drawn.notes[0];
-  EXPECT_NE(message(robot_of("<link name='a'><collision>" + two + "</collision></link>"))
-                .find(":2: link 'a': a second shape in one <geometry>: give it a <collision>"),
-            std::string::npos);
+  for (const std::string tag : {"collision", "visual"}) {
+    std::string link = "<link name='a'><";
+    link.append(tag).append(">").append(two).append("</").append(tag).append("></link>");
+    EXPECT_NE(message(robot_of(link)).find(":2: link 'a': a second shape in one <geometry>: give"),
+              std::string::npos);
+  }
 
   // Drake's mark of a convex mesh is no shape, wherever it is.
   for (const std::string mesh : {"<mesh filename='m.obj'/><drake:declare_convex/>",
+                                 "<drake:declare_convex/><mesh filename='m.obj'/>",
                                  "<mesh filename='m.obj'><drake:declare_convex/></mesh>"}) {
     const Robot marked = parse(
         robot_of("<link name='a'><collision><geometry>" + mesh + "</geometry></collision></link>"));

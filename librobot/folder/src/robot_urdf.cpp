@@ -38,6 +38,23 @@ RobotUrdf::RobotUrdf(const robot::RobotFile& robot, fs::path folder)
   if (document_.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS ||
       document_.RootElement() == nullptr || std::string(document_.RootElement()->Name()) != "robot")
     throw Error(ErrorCode::InvalidInput, file_ + ": not a URDF");
+  state_world();
+}
+
+void RobotUrdf::state_world() {
+  XMLElement* root = document_.RootElement();
+  const std::string world = "world";
+  for (const XMLElement* e : children(root, "link"))
+    if (const char* name = e->Attribute("name"); name != nullptr && world == name) return;
+  for (const XMLElement* joint : children(root, "joint")) {
+    const XMLElement* parent = joint->FirstChildElement("parent");
+    const char* link = parent != nullptr ? parent->Attribute("link") : nullptr;
+    if (link == nullptr || world != link) continue;
+    XMLElement* stated = document_.NewElement("link");
+    stated->SetAttribute("name", link);
+    root->InsertFirstChild(stated);
+    return;
+  }
 }
 
 std::vector<std::string> RobotUrdf::mesh_stems() const {

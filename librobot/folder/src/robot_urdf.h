@@ -36,6 +36,8 @@ class RobotUrdf : public RobotDocument {
   /// Keeps the <collision> elements of a link.
   void keep(const std::string& link);
 
+  /// States the link `world` that joints may begin at without it (robot::parse_urdf).
+  void state_world();
   Element* element_of(const std::string& link);
   Element* collision(const Element* original, const std::string& link, std::size_t number);
   void move_references(Element* element);

@@ -32,7 +32,7 @@ geom::Mesh exact_shapes(const std::vector<Geometry>& shapes, MeshFiles& files) {
   geom::Mesh all;
   for (const Geometry& g : shapes) {
     if (g.shape == Geometry::Shape::Mesh) {
-      append(all, placed_mesh(io::read_mesh(files.first(g.mesh)).mesh, g));
+      append(all, placed_mesh(io::read_mesh(files.only(g.mesh)).mesh, g));
     } else if (!is_point(g)) {
       append(all, *geom::convex_hull(bounding_points(g)));
     }

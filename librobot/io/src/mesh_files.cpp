@@ -61,10 +61,14 @@ class PackageSearch {
   explicit PackageSearch(std::string name) : name_(std::move(name)) {}
 
   void place(const fs::path& place, int depth) {
+    const auto before = static_cast<std::ptrdiff_t>(found_.size());
     if (package_name(place) == name_) add(place);
     add(place / name_);
     if (is_called(place, name_)) add(place);
     descend(place, depth);
+    // A repository is often called as the package in it, whose package.xml tells them apart.
+    std::stable_partition(found_.begin() + before, found_.end(),
+                          [&](const fs::path& folder) { return package_name(folder) == name_; });
   }
   void add(const fs::path& folder) {
     std::error_code error;
@@ -221,9 +225,6 @@ class PackageFolders {
 fs::path find_package(const std::string& name, const fs::path& robot,
                       const std::vector<std::string>& packages) {
   const PackagePlaces looked(name, folder_of(robot), packages);
-  // A repository is often called as the package in it, whose package.xml tells them apart.
-  for (const fs::path& folder : looked.found())
-    if (package_name(folder) == name) return folder;
   return looked.found().empty() ? fs::path() : looked.found().front();
 }
 

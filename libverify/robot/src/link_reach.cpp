@@ -62,7 +62,7 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles
   for (const Geometry& g : shapes) {
     if (robot::is_point(g)) continue;
     if (g.shape == Geometry::Shape::Mesh) {
-      const io::ReadResult read = io::read_mesh(files.first(g.mesh));
+      const io::ReadResult read = io::read_mesh(files.only(g.mesh));
       const Subject subject =
           prepared_subject(read.mesh, {.holes = geom::Holes::Fill,
                                        .quads = read.bent_quads,

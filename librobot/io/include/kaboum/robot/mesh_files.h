@@ -23,7 +23,8 @@ class PackageFolders;
 ///
 /// Packages are looked for, in this order, in the folders given, those of $ROS_PACKAGE_PATH, the
 /// folders share/NAME of $AMENT_PREFIX_PATH, and the robot's folder and all above it. A folder is
-/// the package when its package.xml has <name>NAME</name>, or when it is itself called NAME. Looked
+/// the package when its package.xml has <name>NAME</name>, or when it is itself called NAME,
+/// which comes after the others of its place. Looked
 /// at are the places themselves and the folders in them; in those given and of $ROS_PACKAGE_PATH
 /// also the folders further below, to a depth of 5, as ROS does. This takes a while, so each
 /// package is looked for once in the life of a value, which is for one thread at a time.
