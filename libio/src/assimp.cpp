@@ -296,6 +296,28 @@ ReadResult read_fbx_here(const Source& source) {
   return builder.finish(Format::Fbx, true);
 }
 
+/// Whether an AC3D file has as many objects and surfaces as it states.
+bool has_all_of_ac3d(std::string_view text) {
+  std::size_t objects = 1, surfaces = 0;  // the first object is nobody's kid
+  std::size_t objects_found = 0, surfaces_found = 0;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(" \t\r"));
+    if (word == "OBJECT") ++objects_found;
+    if (word == "SURF") ++surfaces_found;
+    if (word != "kids" && word != "numsurf") continue;
+    line.remove_prefix(word.size());
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    std::size_t count = 0;
+    constexpr std::size_t kMost = 1'000'000'000;
+    std::from_chars(line.data(), line.data() + line.size(), count);
+    (word == "kids" ? objects : surfaces) += std::min(count, kMost);
+  }
+  return objects == objects_found && surfaces == surfaces_found;
+}
+
 /// Refuses a file that is cut, where it says how long it is or how it ends, and assimp does not
 /// look.
 void require_whole(const Source& source, std::string_view extension) {
@@ -309,6 +331,10 @@ void require_whole(const Source& source, std::string_view extension) {
         source.bytes.size() >= kHead &&
         load<std::uint32_t>(source.begin() + 4, std::endian::big) <= source.bytes.size() - kHead;
   }
+  if (extension.starts_with("ac") && !has_all_of_ac3d(source.bytes))
+    fail(source,
+         "the file has more or fewer objects (kids) or surfaces (numsurf) than it states; it may "
+         "be cut: get it again");
   if (!whole) fail(source, "the file is cut: its end is not there; get it again");
 }
 

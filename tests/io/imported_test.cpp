@@ -262,6 +262,14 @@ TEST(Imported, PointsAndLinesAreLeftOut) {
   EXPECT_EQ(r.mesh.triangles.size(), 12U);
   EXPECT_TRUE(has_note(r, "2 faces with fewer than three corners were ignored"));
   expect_refused(kAcHead + "numvert 1\n0 0 0\nkids 0\n", "point.ac", {"no triangles"});
+
+  // Cut between two objects, or with surfaces that are more than stated.
+  std::string two = ac3d();
+  two.replace(two.find("kids 1"), 6, "kids 2");
+  expect_refused(two, "cut.ac", {"more or fewer objects"});
+  std::string five = ac3d();
+  five.replace(five.find("numsurf 6"), 9, "numsurf 5");
+  expect_refused(five, "five.ac", {"surfaces (numsurf)"});
 }
 
 TEST(Imported, SkinsAreRefused) {
@@ -373,6 +381,7 @@ TEST(Imported, NestedTooDeep) {
   if (!can_read()) return;
   std::string text = "AC3Db\n";
   for (int i = 0; i < 300'000; ++i) text += "OBJECT group\nkids 1\n";
+  text += "OBJECT poly\nkids 0\n";
   expect_refused(text, "deep.ac", {});
 }
 
