@@ -258,7 +258,7 @@ fs::path find_model(const std::string& uri, const fs::path& from,
   for (const fs::path& place : places) {
     if (is_file(place)) return place;
     if (!is_folder(place)) continue;
-    const fs::path found = model_in(place);
+    fs::path found = model_in(place);
     if (is_file(found)) return found;
     why = "the folder has no " + found.filename().string() + ": " + place.string();
   }
