@@ -55,7 +55,8 @@ int check(const Options& o) {
                 o.log + ": the log was made from another file than " + o.original);
   io::require_recorded_scale(o.log, log.tool, o.scale);
   io::scale(input, o.scale, o.original);
-  for (const std::string& note : input.notes) tools::log(o.common.quiet, o.original + ": " + note);
+  for (const std::string& note : input.notes)
+    tools::log(o.common.quiet, std::string(o.original).append(": ").append(note));
   bytes = {};
   const io::ReadResult result =
       io::read_mesh(o.result, tools::format_for(o.result, o.result_format, "--input-format"));

@@ -110,7 +110,8 @@ int verify_progressive(const VerifyProgressiveOptions& o, const CommonOptions& c
   const verify::ReplayResult r = verify::replay_progressive(input.mesh, p);
   const std::string about = io::about_import(input);
   const ProgressiveCase run{original, progressive, unit.scale, input.notes, about, p, r};
-  for (const std::string& note : input.notes) log(common.quiet, original + ": " + note);
+  for (const std::string& note : input.notes)
+    log(common.quiet, std::string(original).append(": ").append(note));
   if (!common.report.empty()) write_report(common, "bound-verify", report_of(run));
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   if (!r.verified)
