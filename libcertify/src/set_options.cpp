@@ -246,6 +246,7 @@ SetRequest in_unit_of_file(SetRequest request, const std::string& unit,
       if (*one) lengths.push_back(&**one);
   if (unit.empty()) {
     std::vector<Length> stated;
+    stated.reserve(lengths.size());
     for (const Length* length : lengths) stated.push_back(*length);
     for (std::string& note :
          notes_on_unit(stated, request.unit + "; another one is stated by «unit=mm»"))

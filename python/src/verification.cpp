@@ -99,6 +99,7 @@ void bring_into_unit(const MeshValue& original, const geom::ConvexSet* set, Opti
   if (unit.empty() && set != nullptr && !set->provenance.unit.empty()) {
     unit = set->provenance.unit;
     std::vector<Length> stated;
+    stated.reserve(lengths.size());
     for (const Length* length : lengths) stated.push_back(*length);
     for (std::string& note : notes_on_unit(stated, unit + ", which is that of the set"))
       notes.push_back(std::move(note));

@@ -7,7 +7,7 @@
 #include <kaboum/robot/base_pose.h>
 
 #include <CLI/CLI.hpp>
-#include <ranges>
+#include <algorithm>
 #include <string_view>
 
 #include "common/arguments.h"
@@ -38,8 +38,9 @@ scene::NamedPrimitive parse_primitive(const std::string& text, const char* optio
     refuse("");
   const std::string kind = text.substr(equals + 1, colon - equals - 1);
   std::vector<double> sizes;
-  for (const auto part : std::views::split(std::string_view(text).substr(colon + 1), ',')) {
-    const std::optional<Length> length = parse_length({part.begin(), part.end()});
+  for (std::size_t begin = colon + 1, end = 0; end < text.size(); begin = end + 1) {
+    end = std::min(text.find(',', begin), text.size());
+    const std::optional<Length> length = parse_length(text.substr(begin, end - begin));
     if (!length || length->percent)
       refuse("; sizes are lengths in " + unit + ", or with a unit, as in 40cm");
     sizes.push_back(length->in(unit).value);
