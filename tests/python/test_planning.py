@@ -442,7 +442,7 @@ def test_lengths_take_units(cell):
         with pytest.raises(kaboum.Error, match="radius must be"):
             world.with_cloud(points, wrong)
     path = np.stack([home, home + 0.01])
-    answers = [world.check_motion(path, resolution=r).answer for r in (0.0001, "0.1mm")]
+    answers = [world.check_motion(path, resolution=r).outcome for r in (0.0001, "0.1mm")]
     assert answers[0] == answers[1]
     assert world.check_motion(np.stack([home, home]), keep="level=1mm")
     with pytest.raises(kaboum.Error, match="no diagonal"):
