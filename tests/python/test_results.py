@@ -146,7 +146,7 @@ def test_regions_as_the_tool(bracket, tmp_path):
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     size = float(np.linalg.norm(high - low))
     near = {"name": "corner", "epsilon": "2%", "box": [low, 0.5 * (low + high)]}
-    regions = [near, {"epsilon": f"{0.03 * size}m", "ball": {"center": high, "radius": 0.2 * size}}]
+    regions = [near, {"epsilon": f"{0.03 * size}m", "ball": {"center": [high[0], low[1], low[2]], "radius": 0.2 * size}}]
     file, result, report = tmp_path / "map.json", tmp_path / "b.glb", tmp_path / "r.json"
     file.write_text(json.dumps({"regions": regions}, default=lambda a: a.tolist()))
     subprocess.run([f"{BIN}/bcd-decompose", bracket, "-o", result, "--epsilon", "6%", "--effort", "fast", "--no-cache",
