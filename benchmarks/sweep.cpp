@@ -1,3 +1,4 @@
+#include <kaboum/base/parse_length.h>
 #include <kaboum/certify/link_bodies.h>
 #include <kaboum/sweep/sweep.h>
 #include <tbb/global_control.h>
@@ -42,7 +43,7 @@ Times seconds_of(const robot::Robot& robot, const std::vector<robot::LinkBody>& 
 int measure(const char* file, const char* epsilon, int most_vertices) {
   const robot::RobotFile robot = robot::read_robot(file);
   certify::RobotRequest request;
-  request.set.epsilon = tools::parse_length(epsilon);
+  request.set.epsilon = parse_length(epsilon);
   request.set.max_vertices = static_cast<std::size_t>(most_vertices);
   request.set.effort = bcd::Effort::Fast;
   const certify::CertifiedBodies links = certify::certify_bodies(robot, request);

@@ -1,4 +1,5 @@
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/certify/link_bodies.h>
 #include <kaboum/certify/set_cache.h>
 #include <kaboum/collide/bounding_set.h>
@@ -221,7 +222,7 @@ int main(int argc, char** argv) {
       pairs();
       return 0;
     }
-    for (int i = 2; i < argc; ++i) robot_in_scene(argv[i], tools::parse_length(argv[1]).value());
+    for (int i = 2; i < argc; ++i) robot_in_scene(argv[i], parse_length(argv[1]).value());
     return 0;
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -1,4 +1,5 @@
 #include <kaboum/base/error.h>
+#include <kaboum/base/parse_length.h>
 #include <kaboum/certify/link_bodies.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/io/convex_io.h>
@@ -65,7 +66,7 @@ Shapes load(const robot::RobotFile& file, const std::string& epsilon, double sca
     }
   }
   certify::RobotRequest request;
-  request.set.epsilon = tools::parse_length(epsilon);
+  request.set.epsilon = parse_length(epsilon);
   request.set.effort = bcd::Effort::Fast;
   const certify::CertifiedBodies bodies = certify::certify_bodies(file, request);
   for (const robot::LinkBody& body : bodies.artefact())
