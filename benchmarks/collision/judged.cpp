@@ -48,6 +48,7 @@ class Judge {
       : world_(world) {
     for (std::size_t r = 0; r < world.robots.size(); ++r) {
       const robot::RobotFile file = robot::read_robot(files.at(world.robots[r].name));
+      robot::MeshFiles meshes(file.path, {});
       for (std::size_t s = 0; s < world.robots[r].shapes.size(); ++s) {
         geom::Mesh all;
         const robot::Link& link = file.robot.links[world.robots[r].shapes[s].link];
@@ -55,8 +56,7 @@ class Judge {
           const bool is_mesh = g.shape == robot::Geometry::Shape::Mesh;
           if (!is_mesh && g.shape != robot::Geometry::Shape::Box)
             throw Error(ErrorCode::InvalidInput, link.name + ": a shape that is no mesh or box");
-          const geom::Mesh mesh =
-              is_mesh ? io::read_mesh(robot::resolve_mesh(g.mesh, file.path, {})).mesh : unit_box();
+          const geom::Mesh mesh = is_mesh ? io::read_mesh(meshes.first(g.mesh)).mesh : unit_box();
           const auto first = static_cast<std::uint32_t>(all.vertices.size());
           for (const geom::Vec3& v : mesh.vertices)
             all.vertices.emplace_back(g.origin * v.cwiseProduct(g.size));

@@ -52,6 +52,7 @@ struct Shapes {
 
 Shapes load(const robot::RobotFile& file, const std::string& epsilon, double scale) {
   Shapes out;
+  robot::MeshFiles meshes(file.path, {});
   out.triangles = {"triangle meshes", false, 0, {}, make_scene(scale)};
   out.hulls = {"hulls of links", true, 0, {}, make_scene(scale)};
   out.sets = {"bounding sets", true, 0, {}, make_scene(scale)};
@@ -59,7 +60,7 @@ Shapes load(const robot::RobotFile& file, const std::string& epsilon, double sca
     geom::Mesh all;
     for (const robot::Geometry& g : file.robot.links[l].collision) {
       if (g.shape != robot::Geometry::Shape::Mesh) continue;
-      geom::Mesh mesh = io::read_mesh(robot::resolve_mesh(g.mesh, file.path, {})).mesh;
+      geom::Mesh mesh = io::read_mesh(meshes.first(g.mesh)).mesh;
       for (geom::Vec3& v : mesh.vertices) v = g.origin * v.cwiseProduct(g.size);
       if (const auto hull = geom::convex_hull(mesh.vertices)) out.hulls.robot.push_back({l, *hull});
       out.triangles.robot.push_back({l, std::move(mesh)});
