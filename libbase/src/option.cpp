@@ -144,11 +144,13 @@ std::string settings_flaw(const OptionDescription& option, const std::string& va
 }
 
 std::string length_flaw(const OptionDescription& option, const std::string& value) {
-  const auto length = parse_length(value);
+  const bool may_be_zero = option.low == 0;
+  const auto length = may_be_zero ? parse_distance(value) : parse_length(value);
   if (length && !(option.absolute && length->percent)) return {};
   if (option.absolute)
-    return "must be " + absolute_words(option, "a positive length") + ", not " + value +
-           percent_words(length);
+    return "must be " +
+           absolute_words(option, may_be_zero ? "a length of at least 0" : "a positive length") +
+           ", not " + value + percent_words(length);
   return "must be a positive number, perhaps with a unit (" + joined_units() +
          "), as in 5mm, or a percentage such as 0.5%, without blanks, not " + value;
 }
@@ -199,6 +201,7 @@ std::string value_words(const OptionDescription& option) {
 }
 
 std::string range_words(const OptionDescription& option) {
+  if (option.kind == Kind::Length && option.low == 0) return "at least 0";
   const bool whole = option.kind == Kind::Count || option.kind == Kind::Counts;
   if (!whole && option.kind != Kind::Number && option.kind != Kind::Settings) return {};
   const auto digits = [&](double limit) {
@@ -355,7 +358,7 @@ void parse(const std::string& text, std::vector<std::size_t>& value) {
   std::ranges::sort(value, std::greater<>());
 }
 void parse(const std::string& text, double& value) {
-  const auto length = parse_length(text);
+  const auto length = parse_distance(text);
   value = length && length->unit != Length::Unit::Own ? length->in("m").value
                                                       : parsed<double>(text).value_or(0);
 }

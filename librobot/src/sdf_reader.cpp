@@ -421,7 +421,7 @@ class Reader {
   }
 
   void read_limits(const XMLElement& axis, bool endless, Variable& variable,
-                   JointDynamics& dynamics) const {
+                   JointDynamics& dynamics) {
     constexpr double kNone = 1e16;  // SDF's own default
     if (const XMLElement* limit = file_.only_child(axis, "limit"); limit != nullptr) {
       const auto bound = [&](const char* tag) -> std::optional<double> {
@@ -436,9 +436,21 @@ class Reader {
         variable.lower = lower;
       if (const auto upper = bound("upper"); upper && *upper < kNone && !endless)
         variable.upper = upper;
-      if (const auto velocity = bound("velocity"); velocity && *velocity > 0)
+      // What a motor can do says nothing of where links are: as readers take it, up to the first
+      // sign that belongs to no number.
+      const auto of_motor = [&](const char* tag) -> std::optional<double> {
+        const XMLElement* e = file_.only_child(*limit, tag);
+        const std::string text = e == nullptr ? "" : trimmed(e->GetText());
+        const std::string number = text.substr(0, text.find_first_not_of("0123456789+-.eE"));
+        const auto out = finite_number(number);
+        if (!out || number == text) return bound(tag);
+        note(*e, std::string("<").append(tag).append(">: ").append(number).append(
+                     " is taken of '" + text + "', as readers of SDF do"));
+        return out;
+      };
+      if (const auto velocity = of_motor("velocity"); velocity && *velocity > 0)
         variable.velocity = velocity;
-      if (const auto effort = bound("effort"); effort && *effort > 0) dynamics.effort = effort;
+      if (const auto effort = of_motor("effort"); effort && *effort > 0) dynamics.effort = effort;
     }
     if (const XMLElement* e = axis.FirstChildElement("dynamics"); e != nullptr) {
       dynamics.damping = std::max(0.0, number(*e, "damping", 0));

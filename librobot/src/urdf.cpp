@@ -122,6 +122,7 @@ class Elements {
   }
 
   std::map<std::string, Link> links;         ///< by name
+  std::vector<std::string> notes;            ///< of what readers leave out
   std::map<std::string, JointEntry> joints;  ///< by name
 
  private:
@@ -165,20 +166,30 @@ class Elements {
     return std::string_view(e.Name()) == "drake:declare_convex" && e.NoChildren();
   }
 
+  /// The next shape from an element of <geometry> on.
+  static const XMLElement* shape_from(const XMLElement* e) {
+    while (e != nullptr && is_mark(*e)) e = e->NextSiblingElement();
+    return e;
+  }
+
+  /// What is wrong with a <collision> or <visual> whose <geometry> has two shapes: readers take the
+  /// first. Empty: it has not.
+  [[nodiscard]] std::string second_shape(const XMLElement& shape, const std::string& link) const {
+    const XMLElement* geometry = shape.FirstChildElement("geometry");
+    const XMLElement* first =
+        geometry != nullptr ? shape_from(geometry->FirstChildElement()) : nullptr;
+    const XMLElement* second = first != nullptr ? shape_from(first->NextSiblingElement()) : nullptr;
+    if (second == nullptr) return {};
+    return name_ + ":" + std::to_string(second->GetLineNum()) + ": link '" + link +
+           "': a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own";
+  }
+
   [[nodiscard]] Geometry read_geometry(const XMLElement& shape, const std::string& link) const {
     const XMLElement* geometry = file_.only_child(shape, "geometry");
-    const auto shape_from = [](const XMLElement* e) {
-      while (e != nullptr && is_mark(*e)) e = e->NextSiblingElement();
-      return e;
-    };
     const XMLElement* e = geometry != nullptr ? shape_from(geometry->FirstChildElement()) : nullptr;
     const std::string place = "link '" + link + "': ";
     if (e == nullptr)
       fail_at(name_, shape.GetLineNum(), place + "a <" + shape.Name() + "> without geometry");
-    if (const XMLElement* second = shape_from(e->NextSiblingElement()); second != nullptr)
-      fail_at(
-          name_, second->GetLineNum(),
-          place + "a second shape in one <geometry>: give it a <" + shape.Name() + "> of its own");
     const XMLElement* inside = e->FirstChildElement();
     if (inside != nullptr && !is_mark(*inside))
       fail_at(name_, inside->GetLineNum(),
@@ -221,15 +232,21 @@ class Elements {
     return g;
   }
 
-  [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) const {
+  [[nodiscard]] Link read_link(const XMLElement& element, const std::string& link) {
     refuse_unread(element, {"collision", "visual"}, name_);
     Link out;
     out.name = link;
     for (const auto& [tag, to] :
          {std::pair{"collision", &out.collision}, std::pair{"visual", &out.visual}})
       for (const auto* e = element.FirstChildElement(tag); e != nullptr;
-           e = e->NextSiblingElement(tag))
+           e = e->NextSiblingElement(tag)) {
         to->push_back(read_geometry(*e, link));
+        const std::string wrong = second_shape(*e, link);
+        if (wrong.empty()) continue;
+        if (to == &out.collision) throw Error(ErrorCode::InvalidInput, wrong);
+        out.unread.push_back({true, "a second shape in one <geometry>", wrong});
+        notes.push_back(wrong + "; readers take the first, and it is not looked at here");
+      }
     return out;
   }
 
@@ -310,6 +327,7 @@ class Assembly {
  public:
   Assembly(Elements elements, const std::string& name)
       : elements_(std::move(elements)), name_(name) {
+    robot_.notes = std::move(elements_.notes);
     imply_world();
     for (const auto& named : elements_.joints) {
       const JointEntry& entry = named.second;

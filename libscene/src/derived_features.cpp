@@ -854,6 +854,7 @@ const std::vector<Option<GraspRequest>>& grasp_options() {
           {.name = "gap",
            .text = "From the tool to the face that it holds by suction, beyond the sets' "
                    "epsilon",
+           .low = 0,
            .absolute = true},
           [](auto& r) -> auto& { return r.gap; })};
   return options;

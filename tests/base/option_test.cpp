@@ -144,6 +144,7 @@ TEST(Options, OtherMembers) {
   struct Motion {
     std::map<std::string, double> joints;
     double resolution = 1e-5, work = std::numeric_limits<double>::infinity();
+    double gap = 0.001;
   } motion;
   const std::vector<Option<Motion>> all{
       option<Motion>(
@@ -152,16 +153,28 @@ TEST(Options, OtherMembers) {
           {.name = "resolution", .text = "Resolution", .absolute = true},
           [](auto& r) -> auto& { return r.resolution; }),
       option<Motion>(
-          {.name = "work", .text = "Work"}, [](auto& r) -> auto& { return r.work; })};
+          {.name = "work", .text = "Work"}, [](auto& r) -> auto& { return r.work; }),
+      option<Motion>(
+          {.name = "gap", .text = "Gap", .low = 0, .absolute = true},
+          [](auto& r) -> auto& { return r.gap; })};
   EXPECT_EQ(record_of(all, motion), "");
   EXPECT_EQ(value_words(all[1]), "LENGTH");
   EXPECT_EQ(facts_of(all[1]), "metres, or with a unit, as in 5mm");
+  EXPECT_EQ(facts_of(all[3]), "at least 0; metres, or with a unit, as in 5mm");
   EXPECT_NE(flaw_of(all[1], "1%").find("no diagonal"), std::string::npos);
   EXPECT_NE(flaw_of(all[1], "0"), "");
   EXPECT_EQ(flaw_of(all[1], "5mm"), "");
   all[1].assign(motion, "5mm");
   EXPECT_EQ(motion.resolution, 0.005);
   motion.resolution = 1e-5;
+  for (const std::string none : {"0", "0mm"}) {
+    motion.gap = 1;
+    EXPECT_EQ(flaw_of(all[3], none), "");
+    all[3].assign(motion, none);
+    EXPECT_EQ(motion.gap, 0);
+  }
+  EXPECT_NE(flaw_of(all[3], "-1mm").find("a length of at least 0"), std::string::npos);
+  motion.gap = 0.001;
   EXPECT_NE(flaw_of(all[0], "a=1\na=2"), "");
   EXPECT_EQ(read_record(all, "--joint b=0.25 --joint a=1 --resolution 0.5 --work 3", motion), "");
   EXPECT_EQ(motion.joints, (std::map<std::string, double>{{"a", 1}, {"b", 0.25}}));

@@ -2,9 +2,11 @@
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/robot/link_meshes.h>
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "robots.h"
 
@@ -240,13 +242,22 @@ TEST(Urdf, ShapesOfSizeZeroAreKept) {
 }
 
 TEST(Urdf, OneShapeInAGeometry) {
-  const std::string two = "<geometry><sphere radius='1'/>\n<box size='1 2 3'/></geometry>";
-  for (const std::string tag : {"collision", "visual"}) {
-    std::string link = "<link name='a'><";
-    link.append(tag).append(">").append(two).append("</").append(tag).append("></link>");
-    EXPECT_NE(message(robot_of(link)).find(":2: link 'a': a second shape in one <geometry>: give"),
-              std::string::npos);
-  }
+  const auto two = [](const std::string& tag) {
+    return robot_of("<link name='a'><" + tag +
+                    "><geometry><sphere radius='1'/>\n<box size='1 2 3'/></geometry></" + tag +
+                    "></link>");
+  };
+  const std::string wrong = ":2: link 'a': a second shape in one <geometry>: give it a <";
+  EXPECT_NE(message(two("collision")).find(wrong + "collision>"), std::string::npos);
+  // Of shapes for drawing, it is told, and refused where they are meant.
+  const Robot drawn = parse(two("visual"));
+  EXPECT_EQ(drawn.links[0].visual.size(), 1U);
+  ASSERT_EQ(drawn.notes.size(), 1U);
+  EXPECT_NE(drawn.notes[0].find(wrong + "visual>"), std::string::npos);
+  ShapeChoice choice;
+  EXPECT_TRUE(choice.shapes_of(drawn.links[0]).empty());
+  choice.visual = true;
+  EXPECT_THROW(std::ignore = choice.shapes_of(drawn.links[0]), Error);
 
   // Drake's mark of a convex mesh is no shape, wherever it is.
   for (const std::string mesh : {"<mesh filename='m.obj'/><drake:declare_convex/>",

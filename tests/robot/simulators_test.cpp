@@ -384,6 +384,25 @@ TEST(Sdf, JointsThatAreCalledAsModels) {
   EXPECT_EQ(poses[robot.find_link("lower").value()].translation, Vec3(0, 0, 5));
 }
 
+/// A motor's limits are read as other readers do, up to a stray sign, and told; a joint's are not.
+TEST(Sdf, StraySignsInLimits) {
+  const auto with = [](const std::string& limits) {
+    return sdf(
+        "<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent>"
+        "<child>b</child><axis><xyz>0 0 1</xyz><limit>" +
+        limits + "</limit></axis></joint>");
+  };
+  const Robot robot = parse_sdf(with("<velocity>2.5\"</velocity>"), "s.sdf").robot;
+  EXPECT_EQ(robot.variables.at(0).velocity, 2.5);
+  ASSERT_EQ(robot.notes.size(), 1U);
+  EXPECT_NE(robot.notes[0].find("s.sdf:1: <velocity>: 2.5 is taken of '2.5\"'"), std::string::npos);
+  for (const std::string wrong :
+       {"<velocity>\"2.5</velocity>", "<velocity>x</velocity>", "<upper>2.5\"</upper>"})
+    EXPECT_NE(refusal([&] { parse_sdf(with(wrong), "s.sdf"); }).find("not 1 finite number"),
+              std::string::npos)
+        << wrong;
+}
+
 /// multiplier (q − reference) + offset, through another joint that follows as well.
 TEST(Sdf, JointsThatFollow) {
   const auto joint = [](const std::string& name, const std::string& child,

@@ -57,6 +57,13 @@ bool ShapeChoice::has(const Link& link) const {
   return links.empty() || std::find(links.begin(), links.end(), link.name) != links.end();
 }
 
+const std::vector<Geometry>& ShapeChoice::shapes_of(const Link& link) const {
+  for (const UnreadShape& unread : link.unread)
+    if (unread.visual == visual && !unread.refusal.empty())
+      throw Error(ErrorCode::InvalidInput, unread.refusal);
+  return visual ? link.visual : link.collision;
+}
+
 std::vector<MissingMesh> missing_meshes(const RobotFile& robot, const ShapeChoice& choice) {
   require_links(robot, choice.links);
   MeshPlaces places(robot, choice.packages);

@@ -40,7 +40,7 @@ struct OptionDescription {
   /// the front end spells it.
   std::string text;
   std::string values = {};  ///< placeholder of a value in usage: "SECONDS"; empty: by its kind
-  double low = -std::numeric_limits<double>::infinity();  ///< least count or number
+  double low = -std::numeric_limits<double>::infinity();  ///< least value; 0 allows a length of 0
   double high = std::numeric_limits<double>::infinity();  ///< largest count or number
   bool between = false;   ///< a number lies between the limits and is none of them
   bool absolute = false;  ///< a length is no percentage; a number is such a length, in metres

@@ -36,6 +36,9 @@ std::string describe(const Geometry& geometry);
 struct UnreadShape {
   bool visual = false;  ///< for drawing only
   std::string what;     ///< "a plane"
+  /// Why shapes of its kind are refused where they are meant, with the place in the file; empty:
+  /// they are not.
+  std::string refusal = {};
 };
 
 struct Link {

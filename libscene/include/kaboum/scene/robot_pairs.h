@@ -1,7 +1,6 @@
 #pragma once
 
 #include <kaboum/certify/robot.h>
-#include <kaboum/world/world.h>
 
 #include <cstddef>
 #include <functional>
@@ -9,11 +8,6 @@
 #include <vector>
 
 namespace kaboum::scene {
-
-/// A robot as worlds have it, by the certified sets of its links, standing at the origin. Links
-/// that have points only, and those without a set, have no shape in it.
-world::RobotModel robot_model(const robot::Robot& robot,
-                              const std::vector<certify::CertifiedLink>& links);
 
 /// Knowledge of a robot's pairs of links, by their bodies.
 struct RobotPairs {

@@ -19,9 +19,8 @@ struct ShapeChoice {
   bool skip_missing = false;
 
   [[nodiscard]] bool has(const Link& link) const;
-  [[nodiscard]] const std::vector<Geometry>& shapes_of(const Link& link) const {
-    return visual ? link.visual : link.collision;
-  }
+  /// @throws Error{InvalidInput} where one more is meant that could not be read (UnreadShape)
+  [[nodiscard]] const std::vector<Geometry>& shapes_of(const Link& link) const;
 };
 
 /// A mesh at one scale.
