@@ -17,7 +17,10 @@ WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoi
   try {
     static_cast<robot::LinkMeshes&>(out) = robot::link_meshes(robot, choice);
   } catch (const Error& error) {
-    if (choice.skip_missing || error.code() != ErrorCode::InvalidInput) throw;
+    // Other refusals come again of looking for what is missing.
+    if (choice.skip_missing || error.code() != ErrorCode::InvalidInput ||
+        robot::missing_meshes(robot, choice).empty())
+      throw;
     throw Error(error.code(), std::string(error.what()) +
                                   "; «missing-meshes=skip» leaves them out, and their links are "
                                   "not verified then");
