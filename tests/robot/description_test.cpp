@@ -350,9 +350,11 @@ TEST(Urdf, BadFilesAreRefused) {
                "</mesh></geometry></collision></link>"),
       "belongs beside <geometry>");
   has(robot_of("<link name='a'/>") + robot_of("<link name='b'/>"), "one robot");
-  for (const std::string tag : {"self_collision_checking", "self_filter"})
-    EXPECT_EQ(message(robot_of("<link name='a'><" + tag + ">" + box + "</" + tag + "></link>")),
-              "no error");
+  for (const std::string tag : {"self_collision_checking", "self_filter"}) {
+    std::string link = "<link name='a'><";
+    link.append(tag).append(">").append(box).append("</").append(tag).append("></link>");
+    EXPECT_EQ(message(robot_of(link)), "no error");
+  }
   EXPECT_EQ(message(robot_of("<link name='a'/><gazebo reference='a'><visual/></gazebo>"
                              "<transmission name='t'><joint name='j'/></transmission>"
                              "<material name='grey'/>")),

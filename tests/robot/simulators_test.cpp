@@ -123,7 +123,7 @@ TEST(Mjcf, PrimitivesFittedToMeshes) {
       "inertia='convex'/></asset>";
   const auto stated = [&](const std::string& geom, const std::string& compiler = "") {
     return state_fitted_sizes(mjcf(geom, mesh + compiler), "m.xml",
-                              [&](const std::string&) { return box; });
+                              [&](const std::string&) { return geom::Mesh(box); });
   };
   const std::string text = stated("<geom type='box' mesh='p' pos='0 0 1' fitscale='2'/>");
   const Geometry shape = parse(text).robot.links[0].collision.at(0);
