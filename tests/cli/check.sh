@@ -495,6 +495,7 @@ absent bad.json bad
 # A scene in another unit than metres: two cubes of 10 mm, 20 mm apart.
 expect 0 '0 sets' "$BIN/kaboum-scene" make cubes.json --unit mm --primitive a=box:1cm,10,0.01m --primitive b=box:10,10,10 --at b=30,0,0
 shows 0 '^free, with margins kept: 1.99cm$' "$BIN/kaboum-check" cubes.json --resting --margin 1.99cm
+shows 0 '^free, with margins kept: 1; objects that rest are not looked at in pairs (--resting does)$' "$BIN/kaboum-check" cubes.json --margin 1
 shows 1 'within the margin of 20.1' "$BIN/kaboum-check" cubes.json --resting --margin 20.1
 shows 1 'within the margin of 20.1' "$BIN/kaboum-check" cubes.json --resting --margin a,b=0.0201m
 finish

@@ -10,6 +10,7 @@
 #include <kaboum/world/scene.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
@@ -54,6 +55,14 @@ void say(const tools::CheckOptions& o, const std::string& line) {
 std::string kept_apart(const tools::CheckOptions& o) {
   const std::string margins = words_of(o.margin);
   return margins.empty() ? "" : ", with margins kept: " + margins;
+}
+
+/// What of stated margins "free" of a configuration leaves open; empty: nothing.
+std::string not_looked_at(const tools::CheckOptions& o, const world::World& world) {
+  const bool all =
+      o.state.resting || words_of(o.margin).empty() ||
+      std::ranges::count_if(world.attachments, [](const auto& held) { return !held; }) < 2;
+  return all ? "" : "; objects that rest are not looked at in pairs (--resting does)";
 }
 
 std::vector<double> configuration_at(const robot::Path& path, std::size_t segment, double share) {
@@ -252,7 +261,7 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
     tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
     const std::string before =
         values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
-    if (contacts.empty()) say(o, before + "free" + kept_apart(o));
+    if (contacts.empty()) say(o, before + "free" + kept_apart(o) + not_looked_at(o, scene.world));
     for (const world::Contact& contact : contacts) {
       free = false;
       certain = certain || contact.certain;
