@@ -16,6 +16,7 @@
 
 #include "ball_relaxation.h"
 #include "cover_points.h"
+#include "float32_below.h"
 #include "options.h"
 #include "regional_body.h"
 #include "set_cover.h"
@@ -287,10 +288,7 @@ class BallSearch {
         out[i] = written_[i];
         return;
       }
-      const double most = body_->refined_radius_about(at, kFineCaps);
-      double radius = geom::to_float32(most);
-      if (radius > most) radius -= geom::float32_spacing(radius * (1 - 1e-7));
-      out[i] = {at, radius};
+      out[i] = {at, most_about(at)};
     });
     written_ = out;
     return out;
@@ -551,14 +549,9 @@ class BallSearch {
     return out;
   }
 
-  [[nodiscard]] static double rounded_down(double radius) {
-    const double out = geom::to_float32(radius);
-    return out > radius ? out - geom::float32_spacing(out * (1 - 1e-7)) : out;
-  }
-
   /// The largest radius that is known to be allowed about a point.
   [[nodiscard]] double most_about(const Vec3& c) const {
-    return rounded_down(body_->refined_radius_about(c, kFineCaps));
+    return float32_below(body_->refined_radius_about(c, kFineCaps));
   }
 
   /// The ball, no larger than is allowed; put to the surface where its centre is too far.
@@ -569,13 +562,13 @@ class BallSearch {
     if (most > kLeast * body_->distance()) return {b.center, most};
     const auto& [p, q, r] = query_.corners(query_.nearest(b.center).triangle);
     const Vec3 at = geom::to_float32(geom::closest_point(b.center, p, q, r));
-    return {at, std::min(rounded_down(b.radius), most_about(at))};
+    return {at, std::min(float32_below(b.radius), most_about(at))};
   }
 
   /// A radius that holds a point at this distance with something to spare.
   [[nodiscard]] double radius_for(double distance, double most) const {
     const double wanted = distance * (1 + kPointSlack) + 0.02 * body_->distance();
-    return std::min(most, rounded_down(wanted));
+    return std::min(most, float32_below(wanted));
   }
 
   /// Makes few balls larger that then hold many of the points; leaves the rest.
@@ -632,8 +625,8 @@ class BallSearch {
           for (const Vec3& q : own) reach = std::max(reach, (q - at).norm());
           const double most = most_about(at);
           if (reach > most * (1 - kPointSlack)) continue;
-          balls[i] = {
-              at, std::max(std::min(rounded_down(balls[i].radius), most), radius_for(reach, most))};
+          balls[i] = {at, std::max(std::min(float32_below(balls[i].radius), most),
+                                   radius_for(reach, most))};
           is_moved = true;
           break;
         }

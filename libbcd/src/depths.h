@@ -1,6 +1,5 @@
 #pragma once
 
-#include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "boundary.h"
+#include "depth_bounds.h"
 #include "inscribe.h"
 
 namespace kaboum::bcd {
@@ -51,16 +51,11 @@ class Depths {
     }
   };
 
-  [[nodiscard]] bool inside(const Vec3& p) const;
   void add(const Vec3& center, double half, std::uint32_t hint, double known);
-  [[nodiscard]] double outside_near(const Vec3& p, std::uint32_t triangle) const;
   [[nodiscard]] bool within(const Cube& cube, const std::vector<Inscribed>& bodies) const;
   [[nodiscard]] bool in_a_body(const Vec3& p, const std::vector<Inscribed>& bodies) const;
 
-  const geom::WindingNumber& winding_;
-  geom::DistanceQuery query_;
-  geom::DistanceQuery outside_;  // points that are
-  double diagonal_ = 0, slack_ = 0;
+  DepthBounds bounds_;
   std::priority_queue<Cube> cubes_;
   std::uint64_t count_ = 0;
   std::size_t looked_ = 0;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "depths.h"
 #include "inscribe.h"
@@ -54,12 +53,7 @@ void require_inside(const geom::SolidMesh& input, const InnerOptions& options) {
   if (!options.epsilon && !options.max_bodies)
     throw Error(ErrorCode::InvalidArgument, "neither epsilon nor max_bodies is given");
   require_sound(options, options);
-  const std::size_t triangles = input.mesh().triangles.size();
-  for (const std::uint32_t t : options.doubtful)
-    if (t >= triangles)
-      throw Error(ErrorCode::InvalidArgument,
-                  "doubtful triangle " + std::to_string(t) + " is none of the mesh's " +
-                      std::to_string(triangles) + "; name triangles of the mesh given");
+  require_doubtful(input.mesh(), options.doubtful);
   if (!input.closed())
     throw Error(ErrorCode::InvalidInput, "the mesh is open: bodies inside it mean nothing");
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace kaboum::bcd {
 
@@ -74,6 +75,14 @@ void require_sound(const CoverOptions& options) {
     throw Error(ErrorCode::InvalidArgument,
                 "a limit on all vertices together does not go with a least thickness, or a largest "
                 "aspect: bodies are simplified after they are thickened");
+}
+
+void require_doubtful(const geom::Mesh& mesh, const std::vector<std::uint32_t>& doubtful) {
+  for (const std::uint32_t t : doubtful)
+    if (t >= mesh.triangles.size())
+      throw Error(ErrorCode::InvalidArgument,
+                  "doubtful triangle " + std::to_string(t) + " is none of the mesh's " +
+                      std::to_string(mesh.triangles.size()) + "; name triangles of the mesh given");
 }
 
 bool too_coarse(const geom::Mesh& mesh, const std::optional<double>& epsilon) {
