@@ -77,11 +77,12 @@ bool meets_another(const Mesh& mesh, const geom::Bvh& bvh, const Triangle& whole
 /// Finds the parts of triangles, cut in halves, that bound the solid.
 class BoundaryFinder {
  public:
-  BoundaryFinder(const Mesh& mesh, const geom::WindingNumber& winding, double size)
+  BoundaryFinder(const Mesh& mesh, const geom::WindingNumber& winding, double size,
+                 std::optional<double> coarse)
       : mesh_(mesh), winding_(winding), size_(size), bvh_(mesh) {
     const double diagonal = geom::bounding_box(mesh).diagonal();
     step_ = kBeside * diagonal;
-    coarse_ = std::max(size, kCoarse * diagonal);
+    coarse_ = std::max(size, coarse.value_or(kCoarse * diagonal));
     out_.mesh.vertices = mesh.vertices;
   }
 
@@ -191,8 +192,8 @@ class BoundaryFinder {
 }  // namespace
 
 Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
-                     const std::vector<std::uint32_t>& doubtful) {
-  return BoundaryFinder(mesh, winding, size).find(doubtful);
+                     const std::vector<std::uint32_t>& doubtful, std::optional<double> coarse) {
+  return BoundaryFinder(mesh, winding, size, coarse).find(doubtful);
 }
 
 }  // namespace kaboum::bcd

@@ -4,6 +4,7 @@
 #include <kaboum/geom/winding.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -19,11 +20,14 @@ struct Boundary {
 };
 
 /// As far as samples tell: triangles that cross others are cut into pieces no
-/// longer than `size`, and what samples find inside the solid is left out.
+/// longer than `size` where samples differ, and else than `coarse` if that is more, and what
+/// samples find inside the solid is left out.
 /// @param doubtful  triangles where samples are known to miss something: of
 /// these, pieces that meet
 ///   other triangles are left out only where the solid is doubly round them.
+/// @param coarse  by default 5 % of the diagonal
 Boundary boundary_of(const Mesh& mesh, const geom::WindingNumber& winding, double size,
-                     const std::vector<std::uint32_t>& doubtful);
+                     const std::vector<std::uint32_t>& doubtful,
+                     std::optional<double> coarse = std::nullopt);
 
 }  // namespace kaboum::bcd

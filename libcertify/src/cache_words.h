@@ -13,6 +13,8 @@ inline constexpr std::string_view kDecisions = "decisions 3";
 inline constexpr std::string_view kSets = "planes 30";
 /// Sets of spheres, beside it.
 inline constexpr std::string_view kBalls = "parallel bodies 3";
+/// Inner sets of spheres, beside it.
+inline constexpr std::string_view kInnerBalls = "cubes 1";
 /// Sets of capsules and boxes, beside it.
 inline constexpr std::string_view kSimple = "capsules and boxes 2";
 /// Bytes of their containers.

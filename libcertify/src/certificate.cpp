@@ -110,6 +110,7 @@ Certificate certificate_of(const CertifiedSet& set) {
     out.direction = Certificate::Direction::Inner;
     out.claims.push_back(std::move(solid));
     out.claims.push_back(distance_claim(Kind::Depth, c.distance_upper));
+    if (c.depth_decided) out.claims.back().basis = Basis::Bytes;
     return out;
   }
   if (!c.undecided.empty()) {

@@ -39,7 +39,8 @@ constexpr double kSumUp = 1 + 0x1p-50;
 /// Reason why bodies of a kind that is not polytopes cannot be what is asked for, to stand behind
 /// its name; null: they can.
 const char* flaw_of_kind(const SetRequest& r) {
-  if (r.direction != SetRequest::Direction::Outer) return "lie in no solid here: outer sets only";
+  if (r.direction != SetRequest::Direction::Outer && r.body_kind != SetRequest::BodyKind::Spheres)
+    return "lie in no solid here: outer sets only";
   if (r.thickness || r.max_aspect) return "cannot be thickened";
   if (r.max_total_vertices) return "have no vertices to be counted";
   if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
@@ -89,6 +90,15 @@ bcd::BallOptions balls_of(const SetRequest& r, double diagonal, const Hooks& hoo
   return out;
 }
 
+bcd::InnerBallOptions inner_balls_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
+  require_possible(r);
+  bcd::InnerBallOptions out;
+  static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
+  out.max_bodies = r.max_bodies;
+  out.effort = r.effort;
+  return out;
+}
+
 bcd::SimpleBodyOptions simple_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
   require_possible(r);
   using Kind = SetRequest::BodyKind;
@@ -130,8 +140,9 @@ double least_thickness(const SetRequest& r, double diagonal) {
   return r.thickness ? r.thickness->of(diagonal) : 0;
 }
 
+/// @param reach  distance or depth that the certificate states [length]
 Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double diagonal,
-                         const geom::ConvexSet& set) {
+                         const geom::ConvexSet& set, double reach) {
   for (const geom::ConvexBody& body : set.bodies) {
     if (const double wished = least_thickness(r, diagonal);
         wished > 0 && geom::least_width(body.core, wished).lower < wished)
@@ -166,11 +177,17 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double di
     }
     return out;
   }
+  const auto left_out = [&] {
+    if (r.body_kind != SetRequest::BodyKind::Spheres) return std::string();
+    const verify::Claim depth = verify::verify_depth(solid, set, reach, options);
+    return first_of({&depth});
+  };
   // Of a solid that is deep nowhere: nothing is claimed to lie in it.
-  if (set.bodies.empty()) return {};
+  if (set.bodies.empty()) return {left_out(), {}, {}};
   if (geom::find_not_convex(set)) return {"a body is not convex", {}, {}};
-  const verify::Inclusion inside = verify::verify_inclusion(verify::sum_of(set), solid, options);
+  const verify::Inclusion inside = verify::verify_within(set, solid, options);
   Refutation out{first_of({&inside.solid, &inside.surface}), inside.solid.outer_triangles, {}};
+  if (out.reason.empty()) out.reason = left_out();
   out.triangles.insert(out.triangles.end(), inside.surface.outer_triangles.begin(),
                        inside.surface.outer_triangles.end());
   return out;
@@ -196,11 +213,14 @@ class Search {
   Search(const geom::SolidMesh& solid, const SetRequest& request, double diagonal,
          const Hooks& hooks)
       : solid_(solid) {
-    if (request.body_kind == SetRequest::BodyKind::Spheres)
+    const bool outer = request.direction == SetRequest::Direction::Outer;
+    if (request.body_kind == SetRequest::BodyKind::Spheres && !outer)
+      inner_balls_ = inner_balls_of(request, diagonal, hooks);
+    else if (request.body_kind == SetRequest::BodyKind::Spheres)
       balls_ = balls_of(request, diagonal, hooks);
     else if (request.body_kind != SetRequest::BodyKind::Polytopes)
       simple_ = simple_of(request, diagonal, hooks);
-    else if (request.direction == SetRequest::Direction::Outer)
+    else if (outer)
       cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks),
                                  least_thickness(request, diagonal)};
     else
@@ -229,7 +249,8 @@ class Search {
       return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
               found.statistics};
     }
-    bcd::InnerCandidate found = bcd::find_inner(solid_, *inner_);
+    bcd::InnerCandidate found = inner_balls_ ? bcd::find_inner_balls(solid_, *inner_balls_)
+                                             : bcd::find_inner(solid_, *inner_);
     bcd::CoverStatistics s;
     s.leaves = found.bodies.size();
     s.vertices = found.vertices;
@@ -254,21 +275,27 @@ class Search {
       cover_->pre_step = bcd::PreStep::Off;
       return "without simplifying the input first";
     }
-    const bool has_new = inner_ && avoid(found.triangles);
+    const bool has_new = (inner_ || inner_balls_) && avoid(found.triangles);
     if (has_new && avoided_ < kAvoided) {
       ++avoided_;
       return "to keep clear of the places found";
     }
     ++tried_;
-    if (tried_ < kSafety.size()) (cover_ ? cover_->safety : inner_->safety) = kSafety[tried_];
+    if (tried_ < kSafety.size()) run_in_use().safety = kSafety[tried_];
     return "with larger allowances for rounding";
   }
   [[nodiscard]] bool is_exhausted() const { return tried_ >= kSafety.size(); }
 
  private:
+  [[nodiscard]] bcd::SearchRun& run_in_use() {
+    if (cover_) return *cover_;
+    if (inner_) return *inner_;
+    return *inner_balls_;
+  }
+
   /// @return whether some of the triangles are new
   bool avoid(const std::vector<std::uint32_t>& triangles) {
-    std::vector<std::uint32_t>& doubtful = inner_->doubtful;
+    std::vector<std::uint32_t>& doubtful = inner_ ? inner_->doubtful : inner_balls_->doubtful;
     const std::size_t known = doubtful.size();
     doubtful.insert(doubtful.end(), triangles.begin(), triangles.end());
     std::sort(doubtful.begin(), doubtful.end());
@@ -281,6 +308,7 @@ class Search {
   std::optional<bcd::SimpleBodyOptions> simple_;
   std::optional<bcd::CoverOptions> cover_;
   std::optional<bcd::InnerOptions> inner_;
+  std::optional<bcd::InnerBallOptions> inner_balls_;
   std::size_t tried_ = 0;  // allowances for rounding
   int avoided_ = 0, held_ = 0;
   bool simplified_ = false;
@@ -330,6 +358,8 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   const bcd::CoverStatistics& s = found.statistics;
   SetCertificate c;
   c.direction = r.direction;
+  c.depth_decided =
+      r.direction == SetRequest::Direction::Inner && r.body_kind == SetRequest::BodyKind::Spheres;
   c.stop = found.stop;
   c.bodies = found.bodies.size();
   c.vertices = s.vertices;
@@ -400,7 +430,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    Refutation found = refutation_of(request, solid, diagonal, set);
+    Refutation found = refutation_of(request, solid, diagonal, set, certificate.distance_upper);
     if (found.reason.empty() && wrap && !given.wrapped.empty())
       found.reason = outside_of(set, given.wrapped);
     wrong = found.reason;
@@ -426,10 +456,10 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
          search.other_means(found));
   }
   if (request.body_kind != SetRequest::BodyKind::Polytopes)
-    throw Error(ErrorCode::LimitReached,
-                "no " + std::string(plural_of(request.body_kind)) +
-                    " were found that pass the exact check (" + wrong +
-                    "); nothing is written. A larger «epsilon», or «prepare=wrap», may help");
+    throw Error(ErrorCode::LimitReached, "no " + std::string(plural_of(request.body_kind)) +
+                                             " were found that pass the exact check (" + wrong +
+                                             "); nothing is written. A larger «epsilon»" +
+                                             (outer ? ", or «prepare=wrap»," : "") + " may help");
   throw Error(ErrorCode::Internal,
               "no bodies were found that pass the exact check (" + wrong + "); nothing is written");
 }

@@ -161,6 +161,8 @@ std::optional<CertifiedInnerLink> certify_inner_link(const InnerParts& parts,
 
 InnerLinks certify_inner_links(const robot::RobotFile& robot, const RobotRequest& asked,
                                const SetCache* cache, const RobotHooks& hooks) {
+  if (asked.set.body_kind != SetRequest::BodyKind::Polytopes)
+    throw Error(ErrorCode::InvalidArgument, "bodies inside the links of a robot are polytopes");
   RobotRequest request = asked;
   request.set.direction = SetRequest::Direction::Inner;
   request.set.wrap.reset();  // what lies in a wrap need not lie in the shapes

@@ -23,11 +23,14 @@ namespace fs = std::filesystem;
 // An entry's content is the certificate in one line, and the container.
 constexpr std::string_view kFormat = "KABOUM-SET 3";
 
-/// The version of a kind of bodies, as a line.
-std::string word_of(SetRequest::BodyKind kind) {
-  if (kind == SetRequest::BodyKind::Polytopes) return {};
-  const bool balls = kind == SetRequest::BodyKind::Spheres;
-  return std::string(balls ? cache_words::kBalls : cache_words::kSimple) + '\n';
+/// The version of the bodies' kind, as a line.
+std::string word_of_kind(const SetRequest& r) {
+  if (r.body_kind == SetRequest::BodyKind::Polytopes) return {};
+  std::string_view word = cache_words::kSimple;
+  if (r.body_kind == SetRequest::BodyKind::Spheres)
+    word = r.direction == SetRequest::Direction::Outer ? cache_words::kBalls
+                                                       : cache_words::kInnerBalls;
+  return std::string(word) + '\n';
 }
 
 /// @throws Error saying why the entry is not that of the key.
@@ -85,7 +88,7 @@ SetCache::Key SetCache::key_of(const std::string& mesh_hash, const std::string& 
   const std::string text =
       mesh_hash + '\n' + std::to_string(std::bit_cast<std::uint64_t>(clearance)) + '\n' + sha256 +
       '\n' + r.parameters() + '\n' + quads + r.unit + '\n' + r.frame + '\n' + r.source + '\n' +
-      (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + word_of(r.body_kind) +
+      (r.wrap && r.wrap->where_needed ? "wrapped where needed\n" : "") + word_of_kind(r) +
       (r.nearest ? "nearest\n" : "") + (r.regions.empty() ? "" : "regions 2\n") + KABOUM_VERSION +
       '\n' + std::string(cache_words::kSets) + '\n' + std::string(cache_words::kContainers) + '\n' +
       std::string(cache_words::kDecisions);

@@ -38,6 +38,7 @@ Json record_of(const SetCertificate& c) {
   j["reach"] = {{"lower", c.distance_lower},
                 {"upper", c.distance_upper},
                 {"upper_percent", c.diagonal > 0 ? 100 * c.distance_upper / c.diagonal : 0.0}};
+  if (c.depth_decided) j["depth_decided"] = true;
   j["closed"] = c.subject.holes == 0;
   j["holes"] = c.subject.holes;
   j["largest_hole"] = c.largest_hole;
@@ -85,7 +86,10 @@ std::string to_json(const CertifiedSet& set) {
                                        {"reached", one.reached}});
   } else {
     j["inside_of"] = in_words(c.subject);
-    j["inside"] = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
+    const char* verified = c.subject.holes == 0 ? "verified" : "verified, of the closed mesh";
+    j["inside"] = verified;
+    j.erase("depth_decided");  // a claim here
+    if (c.depth_decided) j["depth"] = {{"answer", verified}, {"bound", c.distance_upper}};
   }
   return text_of(j);
 }
@@ -113,6 +117,7 @@ SetCertificate read_record(std::string_view text) {
     c.largest_body_vertices = count_at(j, "largest_body_vertices");
     j.at("reach").at("lower").get_to(c.distance_lower);
     j.at("reach").at("upper").get_to(c.distance_upper);
+    c.depth_decided = j.value("depth_decided", false);
     c.subject.holes = count_at(j, "holes");
     c.subject.reversed_triangles = count_at(j, "turned_triangles");
     c.subject.dropped_copies = count_at(j, "dropped_copies");

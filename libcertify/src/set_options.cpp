@@ -60,7 +60,8 @@ void add_limits(std::vector<Option<R>>& out) {
       [](auto& r) -> auto& { return r.request.max_total_vertices; }));
   out.push_back(choice<R>(
       {.name = "bodies",
-       .text = "What the bodies are, whose union holds the solid and every triangle: polytopes; "
+       .text = "What the bodies are, whose union holds the solid and every triangle, or with "
+               "{direction} inner lies in it: polytopes; "
                "spheres, as planners with spheres take them (a robot's are written as cuRobo YAML, "
                "XRDF or SRDF); capsules; boxes; mixed: of spheres, capsules and boxes whichever "
                "takes least to be queried. All but polytopes are written as shapes of a robot's "
@@ -68,8 +69,8 @@ void add_limits(std::vector<Option<R>>& out) {
       [](auto& r) -> auto& { return r.request.body_kind; }, kBodyKinds));
   out.push_back(choice<R>(
       {.name = "direction",
-       .text = "outer: bodies that cover the solid; inner: bodies inside it, which leave out no "
-               "point deeper than epsilon (not of robots)"},
+       .text = "outer: bodies that cover the solid; inner: polytopes or spheres inside it, which "
+               "leave out no point deeper than epsilon (not of robots)"},
       [](auto& r) -> auto& { return r.request.direction; }, kDirections));
   out.push_back(option<R>(
       {.name = "min-thickness",
@@ -320,7 +321,8 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
   if (!flaw.empty()) return flaw;
   if (options.request.body_kind != SetRequest::BodyKind::Polytopes) {
     const std::string kind = name_of(options.request.body_kind);
-    if (options.request.direction != SetRequest::Direction::Outer)
+    if (options.request.direction != SetRequest::Direction::Outer &&
+        options.request.body_kind != SetRequest::BodyKind::Spheres)
       return "{bodies} " + kind + " needs {direction} outer";
     for (const char* name : {"max-total-vertices", "max-vertices-per-body", "min-thickness",
                              "max-aspect", "simplify", "improve-work", "max-work", "pre-step"})

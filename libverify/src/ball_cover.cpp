@@ -9,6 +9,7 @@
 #include <queue>
 #include <utility>
 
+#include "ball.h"
 #include "cell_sample.h"
 #include "nearest.h"
 #include "number.h"
@@ -23,25 +24,7 @@ using union_cover::Extent;
 using union_cover::kSqrt3Up;
 using union_cover::largest_of;
 
-constexpr int kTurns = 12;               ///< of a plane that is to separate a box
-constexpr double kUnderflow = 0x1p-500;  ///< more than what squares lose, as a length
-
-struct Ball {
-  Vec3 center;
-  double radius;
-};
-
-std::vector<Ball> balls_of(const geom::ConvexSet& set) {
-  std::vector<Ball> out;
-  out.reserve(set.bodies.size());
-  for (const geom::ConvexBody& body : set.bodies)
-    out.push_back({body.core.vertices[0], body.radius});
-  return out;
-}
-
-/// Error of a distance between points that were computed from numbers up to `largest` by a dozen
-/// roundings. [length]
-double slack_of(double largest) { return 64 * kUnit * largest + kUnderflow; }
+constexpr int kTurns = 12;  ///< of a plane that is to separate a box
 
 /// |Σ wᵢ (vᵢ − c)|² ≤ r².
 bool exactly_within(const Ball& ball, const Corners& t, const Corner& p) {
@@ -61,19 +44,6 @@ bool is_within(const Ball& ball, const Corners& t, const Corner& p, double large
   if (distance + slack <= ball.radius) return true;
   if (distance - slack > ball.radius) return false;
   return exactly_within(ball, t, p);
-}
-
-/// Whether a point given by doubles is in a ball, exactly.
-bool is_within(const Ball& ball, const Vec3& p) {
-  const double distance = (p - ball.center).norm(),
-               slack = slack_of(largest_of(p) + largest_of(ball.center) + ball.radius);
-  if (distance + slack <= ball.radius) return true;
-  if (distance - slack > ball.radius) return false;
-  const Triple<Exact> d{difference<Exact>(p[0], ball.center[0]),
-                        difference<Exact>(p[1], ball.center[1]),
-                        difference<Exact>(p[2], ball.center[2])};
-  const Exact r(ball.radius);
-  return sign_of(r * r - dot(d, d)) != Sign::Negative;
 }
 
 /// What decides unions of balls.

@@ -5,6 +5,7 @@
 #include <kaboum/verify/ball_cover.h>
 #include <kaboum/verify/body_cover.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/inner_balls.h>
 
 #include <algorithm>
 #include <cmath>
@@ -186,6 +187,7 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
 
 Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
                         const InclusionOptions& options) {
+  if (is_set_of_balls(set)) return verify_balls_within(set, original, options);
   const auto of = [&](const geom::ConvexSet& polytopes) {
     return verify_inclusion(sum_of(polytopes), original, options);
   };

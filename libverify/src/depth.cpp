@@ -1,6 +1,8 @@
 // Which depths of a solid a set of bodies inside it leaves out, and how far a union reaches.
 #include <kaboum/base/error.h>
+#include <kaboum/verify/ball_cover.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/inner_balls.h>
 
 #include <algorithm>
 
@@ -30,6 +32,7 @@ void name_nearest(const MeshPair& meshes, Claim& claim) {
 
 Claim verify_depth(const geom::Mesh& original, const geom::ConvexSet& set, double epsilon,
                    const InclusionOptions& options) {
+  if (is_set_of_balls(set)) return verify_ball_depth(original, set, epsilon, options);
   if (geom::margin_of(set) != 0.0) {
     const auto of = [&](const geom::ConvexSet& polytopes) {
       return verify_depth(original, polytopes, epsilon, options);

@@ -45,6 +45,17 @@ std::optional<bool> is_not_negative(const Number& x) {
   return sign ? std::optional(*sign != Sign::Negative) : std::nullopt;
 }
 
+/// A ball with its sphere, or without it.
+enum class Sphere { With, Without };
+
+/// Whether x ≥ 0 or, without the sphere, x > 0: x says how much nearer than the radius a point is.
+template <Sphere kSphere, class Number>
+std::optional<bool> is_near_enough(const Number& x) {
+  const std::optional<Sign> sign = sign_of(x);
+  if (!sign) return std::nullopt;
+  return kSphere == Sphere::With ? *sign != Sign::Negative : *sign == Sign::Positive;
+}
+
 /// All of them, in turn, until one is false or open.
 template <class... Tests>
 std::optional<bool> all(const Tests&... tests) {
@@ -53,16 +64,16 @@ std::optional<bool> all(const Tests&... tests) {
   return out;
 }
 
-template <class Number>
+template <Sphere kSphere = Sphere::With, class Number>
 std::optional<bool> near_point(const Vec3& a, const Triple<Number>& p, double radius) {
   const Triple<Number> w = minus(p, numbers<Number>(a));
   const Number r = number<Number>(radius);
-  return is_not_negative(r * r - dot(w, w));
+  return is_near_enough<kSphere>(r * r - dot(w, w));
 }
 
 /// Of the part of the segment's inside: with d = b − a and w = p − a, 0 ≤ w·d ≤ d·d and
 /// |w × d|² ≤ r² d·d.
-template <class Number>
+template <Sphere kSphere = Sphere::With, class Number>
 std::optional<bool> near_segment(const Vec3& a, const Vec3& b, const Triple<Number>& p,
                                  double radius) {
   const Triple<Number> d = minus(numbers<Number>(b), numbers<Number>(a)),
@@ -72,13 +83,13 @@ std::optional<bool> near_segment(const Vec3& a, const Vec3& b, const Triple<Numb
              [&] { return is_not_negative(square - along); },
              [&] {
                const Triple<Number> c = cross(w, d);
-               return is_not_negative(r * r * square - dot(c, c));
+               return is_near_enough<kSphere>(r * r * square - dot(c, c));
              });
 }
 
 /// Of the prism over the triangle: with n = (b−a)×(c−a), p is on the inner side of the three planes
 /// through its sides along n, and (n·(p−a))² ≤ r² n·n.
-template <class Number>
+template <Sphere kSphere = Sphere::With, class Number>
 std::optional<bool> near_triangle(const Vec3& a, const Vec3& b, const Vec3& c,
                                   const Triple<Number>& p, double radius) {
   const Triple<Number> na = numbers<Number>(a), nb = numbers<Number>(b), nc = numbers<Number>(c);
@@ -90,7 +101,7 @@ std::optional<bool> near_triangle(const Vec3& a, const Vec3& b, const Vec3& c,
              [&] { return side(nc, na); },
              [&] {
                const Number h = dot(n, minus(p, na)), r = number<Number>(radius);
-               return is_not_negative(r * r * dot(n, n) - h * h);
+               return is_near_enough<kSphere>(r * r * dot(n, n) - h * h);
              });
 }
 

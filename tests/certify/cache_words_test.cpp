@@ -85,6 +85,21 @@ TEST_F(CacheWords, OfSets) {
             "coloured: 2f7d282531d808df");
 }
 
+TEST_F(CacheWords, OfInnerBalls) {
+  SetRequest request;
+  request.epsilon = Length{5, true};
+  request.effort = bcd::Effort::Fast;
+  request.direction = SetRequest::Direction::Inner;
+  request.body_kind = SetRequest::BodyKind::Spheres;
+  const CertifiedSet balls = certify_set(bar(), "", request).value();
+  std::string text;
+  for (const geom::ConvexBody& body : balls.artefact().bodies) {
+    append(text, body.core);
+    text += std::to_string(std::bit_cast<std::uint64_t>(body.radius)) + ' ';
+  }
+  EXPECT_EQ(std::string(cache_words::kInnerBalls) + ": " + hash(text), "cubes 1: 15fcdca6a0b2a9b6");
+}
+
 TEST_F(CacheWords, OfLinks) {
   std::ofstream(folder_ / "arm.urdf") << R"(<robot name="arm"><link name="l"><collision>
     <origin xyz="0.7 0.1 -0.3"/><geometry>

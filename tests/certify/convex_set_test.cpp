@@ -75,6 +75,68 @@ TEST(CertifySet, InnerSetsLieInside) {
   EXPECT_EQ(inside.solid.answer, verify::Answer::Verified);
 }
 
+TEST(CertifySet, InnerSpheresLieInsideAndLeaveOutNothingDeep) {
+  SetRequest request = fast_request(4);
+  request.direction = SetRequest::Direction::Inner;
+  request.body_kind = SetRequest::BodyKind::Spheres;
+  request.source = "torus.off";
+  const auto made = certify_set(coarse_torus(), "abc", request);
+  ASSERT_TRUE(made);
+  const SetCertificate& c = made->certificate();
+  EXPECT_EQ(c.stop, bcd::Stop::Done);
+  EXPECT_TRUE(c.depth_decided);
+  EXPECT_EQ(c.distance_upper, 0.04 * c.diagonal);
+  const geom::ConvexSet back =
+      io::parse_convex_set(made->bytes(), io::Format::Glb, "the container");
+  EXPECT_TRUE(same_bodies(made->artefact(), back));
+  EXPECT_EQ(back.provenance.direction, "inner");
+  EXPECT_FALSE(back.provenance.covers_solid);
+  EXPECT_EQ(back.provenance.parameters,
+            "--epsilon 4% --bodies spheres --direction inner --max-vertices-per-body 64 --effort "
+            "fast");
+  ASSERT_GT(back.bodies.size(), 5U);
+  for (const geom::ConvexBody& body : back.bodies) {
+    EXPECT_EQ(body.core.vertices.size(), 1U);
+    EXPECT_GT(body.radius, 0);
+  }
+  EXPECT_EQ(verify::verify_within(back, coarse_torus()).solid.answer, verify::Answer::Verified);
+  EXPECT_EQ(verify::verify_depth(coarse_torus(), back, *back.provenance.epsilon).answer,
+            verify::Answer::Verified);
+  EXPECT_NE(to_json(*made).find("\"depth\":{\"answer\":\"verified\""), std::string::npos);
+  const Certificate claims = certificate_of(*made);
+  EXPECT_EQ(claims.claims.back().kind, Claim::Kind::Depth);
+  EXPECT_EQ(claims.claims.back().basis, Basis::Bytes);
+  EXPECT_TRUE(read_record(write_record(c)).depth_decided);
+  // Of polytopes it is measured.
+  request.body_kind = SetRequest::BodyKind::Polytopes;
+  const auto polytopes = certify_set(coarse_torus(), "abc", request);
+  ASSERT_TRUE(polytopes);
+  EXPECT_FALSE(polytopes->certificate().depth_decided);
+  EXPECT_EQ(to_json(*polytopes).find("\"depth\""), std::string::npos);
+  EXPECT_EQ(certificate_of(*polytopes).claims.back().basis, Basis::Measured);
+}
+
+// Deep nowhere: no sphere, and that nothing is left out is decided all the same.
+TEST(CertifySet, InnerSpheresOfAThinPlateAreNone) {
+  SetRequest request = fast_request(5);
+  request.direction = SetRequest::Direction::Inner;
+  request.body_kind = SetRequest::BodyKind::Spheres;
+  const auto made = certify_set(test::box({4, 4, 0.1}, 1), "", request);
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->artefact().bodies.empty());
+  EXPECT_TRUE(made->certificate().depth_decided);
+}
+
+TEST(CertifySet, NoOtherKindLiesInside) {
+  SetRequest request = fast_request(5);
+  request.direction = SetRequest::Direction::Inner;
+  for (const auto kind :
+       {SetRequest::BodyKind::Capsules, SetRequest::BodyKind::Boxes, SetRequest::BodyKind::Mixed}) {
+    request.body_kind = kind;
+    EXPECT_THROW(certify_set(coarse_torus(), "", request), Error);
+  }
+}
+
 /// Triangles that share nothing, some of which cross.
 geom::Mesh soup() {
   std::mt19937_64 random(3);

@@ -128,6 +128,13 @@ TEST_F(InnerLinksTest, LieInTheShapesMirroredAndTurned) {
   EXPECT_GT(outside, 0U);
 }
 
+TEST_F(InnerLinksTest, ArePolytopes) {
+  RobotRequest request;
+  request.set.epsilon = Length{5, true};
+  request.set.body_kind = SetRequest::BodyKind::Spheres;
+  EXPECT_THROW(certify_inner_links(robot_, request), Error);
+}
+
 TEST_F(InnerLinksTest, OfBoxesCylindersAndSpheresAreInscribed) {
   const geom::ConvexSet& set = link("round").artefact();
   ASSERT_EQ(set.bodies.size(), 3U);

@@ -106,12 +106,18 @@ TEST(SetOptions, ContradictionsNameBoth) {
            {{"improve-work", "5"}, {"direction", "inner"}},
            {{"max-total-vertices", "50"}, {"direction", "inner"}},
            {{"pre-step", "on"}, {"direction", "inner"}},
+           {{"bodies", "capsules"}, {"direction", "inner"}},
+           {{"bodies", "boxes"}, {"direction", "inner"}},
+           {{"bodies", "mixed"}, {"direction", "inner"}},
+           {{"max-work", "5"}, {"bodies", "spheres"}},
            {{"simplify", "0.5"}, {"max-total-vertices", "50"}}}) {
     const std::string text = flaw(pair);
     for (const auto& [name, value] : pair)
       EXPECT_NE(text.find("{" + name + "}"), std::string::npos) << name << ": " << text;
   }
   EXPECT_EQ(flaw({{"seal", "1%"}, {"prepare", "wrap"}}), "");
+  EXPECT_EQ(flaw({{"bodies", "spheres"}, {"direction", "inner"}}), "");
+  EXPECT_EQ(flaw({{"bodies", "spheres"}, {"direction", "inner"}, {"max-bodies", "5"}}), "");
   EXPECT_EQ(flaw({{"drop-sheets", "true"}, {"prepare", "strict"}}), "");
 }
 

@@ -18,13 +18,31 @@ json five.json "r['bodies'] <= 5 and r['reach']['upper'] < 0.5"
 shows 0 '^verified' "$V" cover bar.off five.glb
 
 # What means nothing beside spheres.
-expect 2 'bodies' "$B" bar.off -o x.glb --bodies spheres --direction inner
+expect 2 'direction' "$B" bar.off -o x.glb --bodies capsules --direction inner
+expect 2 'max-work' "$B" bar.off -o x.glb --bodies spheres --direction inner --max-work 3
 expect 2 'min-thickness' "$B" bar.off -o x.glb --bodies spheres --min-thickness 0.1
 
 # Before any search: a format that states no radii.
 expect 2 'only .glb states radii' "$B" bar.off -o x.obj --bodies spheres
 [ ! -e x.obj ] || fail "x.obj was written"
 "$B" bar.off -o bar.glb --bodies spheres --epsilon 0.4 --effort fast --no-cache 2>&1 | grep -q '[0-9] spheres; cover verified exactly' || fail "spheres are called bodies"
+
+# Inside: in the solid, nothing deeper than epsilon left out; the same bytes for any number of threads. No cover.
+expect 0 '[0-9] spheres; inside verified exactly' "$B" bar.off -o in.glb --bodies spheres --direction inner --epsilon 0.2 --effort fast --no-cache --report in.json
+json in.json "r['inside'] == 'verified' and r['depth'] == {'answer': 'verified', 'bound': 0.2} and r['reach']['upper'] == 0.2 and 'depth_decided' not in r"
+shows 0 'depth: verified' "$V" mesh --inner bar.off in.glb --epsilon 0.2 --report judged.json
+shows 0 'surface claim: verified: every point of the union' "$V" mesh --inner bar.off in.glb --epsilon 0.2
+json judged.json "r['verdict'] == 'verified' and r['claims']['depth']['bound'] == 0.2"
+shows 1 'depth: refuted: .* is in no ball' "$V" mesh --inner bar.off in.glb --epsilon 0.1
+expect 1 '' "$V" cover bar.off in.glb
+expect 0 '' "$B" bar.off -o again.glb --bodies spheres --direction inner --epsilon 0.2 --effort fast --no-cache --threads 1
+cmp in.glb again.glb
+sed 's/^4 \(. .\)$/3 \1/' bar.off >short.off
+shows 1 'surface claim: refuted: .* balls reach out of the solid' "$V" mesh --inner short.off in.glb
+expect 0 '' "$B" bar.off -o seven.glb --bodies spheres --direction inner --max-bodies 7 --effort fast --no-cache --report seven.json
+json seven.json "1 <= r['bodies'] <= 7 and 0.2 < r['reach']['upper'] < 0.5"
+shows 0 '^verified' "$V" mesh --inner bar.off seven.glb --epsilon "$(python3 -c "import json; print(json.load(open('seven.json'))['reach']['upper'])")"
+expect 1 'nothing nearer was found' "$B" bar.off -o few.glb --bodies spheres --direction inner --max-bodies 7 --epsilon 0.1 --effort fast --no-cache
 
 # A robot: its spheres, written, judged, and judged less one digit.
 cat >arm.urdf <<'U'
@@ -35,6 +53,7 @@ cat >arm.urdf <<'U'
 </robot>
 U
 expect 2 'yaml' "$B" arm.urdf -o out --bodies spheres --epsilon 0.4
+expect 2 'direction inner: decompose' "$B" arm.urdf -o out.yaml --bodies spheres --direction inner --epsilon 0.4
 expect 0 '' "$B" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
 shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres arm.yaml --report judged.json
 json judged.json "r['verdict'] == 'verified' and r['share_outside']['upper'] == 0"

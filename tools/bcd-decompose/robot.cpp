@@ -538,11 +538,11 @@ int decompose_robot(const DecomposeOptions& o) {
                 "--missing-meshes skip is for --bodies polytopes: a link without spheres, capsules "
                 "or boxes is no obstacle for whoever reads them; name the others by --links");
   if (!o.repair.empty()) return repair(o);
-  if (o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
-    return decompose_into_shapes(o);
   if (o.set.request.direction != certify::SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "--direction inner: decompose the robot's meshes one by one");
+  if (o.set.request.body_kind != certify::SetRequest::BodyKind::Polytopes)
+    return decompose_into_shapes(o);
   if (const bool shapes = robot_folder::shape_format_of(o.output).has_value();
       (shapes || sphere_format_of(o.output)) && !fs::is_directory(o.output))
     throw Error(ErrorCode::InvalidArgument,

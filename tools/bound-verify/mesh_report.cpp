@@ -3,6 +3,7 @@
 #include "mesh_report.h"
 
 #include <kaboum/geom/topology.h>
+#include <kaboum/verify/ball_cover.h>
 #include <kaboum/verify/region_excess.h>
 
 #include <algorithm>
@@ -165,12 +166,17 @@ std::vector<std::string> lines_of_enclosure(const MeshCase& run) {
                            ? inner + " winds more often than " + outer
                            : "a part of the solid of " + inner + " is outside that of " + outer,
                        v.inclusion.solid, solid_extent(run)));
-  lines.push_back(line("surface claim",
-                       "every triangle of " + inner + " is within the solid of " + outer,
-                       (v.inclusion.limited ? "at least " : "") +
-                           std::to_string(v.inclusion.surface.inner_triangles.size()) +
-                           " triangles of " + inner + " are not all within the solid of " + outer,
-                       v.inclusion.surface, surface_extent(run)));
+  // Balls have no triangles.
+  const bool no_triangles = run.inner() && verify::is_set_of_balls(run.approximation.set);
+  lines.push_back(line(
+      "surface claim",
+      std::string(no_triangles ? "every point of " : "every triangle of ") + inner +
+          " is within the solid of " + outer,
+      no_triangles ? v.inclusion.surface.reason
+                   : (v.inclusion.limited ? "at least " : "") +
+                         std::to_string(v.inclusion.surface.inner_triangles.size()) +
+                         " triangles of " + inner + " are not all within the solid of " + outer,
+      v.inclusion.surface, surface_extent(run)));
   if (v.exact_points) lines.push_back(line_of_points(*v.exact_points, run));
   if (const std::string why = why_no_points(run); !why.empty())
     lines.push_back("exact points: not looked at: " + why);

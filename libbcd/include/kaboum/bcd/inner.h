@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/bcd/balls.h>
 #include <kaboum/bcd/cover.h>
 
 #include <cstdint>
@@ -13,7 +14,17 @@ struct InnerOptions : SearchSettings, SearchRun {
   std::vector<std::uint32_t> doubtful;
 };
 
-/// Result of find_inner. No claim that it lies inside: certify::certify_set decides that.
+/// Request for find_inner_balls.
+struct InnerBallOptions : SearchRun {
+  /// Most balls: alone, the least epsilon found for which so many are enough; with epsilon, fewest
+  /// balls within it and, if these are too many, that least one.
+  std::optional<std::size_t> max_bodies;
+  Effort effort = Effort::Normal;
+  std::vector<std::uint32_t> doubtful;  ///< as InnerOptions::doubtful
+};
+
+/// Result of find_inner and find_inner_balls. No claim that it lies inside: certify::certify_set
+/// decides that.
 struct InnerCandidate {
   std::vector<geom::ConvexBody> bodies;
   Stop stop = Stop::Done;
@@ -43,5 +54,21 @@ struct InnerCandidate {
 /// @throws Error{InvalidArgument} on contradictory options, and where `doubtful` names a triangle
 /// that the mesh does not have; Error{InvalidInput} for open meshes, which have no inside.
 InnerCandidate find_inner(const geom::SolidMesh& input, const InnerOptions& options);
+
+/// Searches for few balls whose union lies inside the input's solid and leaves out no point deeper
+/// than epsilon. Centres and radii are float32 numbers.
+///
+/// An octree's cubes are cut until each is outside, nowhere deeper, or in one ball: for one that is
+/// in none yet, a ball that holds it is grown by steps that make it larger. Of all balls grown few
+/// are chosen that hold the same cubes, by a local search with weights [gao2015].
+/// docs/algorithms/sphere-covers.md, "Inside a solid".
+///
+/// No claim that they lie inside: certify::certify_set decides that. The same for any number of
+/// threads.
+///
+/// @pre epsilon or max_bodies is given
+/// @throws as find_inner; Error{LimitReached} where more than kMostBalls balls would be needed, or
+///   the search for them would take too long
+InnerCandidate find_inner_balls(const geom::SolidMesh& input, const InnerBallOptions& options);
 
 }  // namespace kaboum::bcd

@@ -22,7 +22,7 @@ namespace kaboum::certify {
 struct SetRequest : bcd::CoverSettings {
   /// Outer: the bodies cover the solid. Inner: each lies in it.
   enum class Direction { Outer, Inner } direction = Direction::Outer;
-  /// Polytopes; or, of outer sets, spheres (closed balls), capsules, boxes, or whichever of these
+  /// Polytopes; spheres (closed balls); or, of outer sets, capsules, boxes, or whichever of these
   /// three takes least to be queried (Mixed). All but polytopes take of the other settings of
   /// covers `max_bodies` and `effort`.
   enum class BodyKind {
@@ -86,6 +86,9 @@ struct SetCertificate {
   /// Certified bracket of the largest distance from a point of the set to the solid (outer), or of
   /// the depth of what is left out (inner). [length]
   double distance_lower = 0, distance_upper = 0;
+  /// Inner sets of spheres: that no point deeper than distance_upper is left out was decided from
+  /// the bytes, too. Of other inner sets the search has bounded it.
+  bool depth_decided = false;
   double diagonal = 0;      ///< of the prepared input's bounding box [length]
   Subject subject;          ///< what is covered, or encloses
   double largest_hole = 0;  ///< longest diagonal of a hole's box [length]
@@ -133,8 +136,8 @@ struct Hooks {
 
 /// Searches for bodies, writes them as a GLB container and reads that back. Then libverify decides
 /// exactly that they are convex and cover the solid and every triangle (outer), or lie in the solid
-/// (inner). Where that fails the search is repeated, without its pre-step, then with larger
-/// allowances for rounding.
+/// (inner) and, of spheres, leave out nothing deeper than stated. Where that fails the search is
+/// repeated, without its pre-step, then with larger allowances for rounding.
 ///
 /// @param mesh    as read; it is prepared, or wrapped, here.
 /// @param sha256  of the file it was read from, for the record.
@@ -142,8 +145,8 @@ struct Hooks {
 /// or
 ///   epsilon too small.
 /// @throws Error{InvalidInput} as geom::prepare, certify_wrap and the search;
-///   Error{InvalidArgument} on contradictory options; Error{Internal} when no bodies pass the exact
-///   check.
+///   Error{InvalidArgument} on contradictory options; Error{Internal} when no polytopes pass the
+///   exact check, Error{LimitReached} when no bodies of another kind do.
 std::optional<CertifiedSet> certify_set(const geom::Mesh& mesh, const std::string& sha256,
                                         const SetRequest& request, const Hooks& hooks = {});
 

@@ -45,8 +45,8 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                    const InclusionOptions& options = {});
 
 /// Decides whether every point of the union lies in the original's solid, and no part of the bodies
-/// out of it: what an inner set claims. Bodies with a radius are bounded by polytopes as in
-/// verify_cover, and claims then name no triangles of them.
+/// out of it: what an inner set claims. Of balls that is verify_balls_within, exact; other bodies
+/// with a radius are bounded by polytopes, and claims then name no triangles of them.
 /// @throws as verify_inclusion
 Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
                         const InclusionOptions& options = {});
@@ -71,7 +71,8 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
 ///
 /// Distances are measured to the parts of triangles with an outside along them, and to places
 /// outside. Where the deepest point is epsilon deep but for rounding, or it would take too long,
-/// the answer is undecided. Undefined unless the original is a closed chain.
+/// the answer is undecided. Undefined unless the original is a closed chain. Of balls it is
+/// verify_ball_depth; other bodies with a radius are bounded by polytopes.
 ///
 /// @pre epsilon > 0; the bodies are convex (verify_cover, `convex`)
 /// @throws as verify_inclusion
