@@ -1,12 +1,16 @@
-// Paths in time: from rest to rest, by polynomials of degree 5 or trapezoids of velocity.
+// Paths in time: from rest to rest, by polynomials of degree 5 or trapezoids of velocity; through
+// blended corners.
 
 #include <kaboum/base/error.h>
+#include <kaboum/motion/blended_path.h>
 #include <kaboum/motion/trajectory.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+
+#include "time_law.h"
 
 namespace kaboum::motion {
 namespace {
@@ -68,18 +72,44 @@ std::string names(const robot::Robot& robot) {
 
 }  // namespace
 
-Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate, Profile profile)
-    : path_(std::move(path)), rate_(rate), profile_(profile) {
+/// The pieces of a path with blends, and the time along them from stop to stop.
+struct Trajectory::Blended {
+  struct Leg {
+    TimeLaw law;
+    std::size_t first = 0;  ///< piece
+    double stretch = 1;     ///< of its time, at least 1, to a whole number of samples
+  };
+  std::vector<PathPiece> pieces;
+  std::vector<Leg> legs;
+  std::vector<std::size_t> stopping;  ///< waypoints, one more than legs
+  std::vector<double> passed;         ///< time of each waypoint [s]
+};
+
+void Trajectory::require_valid(const SpeedLimits& limits) const {
   if (path_.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");
   for (const std::vector<double>& q : path_)
     if (q.size() != path_.front().size() ||
         !std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); }))
       throw Error(ErrorCode::InvalidArgument, "a waypoint that is not finite, or of another robot");
-  if (!(rate > 0) || !std::isfinite(rate))
+  if (!(rate_ > 0) || !std::isfinite(rate_))
     throw Error(ErrorCode::InvalidArgument, "a rate must be above 0");
   require_positive(limits.velocity, path_.front().size(), "velocity");
   require_positive(limits.acceleration, path_.front().size(), "acceleration");
-  first_.push_back(0);
+}
+
+/// The next stop is so much later, or up to a sample more.
+void Trajectory::append_steps(double time) {
+  const double steps = std::ceil(time * kUp * rate_);
+  if (!(static_cast<double>(first_.back()) + steps < kMostSamples))
+    throw Error(ErrorCode::LimitReached,
+                "the motion would take more than 100000000 samples: allow more speed, or a lower "
+                "rate");
+  first_.push_back(first_.back() + static_cast<std::size_t>(steps));
+}
+
+Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate, Profile profile)
+    : path_(std::move(path)), rate_(rate), profile_(profile), first_{0} {
+  require_valid(limits);
   for (std::size_t i = 0; i + 1 < path_.size(); ++i) {
     double time = 0, slowest = 0, laziest = 0;
     for (std::size_t j = 0; j < path_[i].size(); ++j) {
@@ -96,13 +126,63 @@ Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate,
       time = reaches ? slowest + laziest / slowest : 2 * std::sqrt(laziest);
       ramp_.push_back(reaches ? std::min(0.5, laziest / slowest / time) : 0.5);
     }
-    const double steps = std::ceil(time * kUp * rate);
-    if (!(static_cast<double>(first_.back()) + steps < kMostSamples))
-      throw Error(ErrorCode::LimitReached,
-                  "the motion would take more than 100000000 samples: allow more speed, or a lower "
-                  "rate");
-    first_.push_back(first_.back() + static_cast<std::size_t>(steps));
+    append_steps(time);
   }
+}
+
+Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
+                       const SpeedLimits& limits, double rate)
+    : path_(std::move(path)), rate_(rate), first_{0} {
+  require_valid(limits);
+  require_positive(limits.jerk, path_.front().size(), "jerk");
+  const BlendedPath curve(path_, shares, limits.velocity);
+  auto made = std::make_shared<Blended>();
+  made->pieces = curve.pieces();
+  made->stopping = curve.stopping_waypoints();
+  made->passed.assign(path_.size(), -1);
+  made->passed[0] = 0;
+  for (std::size_t i = 0; i + 1 < curve.stops().size(); ++i) {
+    const std::size_t first = curve.stops()[i], end = curve.stops()[i + 1];
+    TimeLaw law(std::span(made->pieces).subspan(first, end - first), limits);
+    const double begin = static_cast<double>(first_.back()) / rate_;
+    append_steps(law.duration());
+    const double whole = static_cast<double>(first_.back()) / rate_ - begin,
+                 stretch = whole / law.duration();
+    for (std::size_t k = first; k < end; ++k) {
+      if (!made->pieces[k].is_blend) continue;
+      const double enters = law.begin_of(k - first),
+                   leaves = k + 1 < end ? law.begin_of(k + 1 - first) : law.duration();
+      made->passed[made->pieces[k].waypoint] = begin + stretch * 0.5 * (enters + leaves);
+    }
+    made->passed[made->stopping[i + 1]] = begin + whole;
+    made->legs.push_back({std::move(law), first, stretch});
+  }
+  for (std::size_t i = 1; i < path_.size(); ++i)  // those that are the same as the one before
+    if (made->passed[i] < 0) made->passed[i] = made->passed[i - 1];
+  blended_ = std::move(made);
+}
+
+double Trajectory::time_at(std::size_t waypoint) const {
+  if (blended_) return blended_->passed.at(waypoint);
+  return static_cast<double>(first_.at(waypoint)) / rate_;
+}
+
+/// @pre step is below the last sample
+Instant Trajectory::blended_at(double step) const {
+  const Blended& b = *blended_;
+  const std::size_t i = segment_of(step);
+  const Blended::Leg& leg = b.legs[i];
+  const Progress now =
+      leg.law.at(std::max(0.0, step - static_cast<double>(first_[i])) / rate_ / leg.stretch);
+  const CurvePoint point = b.pieces[leg.first + now.piece].at(now.place);
+  Instant out{point.q, point.first, point.second};
+  for (std::size_t j = 0; j < out.q.size(); ++j) {
+    out.velocity[j] = point.first[j] * now.speed / leg.stretch;
+    out.acceleration[j] =
+        (point.second[j] * now.speed * now.speed + point.first[j] * now.acceleration) /
+        (leg.stretch * leg.stretch);
+  }
+  return out;
 }
 
 std::size_t Trajectory::segment_of(double step) const {
@@ -111,11 +191,17 @@ std::size_t Trajectory::segment_of(double step) const {
   return i;
 }
 
-Instant Trajectory::at(double time) const {
+Instant Trajectory::instant(std::size_t k) const {
+  Instant out = at_step(static_cast<double>(k));
+  out.q = sample(k);
+  return out;
+}
+
+Instant Trajectory::at_step(double step) const {
   const std::size_t count = path_.front().size();
   Instant out{path_.back(), std::vector<double>(count, 0), std::vector<double>(count, 0)};
-  const double step = time * rate_;
   if (path_.size() < 2 || step >= static_cast<double>(first_.back())) return out;
+  if (blended_) return blended_at(step);
   const std::size_t i = segment_of(step);
   const auto steps = static_cast<double>(first_[i + 1] - first_[i]);
   const double u = std::clamp((step - static_cast<double>(first_[i])) / steps, 0.0, 1.0);
@@ -132,7 +218,11 @@ Instant Trajectory::at(double time) const {
 
 std::vector<double> Trajectory::sample(std::size_t k) const {
   const auto here = std::find(first_.begin(), first_.end(), k);
-  if (here != first_.end()) return path_[static_cast<std::size_t>(here - first_.begin())];
+  if (here != first_.end()) {
+    const auto stop = static_cast<std::size_t>(here - first_.begin());
+    return path_[blended_ ? blended_->stopping[stop] : stop];
+  }
+  if (blended_) return blended_at(static_cast<double>(k)).q;
   const std::size_t i = segment_of(static_cast<double>(k));
   const double u =
       static_cast<double>(k - first_[i]) / static_cast<double>(first_[i + 1] - first_[i]);

@@ -11,12 +11,14 @@ namespace {
 
 /// Where the robot's file states nothing. [rad/s or m/s; per s]
 constexpr double kVelocity = 1, kAcceleration = 5;
+constexpr double kJerks = 20;  ///< times the acceleration: it is built up in 1/20 s
 
 using Bounds = std::vector<std::optional<double>>;
 
 /// What the robot allows, or `usual`; lower where it is asked for.
 std::vector<double> of_each_joint(const std::map<std::string, double>& asked, const char* option,
-                                  double usual, const Bounds& allowed, const robot::Robot& robot) {
+                                  const std::vector<double>& usual, const Bounds& allowed,
+                                  const robot::Robot& robot) {
   std::vector<std::string> names;
   for (const robot::Variable& v : robot.variables) names.push_back(v.name);
   const auto refuse = [&](const std::string& what) {
@@ -36,7 +38,7 @@ std::vector<double> of_each_joint(const std::map<std::string, double>& asked, co
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto own = asked.find(names[i]), all = asked.find("");
     const auto& found = own != asked.end() ? own : all;
-    const double most = allowed[i].value_or(found == asked.end() ? usual : found->second);
+    const double most = allowed[i].value_or(found == asked.end() ? usual[i] : found->second);
     out.push_back(found == asked.end() ? most : std::min(found->second, most));
   }
   return out;
@@ -56,6 +58,15 @@ const std::vector<Option<TrajectoryOptions>>& trajectory_options() {
           {.name = "rate", .text = "Samples per second", .values = "HZ", .low = 1e-3, .high = 1e6},
           [](auto& r) -> auto& { return r.rate; }),
       option<R>(
+          {.name = "blend",
+           .text = "Goes through corners without a stop, on a curve that leaves and meets the "
+                   "segments by at most this share of the shorter one; less, or a stop, where that "
+                   "is not certified free. 0: it stops at each corner",
+           .values = "SHARE",
+           .low = 0,
+           .high = 0.5},
+          [](auto& r) -> auto& { return r.blend; }),
+      option<R>(
           {.name = "max-velocity",
            .text = "Of all joints, or of one; radians or metres per second. That of one joint "
                    "goes before that of all; never above what the robot's file states",
@@ -71,16 +82,38 @@ const std::vector<Option<TrajectoryOptions>>& trajectory_options() {
            .between = true,
            .for_all = true,
            .otherwise = "5"},
-          [](auto& r) -> auto& { return r.accelerations; })};
+          [](auto& r) -> auto& { return r.accelerations; }),
+      option<R>(
+          {.name = "max-jerk",
+           .text = "Of all joints, or of one, with {blend}; per second cubed",
+           .low = 0,
+           .between = true,
+           .for_all = true,
+           .otherwise = "20 times the acceleration"},
+          [](auto& r) -> auto& { return r.jerks; })};
   return options;
 }
 
 SpeedLimits speed_limits(const TrajectoryOptions& o, const robot::Robot& robot) {
+  if (!(o.blend >= 0 && o.blend <= 0.5))
+    throw Error(ErrorCode::InvalidArgument, "«blend» must be from 0 to 0.5");
+  if (o.blend > 0 && o.time_optimal)
+    throw Error(ErrorCode::InvalidArgument,
+                "«time-optimal» is of motions that stop at each corner; leave it out with «blend»");
+  if (o.blend == 0 && !o.jerks.empty())
+    throw Error(ErrorCode::InvalidArgument, "«max-jerk» is kept with «blend» only");
   Bounds velocities;
   for (const robot::Variable& v : robot.variables) velocities.push_back(v.velocity);
-  return {of_each_joint(o.velocities, "max-velocity", kVelocity, velocities, robot),
-          of_each_joint(o.accelerations, "max-acceleration", kAcceleration,
-                        Bounds(velocities.size()), robot)};
+  const std::size_t count = velocities.size();
+  SpeedLimits out{
+      of_each_joint(o.velocities, "max-velocity", std::vector(count, kVelocity), velocities, robot),
+      of_each_joint(o.accelerations, "max-acceleration", std::vector(count, kAcceleration),
+                    Bounds(count), robot)};
+  if (o.blend == 0) return out;
+  std::vector<double> usual = out.acceleration;
+  for (double& x : usual) x *= kJerks;
+  out.jerk = of_each_joint(o.jerks, "max-jerk", usual, Bounds(count), robot);
+  return out;
 }
 
 }  // namespace kaboum::motion

@@ -78,6 +78,7 @@ struct PathValue {
 
 struct TrajectoryValue {
   motion::SampledPath made;
+  robot::Robot robot;
 };
 
 std::vector<Keyword> motion_keywords() {
@@ -580,9 +581,10 @@ TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
   Watch watch(running.progress);
   return run(0, [&] {
     const world::WorldState state = initial_state(path.in.world());
-    return TrajectoryValue{motion::sample_path(
-        {*path.in.checker, state, path.robot, path.constraints}, path.answer.path, options,
-        path.resolution, motion::AngleUnit::Radians, watch.hook())};
+    const motion::MovingRobot moving{*path.in.checker, state, path.robot, path.constraints};
+    return TrajectoryValue{motion::sample_path(moving, path.answer.path, options, path.resolution,
+                                               motion::AngleUnit::Radians, watch.hook()),
+                           moving.kinematics()};
   });
 }
 
@@ -854,16 +856,15 @@ py::array instants(const TrajectoryValue& t, std::vector<double> motion::Instant
   robot::Path rows;
   rows.reserve(trajectory.samples());
   for (std::size_t k = 0; k < trajectory.samples(); ++k)
-    rows.push_back(
-        trajectory.at(std::min(static_cast<double>(k) / trajectory.rate(), trajectory.duration())).*
-        what);
+    rows.push_back(trajectory.instant(k).*what);
   return rows_array(rows);
 }
 
 void bind_trajectory(py::module_& module) {
   py::class_<TrajectoryValue>(module, "Trajectory",
-                              "A path in time, from rest to rest along each of its segments. Its "
-                              "samples were decided free, with straight lines between them.")
+                              "A path in time, from rest to rest along each of its segments, or "
+                              "through blended corners. Its samples were decided free, with "
+                              "straight lines between them.")
       .def("__len__", [](const TrajectoryValue& t) { return t.made.trajectory.samples(); })
       .def_property_readonly(
           "duration", [](const TrajectoryValue& t) { return t.made.trajectory.duration(); }, "[s]")
@@ -892,16 +893,30 @@ void bind_trajectory(py::module_& module) {
           [](const TrajectoryValue& t, const py::object& file) {
             const auto path = path_of(file);
             if (!path) throw Error(ErrorCode::InvalidArgument, "file must be the name of a file");
-            io::write_file(*path, t.made.csv);
+            const auto format = motion::message_format(*path);
+            io::write_file(*path,
+                           format ? motion::to_joint_trajectory(t.made.trajectory, t.robot, *format)
+                                  : t.made.csv);
           },
-          py::arg("file"), "Writes the samples as CSV: the bytes of `kaboum-move --trajectory`.")
+          py::arg("file"),
+          "Writes the samples: the bytes of `kaboum-move --trajectory`. CSV, or a JointTrajectory "
+          "of ROS 2 where the name ends with .yaml, .yml or .json.")
+      .def_property_readonly(
+          "blends", [](const TrajectoryValue& t) { return t.made.blends; },
+          "Share of its segments that the blend at each waypoint takes; 0: it stops there. Empty "
+          "without blends.")
+      .def_property_readonly(
+          "between_samples", [](const TrajectoryValue& t) { return t.made.between_samples; },
+          "Farthest that the curve may be from the straight lines between its samples, of each "
+          "joint; 0 without blends. [rad or length]")
       .def("__repr__", [](const TrajectoryValue& t) {
         return "<kaboum.Trajectory of " + std::to_string(t.made.trajectory.samples()) + " samples>";
       });
 }
 
 constexpr const char* kTrajectoryDoc =
-    R"(The path in time, from rest to rest along each segment, as `kaboum-move --trajectory`.
+    R"(The path in time, from rest to rest along each segment or, with `blend`, through its corners,
+as `kaboum-move --trajectory`.
 
 Parameters
 ----------

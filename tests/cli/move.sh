@@ -98,6 +98,63 @@ for option in '' '--max-velocity 3' '--max-velocity j1=0.05 --max-velocity 3' '-
   [ "$(wc -l <slow.csv)" -gt 900 ] || fail "faster than the URDF allows: $(wc -l <slow.csv)"
 done
 expect 2 'above what the robot' "$M" slow.json --from=0.5,0 --to 1,0 -o none.csv --trajectory none2.csv --max-velocity j1=0.2
+# Corners that are blended: limits of jerk besides; faster; each file with the same numbers, read by others.
+GO='--from=-0.8,0 --to 0.8,0 -o b.csv --rate 500'
+# shellcheck disable=SC2086
+for extension in csv json yaml; do
+  expect 0 'free at every instant' "$M" cell.json $GO --blend 0.5 --max-jerk 60 --max-jerk j2=40 --trajectory b-samples.$extension --report b-$extension.json
+  shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path b-samples.$extension --resolution 1e-8 --max-intervals 100000000
+done
+# shellcheck disable=SC2086
+expect 0 '' "$M" cell.json $GO --trajectory b-rests.csv
+[ "$(wc -l <b-samples.csv)" -lt "$(wc -l <b-rests.csv)" ] || fail "not faster: $(wc -l b-samples.csv b-rests.csv)"
+# shellcheck disable=SC2086
+expect 0 '' "$M" cell.json $GO --blend 0.5 --max-jerk 60 --max-jerk j2=40 --trajectory b-again.csv --threads 3
+cmp -s b-samples.csv b-again.csv || fail "other samples on 3 threads"
+python3 - <<'END' || fail "blended samples"
+import csv, json
+rows = [[float(x) for x in row] for row in list(csv.reader(open("b-samples.csv")))[1:]]
+report = json.load(open("b-csv.json"))
+made = report["trajectory"]
+assert made["max_jerk"] == [60, 40] and made["samples"] == len(rows), made
+assert len(made["blends"]) == len(report["waypoints"]) and made["blends"][0] == made["blends"][-1] == 0
+assert any(0 < x <= 0.5 for x in made["blends"]), made["blends"]
+assert made["between_samples"] == [5 / (8 * 500**2)] * 2
+for joint in (1, 2):
+    values = [row[joint] for row in rows]
+    for limits in (made["max_velocity"], made["max_acceleration"], made["max_jerk"]):
+        values = [(b - a) * 500 for a, b in zip(values, values[1:])]
+        assert max(map(abs, values)) <= limits[joint - 1] * (1 + 1e-5), (joint, limits)
+message = json.load(open("b-samples.json"))
+assert message["joint_names"] == ["j1", "j2"]
+points = message["points"]
+assert [p["positions"] for p in points] == [row[1:] for row in rows]
+times = [p["time_from_start"]["sec"] + 1e-9 * p["time_from_start"]["nanosec"] for p in points]
+assert all(abs(a - row[0]) < 1e-9 for a, row in zip(times, rows))
+for end in (points[0], points[-1]):
+    assert end["velocities"] == end["accelerations"] == [0, 0], end
+for before, now, after in zip(points, points[1:], points[2:]):
+    for i in (0, 1):
+        slope = (after["positions"][i] - before["positions"][i]) * 250
+        assert abs(slope - now["velocities"][i]) <= made["max_jerk"][i] * 0.002**2 / 6 + 1e-9
+try:
+    import yaml
+except ImportError:
+    yaml = None
+if yaml:
+    read = yaml.safe_load(open("b-samples.yaml"))
+    assert read == message
+    assert all(isinstance(x, float) for p in read["points"] for key in ("positions", "velocities", "accelerations") for x in p[key])
+END
+# A motion that is straight has no corners; those from rest to rest are messages as well.
+expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --blend 0.25 --trajectory b-straight.csv --report b-straight.json
+grep -A3 '"blends"' b-straight.json | tr -d ' \n' | grep -q '\[0.0,0.0\]' || fail "blends of a straight path: $(cat b-straight.json)"
+expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory rests.yml --rate 50
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path rests.yml
+expect 2 'time-optimal.*leave it out with' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --blend 0.5 --time-optimal
+expect 2 'max-jerk.*blend' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-jerk 5
+expect 2 'blend' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --blend 0.6
+expect 2 'radians' "$M" cell.json --from=30,0 --to 60,0 --degrees -o none.csv --trajectory none2.yaml
 # Reasons.
 expect 1 'the start is not free: arm/tip and box' "$M" cell.json --from=0,0 --to 1,1 -o none.csv --report none.json
 grep -q '"outcome": "start in contact"' none.json || fail "no outcome in the report"
@@ -153,6 +210,9 @@ POSE=$(python3 -c "from math import *; print(cos(1.2) + cos(1.8), sin(1.2) + sin
 expect 0 'kept: line within 0.001 (' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep line=1mm --margin 0mm --resolution 0.01mm -o line.csv --trajectory line-samples.csv --report line.json
 shows 0 'kept at every instant: line within 0.001' "$BIN/kaboum-check" kept.json --path line.csv --keep line=1mm --report kept-report.json
 shows 0 'kept at every instant' "$BIN/kaboum-check" kept.json --path line-samples.csv --keep line=0.001 --resolution 1e-8 --max-intervals 100000000
+# Blends keep it as well: they are decided with it.
+expect 0 'kept: line within 0.001 (' "$M" kept.json --from=0.6,1 "--to-pose=$POSE" --keep line=1mm --margin 0mm --resolution 0.01mm -o line.csv --blend 0.5 --trajectory line-blended.csv --report line-blended.json
+shows 0 'kept at every instant' "$BIN/kaboum-check" kept.json --path line-blended.csv --keep line=0.001 --resolution 1e-8 --max-intervals 100000000
 python3 - <<'END' || fail "the end is not on the line"
 import csv, json, math
 def end(q): return complex(math.cos(q[0]) + math.cos(q[0] + q[1]), math.sin(q[0]) + math.sin(q[0] + q[1]))

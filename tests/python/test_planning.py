@@ -474,8 +474,22 @@ def test_trajectories_are_those_of_the_program(cell, tmp_path):
     assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
     faster = found.trajectory(rate=50, max_velocity=0.5, max_acceleration=2.0, time_optimal=True)
     assert faster.duration < made.duration
+    assert made.blends == [] and made.between_samples == [0] * len(home)
+    blended = found.trajectory(rate=50, blend=0.5, max_velocity=0.5, max_acceleration=2.0, max_jerk=30.0)
+    assert len(blended.blends) == len(found) and blended.between_samples == [2 / (8 * 50**2)] * len(home)
+    assert (blended.velocities[[0, -1]] == 0).all() and (blended.accelerations[[0, -1]] == 0).all()
+    for limit, order in ((0.5, 1), (2, 2), (30, 3)):
+        assert np.abs(np.diff(blended.positions, order, axis=0) * 50**order).max() <= limit * (1 + 1e-6)
+    for name in ("python.csv", "python.json", "python.yaml"):
+        blended.write(tmp_path / name)
+        code, text = run("kaboum-move", cell, "--from=" + spelled(home), "--to=" + spelled(found.waypoints[-1]), "-o",
+                         tmp_path / "path.csv", "--trajectory", tmp_path / ("program" + name[6:]), "--rate", "50",
+                         "--max-velocity", "0.5", "--max-acceleration", "2", "--max-jerk", "30", "--blend", "0.5")
+        assert code == 0, text
+        assert (tmp_path / name).read_bytes() == (tmp_path / ("program" + name[6:])).read_bytes()
     for wrong, says in (({"max_velocity": 0}, "above 0"), ({"max_velocity": {"nobody": 1}}, "no joint 'nobody'"),
-                        ({"rate": 0}, "rate must be")):
+                        ({"rate": 0}, "rate must be"), ({"max_jerk": 5}, "max_jerk is kept with blend"),
+                        ({"blend": 0.5, "time_optimal": True}, "leave it out with blend")):
         with pytest.raises(kaboum.Error, match=says) as error:
             found.trajectory(**wrong)
         assert error.value.code == "invalid_argument"

@@ -33,13 +33,21 @@ Execution execute(const MoveRequest& r, const robot::Path& path, const MoveOptio
   motion::SampledPath made =
       motion::sample_path({checker, state, r.robot, r.constraints}, path, o.execution,
                           o.search.check.resolution, unit_of(o));
-  return {std::move(made.csv),
-          {{"file", o.trajectory},
-           {"rate", o.execution.rate},
-           {"samples", made.trajectory.samples()},
-           {"max_velocity", made.limits.velocity},
-           {"max_acceleration", made.limits.acceleration},
-           {"seconds", made.trajectory.duration()}}};
+  Json report = {{"file", o.trajectory},
+                 {"rate", o.execution.rate},
+                 {"samples", made.trajectory.samples()},
+                 {"max_velocity", made.limits.velocity},
+                 {"max_acceleration", made.limits.acceleration},
+                 {"seconds", made.trajectory.duration()}};
+  if (!made.blends.empty()) {
+    report["max_jerk"] = made.limits.jerk;
+    report["blends"] = made.blends;
+    report["between_samples"] = made.between_samples;
+  }
+  const auto format = motion::message_format(o.trajectory);
+  return {
+      format ? to_joint_trajectory(made.trajectory, r.kinematics(), *format) : std::move(made.csv),
+      std::move(report)};
 }
 
 }  // namespace kaboum::tools

@@ -19,7 +19,7 @@ WrittenPath write_path(const MoveRequest& r, const robot::Path& path, const Move
                        const world::Checker& checker);
 
 struct Execution {
-  std::string csv;
+  std::string text;  ///< of the file
   Json report;
 };
 

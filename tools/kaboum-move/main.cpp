@@ -17,6 +17,10 @@ using Outcome = PathAnswer::Outcome;
 using tools::MoveOptions;
 
 int move(const MoveOptions& o) {
+  if (o.degrees && motion::message_format(o.trajectory))
+    throw Error(ErrorCode::InvalidArgument,
+                "--degrees: a JointTrajectory is in radians; give --trajectory a name that ends "
+                "with .csv");
   const tools::MoveRequest r = tools::read_request(o);
   std::vector<std::string> inputs = r.scene.inputs;
   inputs.insert(inputs.end(), {o.start, o.goals});
@@ -57,7 +61,7 @@ int move(const MoveOptions& o) {
   report["output_angles"] = o.degrees ? "degrees" : "radians";
   report["output"] = o.output;
   tools::write_together(
-      {{o.trajectory, [&] { io::write_file(o.trajectory, execution->csv); }},
+      {{o.trajectory, [&] { io::write_file(o.trajectory, execution->text); }},
        {o.common.report, [&] { tools::write_report(o.common, "kaboum-move", report); }},
        {o.output, [&] { io::write_file(o.output, written.csv); }}});
   tools::log(

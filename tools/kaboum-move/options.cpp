@@ -16,8 +16,8 @@ void describe_execution(CLI::App& app, MoveOptions& o) {
   auto* trajectory =
       app.add_option("--trajectory", o.trajectory,
                      "Write samples over time: from rest to rest along each segment, by quintic "
-                     "polynomials, within the limits below; CSV")
-          ->check(csv_name())
+                     "polynomials, within the limits below; CSV, or a JointTrajectory of ROS 2 "
+                     "where the name ends with .yaml, .yml or .json")
           ->type_name("FILE");
   add_request_options(app, motion::trajectory_options(), o.execution, o.stated);
   for (const auto& option : motion::trajectory_options())

@@ -14,6 +14,13 @@ struct SampledPath {
   Trajectory trajectory;
   SpeedLimits limits;
   std::string csv;  ///< as motion::to_csv
+  /// Share of its segments that each waypoint's blend takes (BlendedPath), as far as it was
+  /// certified; 0: it stops there. Empty without blends.
+  std::vector<double> blends;
+  /// Farthest that each variable may be from the straight line between two samples that follow each
+  /// other, on the curve that they are taken of: its acceleration's limit / (8 rate²); 0 without
+  /// blends. [rad or length]
+  std::vector<double> between_samples;
 };
 
 /// Who moves where: what paths are decided in.
@@ -40,7 +47,9 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
                   const std::string& what,
                   const std::function<void(const std::string&)>& progress = {});
 
-/// Samples a path in time. The samples, as they are read from the text, were decided free.
+/// Samples a path in time. The samples, as they are read from the text, were decided free. A blend
+/// that is not is halved, and after five times left out; so is one, of several, that is nearest in
+/// time to samples that are not.
 /// @throws as speed_limits, Trajectory, require_free; Error{LimitReached} for more than 5,000,000
 ///   samples
 SampledPath sample_path(const MovingRobot& moving, const robot::Path& path,

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <kaboum/robot/path.h>
+
+#include <optional>
+#include <vector>
+
+namespace kaboum::motion {
+
+/// Point of a curve, and the curve's derivatives by its parameter.
+struct CurvePoint {
+  std::vector<double> q, first, second, third;
+};
+
+/// Part of a blended path: straight, or the blend of a corner.
+///
+/// With u = s / length and W(u) = u³ − u⁴/2 its points are from + s·in + length·W(u)·(out − in).
+struct PathPiece {
+  std::size_t waypoint = 0;  ///< where its segment begins, or that is its corner
+  bool is_blend = false;
+  double length = 0;              ///< of its parameter, > 0
+  std::vector<double> from;       ///< point at 0
+  std::vector<double> in, out;    ///< derivatives at 0 and at `length`; of a straight piece alike
+  std::vector<double> low, high;  ///< of the values of the waypoints that it lies between
+
+  /// @pre 0 ≤ s ≤ length. The third derivative is that of the inside of the piece.
+  [[nodiscard]] CurvePoint at(double s) const;
+};
+
+/// A polyline of which corners are replaced by polynomials of degree 4: twice continuously
+/// differentiable between its stops. Each blend is inside the triangle of its ends and the corner
+/// (docs/algorithms/motion-planning.md#blended-corners).
+///
+/// The parameter of a segment grows by the largest |Δqⱼ| / vⱼ of a joint: where it grows by 1 a
+/// second, the fastest joint of a segment is at its limit vⱼ.
+class BlendedPath {
+ public:
+  /// @param shares  for each waypoint, 0 to 1/2: the blend takes this share of the shorter one of
+  ///   the two segments, of both; 0: the path stops there. Those of first and last waypoint, and of
+  ///   waypoints that are the same as the one before, to 1e-14, are not looked at. Where a path
+  ///   turns back, by more than 179° in the velocities' units, it stops as well.
+  /// @param velocity  > 0, of each variable
+  /// @throws Error{InvalidArgument} for shares that are none, or as many as there are no waypoints.
+  BlendedPath(const robot::Path& path, const std::vector<double>& shares,
+              const std::vector<double>& velocity);
+
+  [[nodiscard]] const std::vector<PathPiece>& pieces() const { return pieces_; }
+  /// Number of pieces before each stop: first 0, last all of them.
+  [[nodiscard]] const std::vector<std::size_t>& stops() const { return stops_; }
+  /// The waypoints at which it stops, as many as stops(): the first, the last, corners without a
+  /// blend.
+  [[nodiscard]] const std::vector<std::size_t>& stopping_waypoints() const { return at_; }
+
+ private:
+  std::vector<PathPiece> pieces_;
+  std::vector<std::size_t> stops_, at_;
+};
+
+/// True if a path turns back at a waypoint so sharply that it has to stop there.
+bool turns_back(const std::vector<double>& before, const std::vector<double>& corner,
+                const std::vector<double>& after, const std::vector<double>& velocity);
+
+}  // namespace kaboum::motion

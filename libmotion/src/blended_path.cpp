@@ -1,0 +1,133 @@
+// Polylines with blended corners.
+
+#include <kaboum/base/error.h>
+#include <kaboum/motion/blended_path.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kaboum::motion {
+namespace {
+
+using Values = std::vector<double>;
+
+constexpr double kTurnsBack = -0.99984769515639;  // cos 179°
+constexpr double kSame = 1e-14;  // between waypoints that are the same [rad or length]
+
+/// 0 where the waypoints are the same.
+double parameter_length(const Values& a, const Values& b, const Values& velocity) {
+  double out = 0, most = 0;
+  for (std::size_t j = 0; j < a.size(); ++j) {
+    most = std::max(most, std::abs(b[j] - a[j]));
+    out = std::max(out, std::abs(b[j] - a[j]) / velocity[j]);
+  }
+  return most > kSame ? out : 0;
+}
+
+/// a + share (b − a), between a and b whatever the roundings.
+Values point_between(const Values& a, const Values& b, double share) {
+  Values out = a;
+  for (std::size_t j = 0; j < a.size(); ++j)
+    out[j] = std::clamp(a[j] + share * (b[j] - a[j]), std::min(a[j], b[j]), std::max(a[j], b[j]));
+  return out;
+}
+
+void widen(PathPiece& piece, const Values& q) {
+  for (std::size_t j = 0; j < q.size(); ++j) {
+    piece.low[j] = std::min(piece.low[j], q[j]);
+    piece.high[j] = std::max(piece.high[j], q[j]);
+  }
+}
+
+struct Segment {
+  std::size_t begin = 0, end = 0;  ///< waypoints
+  double length = 0;
+  Values direction;
+};
+
+std::vector<Segment> segments_of(const robot::Path& path, const Values& velocity) {
+  std::vector<Segment> out;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double length = parameter_length(path[begin], path[i], velocity);
+    if (length == 0) continue;
+    Segment s{begin, i, length, path[i]};
+    for (std::size_t j = 0; j < s.direction.size(); ++j)
+      s.direction[j] = (path[i][j] - path[begin][j]) / length;
+    out.push_back(std::move(s));
+    begin = i;
+  }
+  return out;
+}
+
+}  // namespace
+
+CurvePoint PathPiece::at(double s) const {
+  CurvePoint point{from, in, Values(in.size(), 0), Values(in.size(), 0)};
+  const double u = s / length;
+  const double area = u * u * u * (1 - 0.5 * u), share = u * u * (3 - 2 * u),
+               slope = 6 * u * (1 - u) / length, bend = (6 - 12 * u) / (length * length);
+  for (std::size_t j = 0; j < in.size(); ++j) {
+    point.q[j] += s * in[j];
+    if (is_blend) {
+      const double turn = out[j] - in[j];
+      point.q[j] += length * area * turn;
+      point.first[j] += share * turn;
+      point.second[j] = slope * turn;
+      point.third[j] = bend * turn;
+    }
+    point.q[j] = std::clamp(point.q[j], low[j], high[j]);
+  }
+  return point;
+}
+
+bool turns_back(const Values& before, const Values& corner, const Values& after,
+                const Values& velocity) {
+  double product = 0, in = 0, out = 0;
+  for (std::size_t j = 0; j < corner.size(); ++j) {
+    const double a = (corner[j] - before[j]) / velocity[j],
+                 b = (after[j] - corner[j]) / velocity[j];
+    product += a * b;
+    in += a * a;
+    out += b * b;
+  }
+  return product <= kTurnsBack * std::sqrt(in) * std::sqrt(out);
+}
+
+BlendedPath::BlendedPath(const robot::Path& path, const Values& shares, const Values& velocity)
+    : stops_{0}, at_{0} {
+  if (shares.size() != path.size() ||
+      !std::all_of(shares.begin(), shares.end(), [](double x) { return x >= 0 && x <= 0.5; }))
+    throw Error(ErrorCode::InvalidArgument, "a blend takes a share from 0 to 1/2 of a segment");
+  const std::vector<Segment> segments = segments_of(path, velocity);
+  double taken = 0;  // of the segment, by the blend at its beginning
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& here = segments[i];
+    const Values &a = path[here.begin], &b = path[here.end];
+    const bool last = i + 1 == segments.size();
+    double size = 0;
+    if (!last && !turns_back(a, b, path[segments[i + 1].end], velocity))
+      size = shares[here.end] * std::min(here.length, segments[i + 1].length);
+    const double straight = here.length - taken - size;
+    PathPiece line{
+        here.begin,     false,          straight, point_between(a, b, taken / here.length),
+        here.direction, here.direction, a,        a};
+    widen(line, b);
+    // What is shorter than roundings of its ends is none.
+    if (straight > 1e-14 * here.length) pieces_.push_back(line);
+    if (size > 0) {
+      const Segment& next = segments[i + 1];
+      PathPiece blend{
+          here.end,       true,           2 * size, point_between(b, a, size / here.length),
+          here.direction, next.direction, line.low, line.high};
+      widen(blend, path[next.end]);
+      pieces_.push_back(std::move(blend));
+    } else {
+      stops_.push_back(pieces_.size());
+      at_.push_back(last ? path.size() - 1 : here.end);
+    }
+    taken = size;
+  }
+}
+
+}  // namespace kaboum::motion

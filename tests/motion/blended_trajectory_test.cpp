@@ -1,0 +1,439 @@
+// Trajectories with blended corners: curves, limits by differences of samples, what is certified.
+
+#include <gtest/gtest.h>
+#include <kaboum/base/error.h>
+#include <kaboum/motion/blended_path.h>
+#include <kaboum/motion/find_path.h>
+#include <kaboum/motion/sampled_path.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "random_scene.h"
+#include "world/worlds.h"
+
+namespace kaboum::motion {
+namespace {
+
+using Values = std::vector<double>;
+
+struct Corners {
+  robot::Path path;
+  SpeedLimits limits;
+  Values shares;
+};
+
+constexpr std::array kTiny{1e-300, 1e-16, 1e-13, 1e-9, 1e-4};
+
+Corners random_corners(std::uint32_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> value(-2, 2), limit(0.3, 6), share(0, 0.5);
+  Corners out;
+  const std::size_t joints = 1 + random() % 6, waypoints = 2 + random() % 6;
+  for (std::size_t i = 0; i < waypoints; ++i) {
+    Values q(joints);
+    for (double& x : q) x = value(random);
+    if (i > 0 && random() % 6 == 0) q = out.path.back();
+    if (i > 0 && random() % 8 == 0)
+      for (std::size_t j = 0; j < joints; ++j)
+        q[j] = out.path.back()[j] + (q[j] - out.path.back()[j]) * kTiny[random() % kTiny.size()];
+    if (i > 0 && random() % 4 == 0) q[0] = out.path.back()[0];
+    out.path.push_back(q);
+    const std::uint64_t kind = random() % 4;
+    out.shares.push_back(kind == 0 ? 0 : kind == 1 ? 0.5 : share(random));
+  }
+  for (std::size_t j = 0; j < joints; ++j) {
+    out.limits.velocity.push_back(limit(random));
+    out.limits.acceleration.push_back(2 * limit(random));
+    out.limits.jerk.push_back(20 * limit(random));
+  }
+  return out;
+}
+
+/// Segments that take equally long at full speed, all of which is blends: speeds change within
+/// these. Jerks are hardly limited: accelerations are what counts.
+Corners equal_segments(std::uint32_t seed) {
+  Corners out = random_corners(seed);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> value(-1, 1);
+  Values q(out.path[0].size() + 1, 0), direction = q;
+  out.path.clear();
+  direction[0] = 1;
+  for (int i = 0; i < 8; ++i) {
+    out.path.push_back(q);
+    double length = 0;
+    for (double& x : direction) x = x / 2 + value(random) * (1 + i % 3) / 4;
+    for (const double x : direction) length = std::max(length, std::abs(x));
+    for (std::size_t j = 0; j < q.size(); ++j) q[j] += direction[j] / length / 4;
+  }
+  out.shares.assign(out.path.size(), 0.5);
+  out.limits = {Values(q.size(), 1), Values(q.size(), 2), Values(q.size(), 1000)};
+  return out;
+}
+
+double farthest(const Values& a, const Values& b) {
+  double out = 0;
+  for (std::size_t j = 0; j < a.size(); ++j) out = std::max(out, std::abs(a[j] - b[j]));
+  return out;
+}
+
+/// How far a point is from the triangle of three points: from the nearest of the points of it by a
+/// projection onto its plane and, where that is outside, onto its edges.
+double distance_to_triangle(const Values& q, const Values& a, const Values& b, const Values& c) {
+  const auto dot = [](const Values& x, const Values& y) {
+    double out = 0;
+    for (std::size_t j = 0; j < x.size(); ++j) out += x[j] * y[j];
+    return out;
+  };
+  const auto minus = [](Values x, const Values& y) {
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] -= y[j];
+    return x;
+  };
+  const auto distance = [&](const Values& from, const Values& u, double s, const Values& v,
+                            double t) {
+    Values rest = minus(q, from);
+    for (std::size_t j = 0; j < q.size(); ++j) rest[j] -= s * u[j] + t * v[j];
+    return std::sqrt(dot(rest, rest));
+  };
+  const auto edge = [&](const Values& from, const Values& to) {
+    const Values u = minus(to, from);
+    const double length = dot(u, u), s = length > 0 ? dot(minus(q, from), u) / length : 0;
+    return distance(from, u, std::clamp(s, 0.0, 1.0), u, 0);
+  };
+  double out = std::min({edge(a, b), edge(b, c), edge(c, a)});
+  const Values u = minus(b, a), v = minus(c, a), w = minus(q, a);
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), determinant = uu * vv - uv * uv;
+  if (determinant > 1e-9 * uu * vv) {
+    const double s = (dot(w, u) * vv - dot(w, v) * uv) / determinant,
+                 t = (dot(w, v) * uu - dot(w, u) * uv) / determinant;
+    if (s >= 0 && t >= 0 && s + t <= 1) out = std::min(out, distance(a, u, s, v, t));
+  }
+  return out;
+}
+
+TEST(BlendedPath, BlendsAreInTheTrianglesOfTheirCorners) {
+  std::size_t blends = 0;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    const Corners c = random_corners(seed);
+    const BlendedPath curve(c.path, c.shares, c.limits.velocity);
+    for (const PathPiece& piece : curve.pieces()) {
+      if (!piece.is_blend) continue;
+      ++blends;
+      const Values begin = piece.at(0).q, end = piece.at(piece.length).q,
+                   &corner = c.path[piece.waypoint];
+      std::size_t before = piece.waypoint - 1, after = piece.waypoint + 1;
+      while (farthest(c.path[before], corner) <= 1e-14) --before;
+      while (farthest(c.path[after], corner) <= 1e-14) ++after;
+      // Of the segments it takes no more than a half.
+      EXPECT_LE(farthest(begin, corner), 0.5 * farthest(c.path[before], corner) + 1e-14);
+      EXPECT_LE(farthest(end, corner), 0.5 * farthest(c.path[after], corner) + 1e-14);
+      EXPECT_LE(distance_to_triangle(begin, c.path[before], corner, corner), 1e-12);
+      EXPECT_LE(distance_to_triangle(end, c.path[after], corner, corner), 1e-12);
+      for (int k = 0; k <= 20; ++k) {
+        const Values q = piece.at(piece.length * k / 20).q;
+        ASSERT_LE(distance_to_triangle(q, begin, corner, end), 1e-9) << seed;
+      }
+    }
+  }
+  EXPECT_GT(blends, 200U);
+}
+
+TEST(BlendedPath, IsTwiceContinuouslyDifferentiableBetweenStops) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    const Corners c = random_corners(seed);
+    const BlendedPath curve(c.path, c.shares, c.limits.velocity);
+    const std::vector<PathPiece>& pieces = curve.pieces();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const PathPiece& piece = pieces[i];
+      const CurvePoint end = piece.at(piece.length);
+      const bool stops =
+          std::find(curve.stops().begin(), curve.stops().end(), i + 1) != curve.stops().end();
+      if (!stops) {
+        const CurvePoint next = pieces[i + 1].at(0);
+        EXPECT_LE(farthest(end.q, next.q), 1e-12);
+        EXPECT_LE(farthest(end.first, next.first), 1e-9);
+        const Values none(end.q.size(), 0);
+        EXPECT_LE(farthest(end.second, none) + farthest(next.second, none), 1e-6 / piece.length);
+      }
+      // The derivatives are those of the points; of shorter pieces these are rounded too far.
+      if (piece.length < 1e-2) continue;
+      const double h = 1e-4 * piece.length;
+      for (const double s : {0.2, 0.5, 0.71}) {
+        const CurvePoint a = piece.at(s * piece.length - h), b = piece.at(s * piece.length),
+                         d = piece.at(s * piece.length + h);
+        for (std::size_t j = 0; j < b.q.size(); ++j) {
+          EXPECT_NEAR((d.q[j] - a.q[j]) / (2 * h), b.first[j], 1e-5);
+          EXPECT_NEAR((d.first[j] - a.first[j]) / (2 * h), b.second[j], 1e-5 / piece.length);
+          EXPECT_NEAR((d.second[j] - a.second[j]) / (2 * h), b.third[j],
+                      1e-5 / (piece.length * piece.length));
+        }
+      }
+    }
+  }
+}
+
+/// Differences of samples: those of order n, divided by the time between samples to the n, are
+/// means of the derivative.
+double largest_difference(robot::Path rows, std::size_t joint, int order, double rate) {
+  double out = 0;
+  for (int n = 0; n < order; ++n) {
+    for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+      rows[k][joint] = (rows[k + 1][joint] - rows[k][joint]) * rate;
+    if (!rows.empty()) rows.pop_back();
+  }
+  for (const Values& row : rows) out = std::max(out, std::abs(row[joint]));
+  return out;
+}
+
+TEST(BlendedTrajectory, DifferencesOfSamplesKeepAllLimits) {
+  std::size_t tight = 0, count = 0;
+  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+    Corners c = seed % 3 == 0 ? equal_segments(seed) : random_corners(seed);
+    const double rate = seed % 2 == 0 ? 1000 : 250;
+    const Trajectory t(c.path, c.shares, c.limits, rate);
+    EXPECT_EQ(t.sample(0), c.path.front());
+    EXPECT_EQ(t.sample(t.samples() - 1), c.path.back());
+    robot::Path rows;
+    for (std::size_t k = 0; k < t.samples(); ++k) rows.push_back(t.sample(k));
+    double velocity = 0, acceleration = 0, jerk = 0;
+    for (std::size_t j = 0; j < c.path[0].size(); ++j) {
+      velocity = std::max(velocity, largest_difference(rows, j, 1, rate) / c.limits.velocity[j]);
+      acceleration =
+          std::max(acceleration, largest_difference(rows, j, 2, rate) / c.limits.acceleration[j]);
+      jerk = std::max(jerk, largest_difference(rows, j, 3, rate) / c.limits.jerk[j]);
+    }
+    // Third differences of values up to 2 have roundings of up to 8 · 2⁻⁵³ · 2 · 10⁹.
+    EXPECT_LE(velocity, 1 + 1e-9) << seed;
+    EXPECT_LE(acceleration, 1 + 1e-6) << seed;
+    EXPECT_LE(jerk, 1 + 1e-5) << seed;
+    if (t.samples() < 2) continue;
+    ++count;
+    tight += std::max({velocity, acceleration, jerk}) > 0.95 ? 1 : 0;
+  }
+  EXPECT_GT(tight, count * 9 / 10) << "needlessly slow";
+}
+
+TEST(BlendedTrajectory, InstantsAreThoseOfTheValuesAndContinuous) {
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    const Corners c = random_corners(seed);
+    const Trajectory t(c.path, c.shares, c.limits, 1000);
+    const double h = 1e-6;
+    for (double time = h; time + h < t.duration(); time += 0.00713) {
+      const Instant before = t.at(time - h), now = t.at(time), after = t.at(time + h);
+      for (std::size_t j = 0; j < now.q.size(); ++j) {
+        EXPECT_NEAR((after.q[j] - before.q[j]) / (2 * h), now.velocity[j], 1e-5);
+        EXPECT_LE(std::abs(after.velocity[j] - before.velocity[j]),
+                  2 * h * c.limits.acceleration[j] + 1e-9);
+        EXPECT_LE(std::abs(after.acceleration[j] - before.acceleration[j]),
+                  2 * h * c.limits.jerk[j] + 1e-6);
+        EXPECT_NEAR((after.velocity[j] - before.velocity[j]) / (2 * h), now.acceleration[j],
+                    h * c.limits.jerk[j] + 1e-5);
+      }
+    }
+    for (const std::size_t end : {std::size_t{0}, t.samples() - 1}) {
+      EXPECT_EQ(t.instant(end).q, t.sample(end));
+      EXPECT_EQ(t.instant(end).velocity, Values(c.path[0].size(), 0));
+      EXPECT_EQ(t.instant(end).acceleration, Values(c.path[0].size(), 0));
+    }
+    for (std::size_t i = 1; i < c.path.size(); ++i) EXPECT_LE(t.time_at(i - 1), t.time_at(i));
+    EXPECT_EQ(t.time_at(c.path.size() - 1), t.duration());
+  }
+}
+
+TEST(BlendedTrajectory, StopsWhereItHasToAndOnlyThere) {
+  const SpeedLimits two{{1, 2}, {5, 5}, {100, 100}};
+  const auto speed_at = [](const Trajectory& t, std::size_t waypoint) {
+    const Instant now = t.at(t.time_at(waypoint));
+    return std::max(std::abs(now.velocity[0]), std::abs(now.velocity.back()));
+  };
+  const Trajectory corner({{0, 0}, {1, 0}, {1, 1}}, {0, 0.5, 0}, two, 1000);
+  EXPECT_GT(speed_at(corner, 1), 0.3);
+  const Trajectory stop({{0, 0}, {1, 0}, {1, 1}}, {0, 0, 0}, two, 1000);
+  EXPECT_EQ(speed_at(stop, 1), 0);
+  EXPECT_EQ(stop.at(stop.time_at(1)).q, (Values{1, 0}));
+  // Back on the same way, or nearly so.
+  const Trajectory back({{0, 0}, {1, 0.5}, {0.4, 0.2}}, {0, 0.5, 0}, two, 1000);
+  EXPECT_EQ(speed_at(back, 1), 0);
+  EXPECT_EQ(back.at(back.time_at(1)).q, (Values{1, 0.5}));
+  EXPECT_TRUE(turns_back({0, 0}, {1, 0}, {0, 0.001}, {1, 1}));
+  EXPECT_FALSE(turns_back({0, 0}, {1, 0}, {0, 0.03}, {1, 1}));
+  // Straight on, there is no corner: as fast as without the waypoint, but for what is lost where
+  // its acceleration is 0.
+  const Trajectory on({{0, 0}, {0.5, 0}, {2, 0}}, {0, 0.5, 0}, two, 1000),
+      whole({{0, 0}, {2, 0}}, {0, 0}, two, 1000);
+  EXPECT_LE(on.duration(), 1.1 * whole.duration());
+  EXPECT_GT(speed_at(on, 1), 0.9);
+  // One joint, there and back.
+  const SpeedLimits one{{1}, {5}, {100}};
+  const Trajectory there({{0}, {1}, {0.5}}, {0, 0.5, 0}, one, 1000);
+  EXPECT_EQ(speed_at(there, 1), 0);
+  EXPECT_EQ(there.at(there.time_at(1)).q, Values{1});
+}
+
+TEST(BlendedTrajectory, WaypointsThatAreRepeatedChangeNothing) {
+  const SpeedLimits two{{1, 2}, {5, 5}, {100, 100}};
+  const Trajectory once({{0, 0}, {1, 0}, {1, 1}}, {0, 0.5, 0}, two, 500),
+      again({{0, 0}, {0, 0}, {1, 0}, {1, 0}, {1, 1}, {1, 1}}, {0, 0.5, 0.5, 0.5, 0.5, 0}, two, 500);
+  ASSERT_EQ(once.samples(), again.samples());
+  for (std::size_t k = 0; k < once.samples(); ++k) EXPECT_EQ(once.sample(k), again.sample(k));
+  EXPECT_EQ(again.time_at(1), 0);
+  EXPECT_EQ(again.time_at(2), again.time_at(3));
+  EXPECT_EQ(again.time_at(5), again.duration());
+  EXPECT_EQ(Trajectory({{1, 2}}, Values{0}, two, 500).samples(), 1U);
+  EXPECT_EQ(Trajectory({{1, 2}, {1, 2}}, {0, 0}, two, 500).samples(), 1U);
+}
+
+TEST(BlendedTrajectory, IsFasterThanFromRestToRest) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    Corners c = random_corners(seed);
+    for (std::size_t j = 0; j < c.limits.jerk.size(); ++j)
+      c.limits.jerk[j] = 20 * c.limits.acceleration[j];
+    const Trajectory rests(c.path, c.limits, 1000),
+        blended(c.path, Values(c.path.size(), 0.5), c.limits, 1000);
+    // The jerk of motions from rest to rest is not limited: tiny ones are faster.
+    if (rests.duration() > 0.05) {
+      EXPECT_LE(blended.duration(), rests.duration()) << seed;
+    }
+  }
+}
+
+TEST(BlendedTrajectory, WhatIsWrongIsRefused) {
+  const SpeedLimits one{{1}, {1}, {1}};
+  EXPECT_THROW(Trajectory({}, Values{}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}}, {0}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, 0.51, 0}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, -0.1, 0}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, std::nan(""), 0}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}}, {0, 0}, {{1}, {1}, {}}, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}}, {0, 0}, {{1}, {1}, {0}}, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1e9}}, {0, 0}, one, 1000), Error);
+}
+
+TEST(TrajectoryMessage, IsReadAsTheSamplesWithTheirTimes) {
+  robot::Robot robot;
+  robot.variables = {{"a \"b\"", {}, {}}, {"c", {}, {}}};
+  const Trajectory t({{0, 1e-7}, {1, 0}, {1, 1.0 / 3}}, {0, 0.5, 0}, {{1, 2}, {5, 5}, {100, 100}},
+                     300);
+  const std::string text = to_joint_trajectory(t, robot, MessageFormat::Json);
+  const robot::NamedPath read = robot::parse_path_json(text, "t.json");
+  ASSERT_EQ(read.waypoints.size(), t.samples());
+  ASSERT_EQ(read.joints.size(), 3U);
+  const auto time = static_cast<std::size_t>(
+      std::find(read.joints.begin(), read.joints.end(), "time_from_start") - read.joints.begin());
+  ASSERT_LT(time, 3U);
+  for (std::size_t k = 0; k < t.samples(); ++k) {
+    Values q = read.waypoints[k];
+    EXPECT_NEAR(q[time], static_cast<double>(k) / 300, 0.6e-9);
+    q.erase(q.begin() + static_cast<std::ptrdiff_t>(time));
+    EXPECT_EQ(q, t.sample(k));
+  }
+  // YAML 1.1 takes 1e-07 for a word.
+  const std::string yaml = to_joint_trajectory(t, robot, MessageFormat::Yaml);
+  EXPECT_TRUE(
+      yaml.starts_with("joint_names: [\"a \\\"b\\\"\", \"c\"]\npoints:\n"
+                       "- positions: [0.0, 1.0e-07]\n"))
+      << yaml.substr(0, 120);
+  EXPECT_NE(yaml.find("\n  time_from_start: {sec: 0, nanosec: 3333333}\n"), std::string::npos);
+}
+
+/// The arm of three links goes round a plate with its last link drawn in. A full blend draws it in
+/// less, and meets the plate.
+class RoundAPlate : public ::testing::Test {
+ protected:
+  RoundAPlate() {
+    files_.put(
+        "plate.glb",
+        test::set_of({test::box_mesh({-0.25, -0x1p-13, -0.5}, {0.25, 0x1p-13, 0.5})}, "outer", 0));
+    world_ = files_.world(files_.scene(
+        "\"objects\": [{\"name\": \"plate\", \"pose\": {\"position\": [2.7, 0, 0]}, \"outer\": " +
+        files_.ref("plate.glb") + "}]"));
+  }
+  [[nodiscard]] world::MotionAnswer check(const world::Checker& checker,
+                                          const Trajectory& t) const {
+    robot::Path samples;
+    for (std::size_t k = 0; k < t.samples(); ++k) samples.push_back(t.sample(k));
+    return check_motion(checker, initial_state(world_), 0, samples, {.resolution = 1e-8});
+  }
+  test::SceneFiles files_;
+  world::World world_;
+  const robot::Path path_{{-0.6, 0, 0}, {-0.448, 0, 1.5}, {0.5, 0, 0}};
+};
+
+TEST_F(RoundAPlate, ABlendThatMeetsItIsMadeSmaller) {
+  using Outcome = world::MotionAnswer::Outcome;
+  const world::Checker checker(world_);
+  const world::WorldState state = initial_state(world_);
+  TrajectoryOptions options;
+  options.blend = 0.5;
+  const SampledPath made = sample_path({checker, state, 0}, path_, options, 1e-5);
+  ASSERT_EQ(made.blends.size(), 3U);
+  EXPECT_GT(made.blends[1], 0);
+  EXPECT_LT(made.blends[1], 0.5);
+  EXPECT_EQ(check(checker, made.trajectory).outcome, Outcome::Free);
+  for (const double between : made.between_samples) EXPECT_EQ(between, 5.0 / 8e6);
+  // The one that was asked for is in contact.
+  const world::MotionAnswer full =
+      check(checker, Trajectory(path_, {0, 0.5, 0}, made.limits, options.rate));
+  EXPECT_EQ(full.outcome, Outcome::Contact);
+  EXPECT_TRUE(full.meets);
+  // Smaller ones take more time; the same is made again.
+  options.blend = made.blends[1];
+  EXPECT_EQ(sample_path({checker, state, 0}, path_, options, 1e-5).csv, made.csv);
+  options.blend = 0;
+  EXPECT_GT(sample_path({checker, state, 0}, path_, options, 1e-5).trajectory.duration(),
+            made.trajectory.duration());
+}
+
+TEST_F(RoundAPlate, OptionsThatContradictAreRefused) {
+  const world::Checker checker(world_);
+  const world::WorldState state = initial_state(world_);
+  for (const TrajectoryOptions& wrong :
+       {TrajectoryOptions{.time_optimal = true, .blend = 0.5}, TrajectoryOptions{.blend = 0.6},
+        TrajectoryOptions{.jerks = {{"", 5.0}}},
+        TrajectoryOptions{.blend = 0.5, .jerks = {{"", 0}}}})
+    EXPECT_THROW(sample_path({checker, state, 0}, path_, wrong, 1e-5), Error);
+}
+
+TEST(BlendedTrajectory, AmongRandomObjectsIsFreeOfTheExactMeshesAt1kHz) {
+  std::size_t corners = 0, smaller = 0, met = 0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const test::RandomScene scene = test::random_scene(seed, 14);
+    const world::Checker checker(scene.world);
+    const world::WorldState state = initial_state(scene.world);
+    std::mt19937_64 random(seed);
+    for (int query = 0; query < 3; ++query) {
+      std::vector<Values> ends(2);
+      world::Scratch scratch;
+      for (Values& end : ends) {
+        world::WorldState at = state;
+        do at.q[0] = test::random_values(scene.world.robots[0].kinematics, random);
+        while (checker.find_contact(at, scratch));
+        end = at.q[0];
+      }
+      PathOptions search;
+      search.most_work = 0.2;
+      const PathAnswer answer = find_path(checker, state, 0, ends[0], {{ends[1]}}, search);
+      if (answer.outcome != PathAnswer::Outcome::Found || answer.straight) continue;
+      TrajectoryOptions options;
+      options.blend = 0.5;
+      const SampledPath made = sample_path({checker, state, 0}, answer.path, options, 1e-5);
+      const auto contact = [&](const Trajectory& t) {
+        for (std::size_t k = 0; k < t.samples(); ++k)
+          if (scene.exact.find_contact(t.sample(k))) return true;
+        return false;
+      };
+      EXPECT_FALSE(contact(made.trajectory)) << "seed " << seed << ", query " << query;
+      Values full(answer.path.size(), 0.5);
+      corners += full.size() - 2;
+      for (std::size_t i = 1; i + 1 < full.size(); ++i) smaller += made.blends[i] < 0.5 ? 1 : 0;
+      met += contact(Trajectory(answer.path, full, made.limits, options.rate)) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(corners, 10U);
+  EXPECT_GT(smaller, 1U);
+  EXPECT_GT(met, 0U) << "full blends are free as well: nothing is tested";
+}
+
+}  // namespace
+}  // namespace kaboum::motion
