@@ -250,7 +250,7 @@ def measure(path, words, args, sources):
         if not (place / "report.json").exists():
             lines = [x for x in said.strip().splitlines() if x]
             row["refused"] = (f"stopped after {args.cpu:g} s of CPU" if row["code"] is None
-                              else (lines or ["no word"])[-1].replace(str(sources) + "/", ""))
+                              else (lines or ["no word"])[-1].replace(f"{sources}/", "").replace(str(sources), "SOURCES"))
             original = expanded(path, words, place)
             row["original"] = ask_engines(args, [original])[original] if original else {}
             return row
