@@ -14,12 +14,18 @@ using Values = std::vector<double>;
 constexpr double kTurnsBack = -0.99984769515639;  // cos 179°
 constexpr double kSame = 1e-14;  // between waypoints that are the same [rad or length]
 
+/// A velocity's limit as a unit of the parameter: limits that nothing reaches are one.
+double unit_of(double velocity) {
+  constexpr double kFastest = 1e9;
+  return std::min(velocity, kFastest);
+}
+
 /// 0 where the waypoints are the same.
 double parameter_length(const Values& a, const Values& b, const Values& velocity) {
   double out = 0, most = 0;
   for (std::size_t j = 0; j < a.size(); ++j) {
     most = std::max(most, std::abs(b[j] - a[j]));
-    out = std::max(out, std::abs(b[j] - a[j]) / velocity[j]);
+    out = std::max(out, std::abs(b[j] - a[j]) / unit_of(velocity[j]));
   }
   return most > kSame ? out : 0;
 }
@@ -85,8 +91,8 @@ bool turns_back(const Values& before, const Values& corner, const Values& after,
                 const Values& velocity) {
   double product = 0, in = 0, out = 0;
   for (std::size_t j = 0; j < corner.size(); ++j) {
-    const double a = (corner[j] - before[j]) / velocity[j],
-                 b = (after[j] - corner[j]) / velocity[j];
+    const double unit = unit_of(velocity[j]);
+    const double a = (corner[j] - before[j]) / unit, b = (after[j] - corner[j]) / unit;
     product += a * b;
     in += a * a;
     out += b * b;

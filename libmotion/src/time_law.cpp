@@ -114,6 +114,9 @@ class SpeedBound {
   static double largest(double low, double high, Allowed allowed) {
     if (low >= high) return low;
     if (allowed(high)) return high;
+    // Of what size it is.
+    for (double next = high * 0x1p-20; next > low; next *= 0x1p-20)
+      (allowed(next) ? low : high) = next;
     for (int k = 0; k < kHalvings; ++k) {
       const double middle = 0.5 * (low + high);
       if (middle <= low || middle >= high) break;

@@ -1,9 +1,11 @@
 // Trajectories as messages of ROS 2.
 
+#include <kaboum/base/error.h>
 #include <kaboum/motion/trajectory.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -102,13 +104,19 @@ constexpr Words kJson{"{\"joint_names\": ",
 }  // namespace
 
 std::optional<MessageFormat> message_format(const std::string& file) {
-  if (file.ends_with(".json")) return MessageFormat::Json;
-  if (file.ends_with(".yaml") || file.ends_with(".yml")) return MessageFormat::Yaml;
+  std::string name = file;
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.ends_with(".json")) return MessageFormat::Json;
+  if (name.ends_with(".yaml") || name.ends_with(".yml")) return MessageFormat::Yaml;
   return std::nullopt;
 }
 
 std::string to_joint_trajectory(const Trajectory& trajectory, const robot::Robot& robot,
                                 MessageFormat format) {
+  if (!(trajectory.duration() < 0x1p31))
+    throw Error(ErrorCode::LimitReached,
+                "the trajectory takes more seconds than ROS's messages have numbers for");
   const Words& words = format == MessageFormat::Yaml ? kYaml : kJson;
   std::string out = words.names;
   append_names(out, robot);

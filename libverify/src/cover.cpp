@@ -150,6 +150,11 @@ Convexity verify_convexity(const geom::ConvexSet& set) {
   result.convex.answer = Answer::Verified;
   for (std::size_t i = 0; i < set.bodies.size(); ++i) {
     geom::require_valid(set.bodies[i].core);
+    for (const Vec3& v : set.bodies[i].core.vertices)
+      if (!v.allFinite())
+        throw Error(ErrorCode::InvalidInput, "body " + std::to_string(i) + " (" +
+                                                 set.bodies[i].name +
+                                                 ") has a coordinate that is not a finite number");
     std::string fault = fault_of(set.bodies[i]);
     if (!fault.empty()) result.not_convex.emplace_back(i, std::move(fault));
   }

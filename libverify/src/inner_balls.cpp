@@ -199,17 +199,23 @@ class BallsWithin {
   /// was found.
   [[nodiscard]] std::optional<Vec3> point_outside(const Ball& ball, std::uint32_t t) const {
     const Corners c = corners_of(t);
-    const Vec3 near = closest_point(ball.center, c[0], c[1], c[2]);
+    const Vec3 near = closest_point(ball.center, c[0], c[1], c[2]),
+               middle = (c[0] + c[1] + c[2]) / 3;
     const Vec3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized(),
                ray = (near - ball.center).normalized();
-    const double room = ball.radius - (near - ball.center).norm();
-    for (const double share : {0.9, 0.5, 0.1, 1e-2, 1e-4, 1e-6})
-      for (const Vec3& way : {ray, normal, Vec3(-normal), Vec3(-ray)}) {
-        const Vec3 p = near + share * room * way;
-        if (!p.allFinite() || !is_within(ball, p)) continue;
-        const std::optional<int> winding = winding_at(meshes_, kInside, p);
-        if (winding && *winding <= 0) return p;
-      }
+    // From the nearest point, and from points within: in a groove the nearest is on its bottom.
+    for (const double inwards : {0.0, 1e-4, 1e-2, 0.1, 0.5, 1.0}) {
+      const Vec3 from = near + inwards * (middle - near);
+      const double room = ball.radius - (from - ball.center).norm();
+      if (!(room > 0)) continue;
+      for (const double share : {0.9, 0.5, 0.1, 1e-2, 1e-4, 1e-6})
+        for (const Vec3& way : {ray, normal, Vec3(-normal), Vec3(-ray)}) {
+          const Vec3 p = from + share * room * way;
+          if (!p.allFinite() || !is_within(ball, p)) continue;
+          const std::optional<int> winding = winding_at(meshes_, kInside, p);
+          if (winding && *winding <= 0) return p;
+        }
+    }
     return std::nullopt;
   }
 
@@ -256,6 +262,7 @@ class DepthSearch {
       looks.assign(cells.size(), {});
       parallel_for(std::size_t{0}, cells.size(),
                    [&](std::size_t i) { looks[i] = look_at(cells[i]); });
+      for (const Look& look : looks) seen += look.balls / kBallsOfABox;
       const auto deepest = std::ranges::max_element(looks, {}, &Look::beyond);
       if (deepest->beyond > 0) {
         claim.answer = Answer::Refuted;
@@ -285,7 +292,9 @@ class DepthSearch {
     bool decided = false;
     Vec3 point = Vec3::Zero();
     double beyond = 0;  ///< above 0: the point is in the solid and in no ball, and so much too deep
+    std::size_t balls = 0;  ///< that were looked at
   };
+  static constexpr std::size_t kBallsOfABox = 16;  ///< take about as long as a box
 
   static Claim undecided(std::string why) {
     Claim claim;
@@ -300,7 +309,7 @@ class DepthSearch {
     const Vec3 low(cell.low.data()), high(cell.high.data());
     Look look;
     look.point = low + kPlace.cwiseProduct(high - low);
-    look.decided = one_holds(cell);
+    look.decided = one_holds(cell, look.balls);
     if (look.decided) return look;
     const double radius = (high - look.point).cwiseMax(look.point - low).norm() + slack_;
     const NearestTriangle::Hit hit = surely_.nearest(look.point);
@@ -314,15 +323,17 @@ class DepthSearch {
     }
     const double beyond =
         perhaps_.lower_bound(look.point, perhaps_.distance(look.point)) - slack_ - epsilon_;
-    if (beyond > 0 && !is_held(look.point)) look.beyond = beyond;
+    if (beyond > 0 && !is_held(look.point, look.balls)) look.beyond = beyond;
     return look;
   }
 
-  [[nodiscard]] bool one_holds(const Bounds& cell) const {
+  /// @param looked  raised by the number of balls that were looked at
+  [[nodiscard]] bool one_holds(const Bounds& cell, std::size_t& looked) const {
     bool held = false;
     tree_.query([&](const Bounds& box) { return !held && box.meets(cell); },
                 [&](std::uint32_t b) {
                   if (held) return;
+                  ++looked;
                   Vec3 corner;  // the farthest
                   for (int k = 0; k < 3; ++k) {
                     const double c = balls_[b].center[k];
@@ -333,10 +344,10 @@ class DepthSearch {
     return held;
   }
 
-  [[nodiscard]] bool is_held(const Vec3& p) const {
+  [[nodiscard]] bool is_held(const Vec3& p, std::size_t& looked) const {
     Bounds at;
     for (int k = 0; k < 3; ++k) at.low[k] = at.high[k] = p[k];
-    return one_holds(at);
+    return one_holds(at, looked);
   }
 
   /// Whether the box's corners, and so all of it, are within the limit of one triangle.
@@ -421,8 +432,7 @@ Inclusion verify_balls_within(const geom::ConvexSet& set, const geom::Mesh& orig
     claim.reason = count(refuted) + " reach out of the solid; the first of them is ball " +
                    std::to_string(*first);
     const std::optional<Vec3>& at = found[*first].outside;
-    claim.witness =
-        Witness{at ? meshes.point_outside(*at) : balls[*first].center, 0, at.has_value()};
+    if (at) claim.witness = Witness{meshes.point_outside(*at), 0, true};
     if (at && meshes.scaled()) {
       const NearestTriangle nearest(meshes, kInside);
       const double slack =

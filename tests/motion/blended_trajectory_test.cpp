@@ -310,6 +310,35 @@ TEST(BlendedTrajectory, WhatIsWrongIsRefused) {
   EXPECT_THROW(Trajectory({{0}, {1e9}}, {0, 0}, one, 1000), Error);
 }
 
+/// Limits of what no joint reaches change nothing.
+TEST(BlendedTrajectory, LimitsOfAnySize) {
+  const robot::Path path{{0, 0}, {1, 0}, {1, 1}};
+  const Values shares(3, 0.5);
+  const auto time = [&](double velocity) {
+    const SpeedLimits limits{Values(2, velocity), Values(2, 5), Values(2, 100)};
+    return Trajectory(path, shares, limits, 1000).duration();
+  };
+  const double least = time(1e9);
+  for (const double velocity : {1e31, 1e100, 1e200}) EXPECT_EQ(time(velocity), least) << velocity;
+}
+
+TEST(TrajectoryMessage, IsChosenByTheName) {
+  for (const std::string name : {"t.json", "t.JSON", "a.csv.Json"})
+    EXPECT_EQ(message_format(name), MessageFormat::Json) << name;
+  for (const std::string name : {"t.yaml", "T.YML"})
+    EXPECT_EQ(message_format(name), MessageFormat::Yaml) << name;
+  for (const std::string name : {"t.csv", "json", "t.json.csv"})
+    EXPECT_EQ(message_format(name), std::nullopt) << name;
+}
+
+TEST(TrajectoryMessage, SecondsFitInto32Bits) {
+  const SpeedLimits limits{{1e-9}, {1}};
+  robot::Robot robot;
+  robot.variables.push_back({"j", {}, {}, {}});
+  const Trajectory slow({{0}, {1.2}}, limits, 1e-3);  // 2.25e9 s
+  EXPECT_THROW(to_joint_trajectory(slow, robot, MessageFormat::Json), Error);
+}
+
 TEST(TrajectoryMessage, IsReadAsTheSamplesWithTheirTimes) {
   robot::Robot robot;
   robot.variables = {{"a \"b\"", {}, {}}, {"c", {}, {}}};

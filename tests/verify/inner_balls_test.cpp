@@ -135,6 +135,30 @@ TEST(InnerBalls, ARadiusOfZeroIsNoBall) {
   }
 }
 
+TEST(InnerBalls, CentersAreFinite) {
+  const ConvexSet nowhere = set_of({0, 0, std::nan("")}, 1);
+  EXPECT_THROW(verify_within(nowhere, l_shape()), Error);
+}
+
+/// In the groove between two prisms that cross, what is nearest is the bottom: the witness is off
+/// it.
+TEST(InnerBalls, WitnessesAreOutside) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(0.05, 0.4);
+  for (int i = 0; i < 20; ++i) {
+    const double turn = angle(random);
+    Mesh other = box_of({-2, 0, 0}, {2, 1, 1});
+    for (Vec3& v : other.vertices)
+      v = Vec3(std::cos(turn) * v.x() - std::sin(turn) * v.y(),
+               std::sin(turn) * v.x() + std::cos(turn) * v.y(), v.z());
+    const Mesh crossing = test::merged({box_of({-2, 0, 0}, {2, 1, 1}), other});
+    const Claim claim = within(crossing, set_of({0.25, 0.5, 0.5}, 0.499 + 0.4 * turn));
+    if (claim.answer != Answer::Refuted || !claim.witness) continue;
+    EXPECT_TRUE(claim.witness->exact) << i;
+    EXPECT_LE(test::winding_number_slow(crossing, claim.witness->point).value_or(1), 0) << i;
+  }
+}
+
 TEST(InnerBalls, VoidsAndTheOutsideAreNoPart) {
   const Mesh mesh = nested();
   EXPECT_EQ(within(mesh, {2, 2, 2}, 0.5), Answer::Verified);     // the box in the void

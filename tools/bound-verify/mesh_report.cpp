@@ -259,6 +259,8 @@ std::string why_undefined(const MeshCase& run) {
            "so, and that it is enclosed says nothing. Turn its triangles round" +
            (run.inner() ? "" : " (--prepare does)") + ", or ask for --claims all";
   const geom::Mesh& mesh = run.inner() ? run.approximation.mesh : run.original.mesh;
+  if (mesh.triangles.empty())
+    return inner + " has no bodies and no triangles: that nothing lies in something says nothing";
   const auto has_no_area = [&](const geom::Triangle& t) {
     return geom::is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   };

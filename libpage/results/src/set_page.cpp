@@ -88,6 +88,9 @@ std::string shortfall_of(const certify::SetCertificate& c) {
 
 std::string summary_of(const certify::SetCertificate& c) {
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
+  if (!outer && c.bodies == 0)
+    return "0 bodies: no point of the solid is deeper than " +
+           percent(c.distance_upper, c.diagonal);
   std::string bodies =
       (c.bodies == 1 ? " body, " : " bodies, ") + std::to_string(c.vertices) + " vertices";
   if (c.largest_body_vertices == 1) bodies = c.bodies == 1 ? " sphere" : " spheres";

@@ -32,7 +32,7 @@ struct PathPiece {
 /// (docs/algorithms/motion-planning.md#blended-corners).
 ///
 /// The parameter of a segment grows by the largest |Δqⱼ| / vⱼ of a joint: where it grows by 1 a
-/// second, the fastest joint of a segment is at its limit vⱼ.
+/// second, the fastest joint of a segment is at its limit vⱼ. Limits above 1e9 count as that here.
 class BlendedPath {
  public:
   /// @param shares  for each waypoint, 0 to 1/2: the blend takes this share of the shorter one of

@@ -96,12 +96,14 @@ std::string to_csv(const robot::Path& path, const robot::Robot& robot,
 /// Texts of messages of ROS.
 enum class MessageFormat { Json, Yaml };
 
-/// That of a file of samples, by its name: .json, .yaml, .yml; nullopt: it is a CSV.
+/// That of a file of samples, by its name: .json, .yaml, .yml, in whatever case; nullopt: it is a
+/// CSV.
 std::optional<MessageFormat> message_format(const std::string& file);
 
 /// Samples as a trajectory_msgs/JointTrajectory of ROS 2: joint_names, and points with positions,
 /// velocities, accelerations and time_from_start (sec, nanosec). YAML as `ros2 topic pub` reads it;
 /// both are read by robot::read_path. Positions are the numbers of to_csv, in radians and metres.
+/// @throws Error{LimitReached} where it takes 2³¹ s or more
 std::string to_joint_trajectory(const Trajectory& trajectory, const robot::Robot& robot,
                                 MessageFormat format);
 
