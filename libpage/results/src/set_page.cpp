@@ -75,8 +75,10 @@ std::string shortfall_of(const certify::SetCertificate& c) {
                (c.max_aspect > 0 ? "«max-aspect»" : "«min-thickness»") +
                "; allow thinner bodies or a larger epsilon";
       if (c.direction == certify::SetRequest::Direction::Inner)
-        return "epsilon could not be reached: the search for deep points gave up; allow a larger "
-               "epsilon, or «effort=best»";
+        return std::string(
+                   "epsilon could not be reached: the search for deep points gave up; "
+                   "allow a larger epsilon") +
+               (c.largest_body_vertices == 1 ? "" : ", or «effort=best»");
       return "epsilon could not be reached; allow more vertices per body";
     case bcd::Stop::TooManyBodies:
     case bcd::Stop::TooCoarse:
