@@ -9,8 +9,8 @@
 namespace kaboum::bcd {
 namespace {
 
-/// How far beyond the nearest triangle points are tried that are outside, as a share of the
-/// diagonal; proposals only, their winding number decides.
+/// Distances beyond the nearest triangle of points that may be outside, as shares of the diagonal;
+/// proposals only, their winding number decides.
 constexpr std::array<double, 3> kBeyond{1e-7, 1e-9, 1e-5};
 /// Rounding, as a share of the largest coordinate and the diagonal.
 constexpr double kSlack = 1e-12;

@@ -28,7 +28,7 @@ class DepthBounds {
   [[nodiscard]] double upper(const Vec3& p, std::uint32_t triangle) const;
 
   [[nodiscard]] double diagonal() const { return diagonal_; }
-  /// What rounding takes. [length]
+  /// Most error of a distance by rounding. [length]
   [[nodiscard]] double slack() const { return slack_; }
 
  private:

@@ -71,7 +71,7 @@ InnerBallEffort effort_of(Effort effort) {
   return {1.0 / 8, 160, 4'000};
 }
 
-/// How far a ball about p has to reach to hold the cube.
+/// Least radius of a ball about p that holds the cube, rounded up.
 double reach_of(const Cube& cube, const Vec3& p) {
   return ((p - cube.center).cwiseAbs() + Vec3::Constant(cube.half)).norm() * kLengthUp;
 }
@@ -101,7 +101,7 @@ class BallGrid {
         for (std::int64_t z = low[3]; z <= high[3]; ++z) balls_[{size, x, y, z}].push_back(number);
   }
 
-  /// Whether the test is true of one of the balls that hold the point, or of one near it.
+  /// True if the test is true of one of the balls that hold the point, or of one near it.
   template <class Test>
   [[nodiscard]] bool any(const Vec3& p, const Test& test) const {
     return std::ranges::any_of(sizes_, [&](int size) {
@@ -195,7 +195,7 @@ class InnerBallSearch {
                      [&](std::uint32_t b) { return holds(balls_[b], cube, held_slack_); });
   }
 
-  /// Whether nothing of the cube is deep, or one of the balls holds it.
+  /// Decides an open cube of which nothing is deep, or that one of the balls holds.
   void look(Open& open) const {
     const Cube& cube = nodes_[open.node].cube;
     open.held = open.decided = is_held(cube);

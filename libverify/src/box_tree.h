@@ -25,6 +25,23 @@ struct Bounds {
   }
 };
 
+/// Length of a box's diagonal.
+inline double diagonal_of(const Bounds& box) {
+  return (geom::Vec3(box.high.data()) - geom::Vec3(box.low.data())).norm();
+}
+
+/// Adds the halves of a box, cut across its longest edge.
+inline void halve(const Bounds& box, std::vector<Bounds>& into) {
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
+  const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
+  into.push_back(box);
+  into.back().high[axis] = middle;
+  into.push_back(box);
+  into.back().low[axis] = middle;
+}
+
 /// Binary tree of boxes over items: nodes in depth-first order, left child next to its parent.
 class BoxTree {
  public:

@@ -276,7 +276,7 @@ class DepthSearch {
       open.clear();
       for (std::size_t i = 0; i < cells.size(); ++i) {
         if (looks[i].decided) continue;
-        if (size(cells[i]) <= slack_)
+        if (diagonal_of(cells[i]) <= slack_)
           return undecided(
               "the balls leave no slack, or the largest depth is the limit but for rounding, as "
               "far as can be told; a slightly larger one may be decided");
@@ -361,21 +361,6 @@ class DepthSearch {
       if (!((q - p).norm() + slack_ <= epsilon_)) return false;
     }
     return true;
-  }
-
-  static double size(const Bounds& cell) {
-    return (Vec3(cell.high.data()) - Vec3(cell.low.data())).norm();
-  }
-
-  static void halve(const Bounds& cell, std::vector<Bounds>& into) {
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-      if (cell.high[k] - cell.low[k] > cell.high[axis] - cell.low[axis]) axis = k;
-    const double middle = 0.5 * cell.low[axis] + 0.5 * cell.high[axis];
-    into.push_back(cell);
-    into.back().high[axis] = middle;
-    into.push_back(cell);
-    into.back().low[axis] = middle;
   }
 
   const MeshPair& meshes_;

@@ -71,7 +71,7 @@ class BoxSearch {
       for (std::size_t i = 0; i < cells.size(); ++i) {
         work += looks[i].work;
         if (looks[i].decided) continue;
-        if (size(cells[i]) <= search_.slack) {
+        if (diagonal_of(cells[i]) <= search_.slack) {
           claim.answer = Answer::Undecided;
           claim.reason =
               "the largest distance is the limit, but for rounding, as far as can be told; a "
@@ -188,22 +188,6 @@ class BoxSearch {
     std::vector<Part> parts;
     if (!search_.limit.bodies->parts(cell, parts)) return false;
     return near_after_cuts(search_, parts, face, work);
-  }
-
-  static double size(const Bounds& cell) {
-    return (Vec3(cell.high.data()) - Vec3(cell.low.data())).norm();
-  }
-
-  static void halve(const Bounds& cell, std::vector<Bounds>& into) {
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (cell.high[k] - cell.low[k] > cell.high[axis] - cell.low[axis]) axis = k;
-    }
-    const double middle = 0.5 * cell.low[axis] + 0.5 * cell.high[axis];
-    into.push_back(cell);
-    into.back().high[axis] = middle;
-    into.push_back(cell);
-    into.back().low[axis] = middle;
   }
 
   RegionSearch search_;
