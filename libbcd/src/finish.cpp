@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "concavity.h"
+#include "facet_hull.h"
 #include "outward.h"
 #include "thicken.h"
 
@@ -39,6 +40,16 @@ bool fits(const std::vector<Finished>& bodies, const CoverOptions& options) {
   return !bodies.empty() && bodies.size() <= options.max_bodies.value_or(kUnlimited) &&
          vertices_of(bodies) <= options.max_total_vertices.value_or(kUnlimited);
 }
+
+namespace {
+
+/// Facets with which a body keeps the limit of its vertices as well: of F facets it has 2 F − 4 at
+/// most.
+std::size_t facets_allowed(const CoverOptions& options) {
+  return std::min(*options.max_facets, (options.max_vertices + 4) / 2);
+}
+
+}  // namespace
 
 Finisher::Finisher(SearchState& state) : state_(state) {
   double magnitude = 0;
@@ -143,7 +154,11 @@ Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
   parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
     const Body& body = bodies[open[i]].body;
     Simplified& shape = shapes[open[i]];
-    if (first) {
+    if (options.max_facets) {
+      round.hulls[i] =
+          facet_hull(required_of(body), facets_allowed(options),
+                     options.effort == Effort::Fast ? PlaneSteps::Turning : PlaneSteps::Exchange);
+    } else if (first) {
       if (!body.concavity.flat)
         shape = simplify(body.hull, options.max_vertices, free_cost / body.concavity.weight,
                          state_.solid());
@@ -255,8 +270,8 @@ bool Finisher::thicken(Mesh& hull) const {
   return thin;
 }
 
-/// A body's simplified hull rounded outwards.
-Mesh Finisher::rounded(const Body& body, const Simplified& shape, std::size_t most) const {
+/// The points that a body has to contain, without those inside their hull.
+std::vector<Vec3> Finisher::required_of(const Body& body) const {
   std::vector<Vec3> required;
   for (const int leaf : leaves_of(state_.tree(), body)) {
     const auto& points = required_.at(leaf);
@@ -264,11 +279,16 @@ Mesh Finisher::rounded(const Body& body, const Simplified& shape, std::size_t mo
   }
   ensure(!required.empty(), "a body that has to contain nothing");
   geom::HullBuilder builder;
-  if (builder.build(required)) {
-    std::vector<Vec3> hull;
-    for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
-    required = std::move(hull);
-  }
+  if (!builder.build(required)) return required;
+  std::vector<Vec3> hull;
+  for (const std::uint32_t v : builder.vertices()) hull.push_back(required[v]);
+  return hull;
+}
+
+/// A body's simplified hull rounded outwards.
+Mesh Finisher::rounded(const Body& body, const Simplified& shape, std::size_t most) const {
+  const std::vector<Vec3> required = required_of(body);
+  geom::HullBuilder builder;
   std::optional<Mesh> pushed;
   if (!body.concavity.flat) {
     pushed = push_out(shape.vertices, required, most);

@@ -56,6 +56,7 @@ class Finisher {
   void keep(const std::vector<Finished>& bodies, const std::vector<std::size_t>& which,
             double decisive);
   bool thicken(Mesh& hull) const;
+  [[nodiscard]] std::vector<Vec3> required_of(const Body& body) const;
   [[nodiscard]] Mesh rounded(const Body& body, const Simplified& shape, std::size_t most) const;
   Round make_hulls(const std::vector<Finished>& bodies, const std::vector<std::size_t>& open,
                    std::vector<Simplified>& shapes, double free_cost, bool first) const;

@@ -71,6 +71,13 @@ void require_sound(const CoverOptions& options) {
                 "max_aspect must be at least 4, in proportions that scales leave as well");
   if (!(options.simplify_share() >= 0 && options.simplify_share() <= 1))
     throw Error(ErrorCode::InvalidArgument, "the share for simplification must be from 0 to 1");
+  if (options.max_facets && *options.max_facets < 6)
+    throw Error(ErrorCode::InvalidArgument, "fewer than 6 facets per body");
+  if (options.max_facets &&
+      (options.max_total_vertices || options.min_thickness > 0 || options.max_aspect))
+    throw Error(ErrorCode::InvalidArgument,
+                "a limit on facets does not go with one on all vertices together, a least "
+                "thickness, or a largest aspect: what these change has other facets");
   if (options.max_total_vertices && (options.min_thickness > 0 || options.max_aspect))
     throw Error(ErrorCode::InvalidArgument,
                 "a limit on all vertices together does not go with a least thickness, or a largest "

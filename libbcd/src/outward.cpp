@@ -12,6 +12,7 @@
 #include <cmath>
 #include <optional>
 
+#include "float32_below.h"
 #include "principal_prism.h"
 
 namespace kaboum::bcd {
@@ -34,14 +35,6 @@ constexpr double kPushSpacings = 64, kPushShare = 2e-3;
 /// Near the largest float32 number.
 constexpr double kLargestFloat = 1e38;
 
-double float_below(double x) {
-  const double f = geom::to_float32(x);
-  return f <= x ? f
-                : static_cast<double>(std::nextafter(static_cast<float>(f),
-                                                     -std::numeric_limits<float>::infinity()));
-}
-double float_above(double x) { return -float_below(-x); }
-
 struct Less {
   bool operator()(const Vec3& a, const Vec3& b) const {
     if (a.x() != b.x()) return a.x() < b.x();
@@ -52,8 +45,8 @@ struct Less {
 void add_box(std::vector<Vec3>& out, const Vec3& p, double error) {
   Vec3 low, high;
   for (int k = 0; k < 3; ++k) {
-    low[k] = float_below(p[k] - error);
-    high[k] = float_above(p[k] + error);
+    low[k] = float32_below(p[k] - error);
+    high[k] = float32_above(p[k] + error);
   }
   for (int i = 0; i < 8; ++i) {
     if (((i & 1) != 0 && high.x() == low.x()) || ((i & 2) != 0 && high.y() == low.y()) ||

@@ -7,6 +7,7 @@
 #include <kaboum/bcd/simple_bodies.h>
 #include <kaboum/certify/convex_set.h>
 #include <kaboum/certify/mesh.h>
+#include <kaboum/geom/facets.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
@@ -43,6 +44,7 @@ const char* flaw_of_kind(const SetRequest& r) {
     return "lie in no solid here: outer sets only";
   if (r.thickness || r.max_aspect) return "cannot be thickened";
   if (r.max_total_vertices) return "have no vertices to be counted";
+  if (r.max_facets) return "have no facets to be counted";
   if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
   if (r.simplify) return "are not simplified";
   return nullptr;
@@ -67,6 +69,7 @@ bcd::InnerOptions inner_of(const SetRequest& r, double diagonal, const Hooks& ho
   };
   refuse(r.thickness || r.max_aspect, "cannot be thickened");
   refuse(r.max_total_vertices.has_value(), "have no limit on all vertices together");
+  refuse(r.max_facets.has_value(), "have no limit on their facets");
   refuse(r.pre_step == bcd::PreStep::On, "have no pre-step");
   refuse(r.simplify.has_value(), "are not simplified");
   refuse(r.improve_work.has_value(), "are not fewer for more work");
@@ -147,6 +150,8 @@ Refutation refutation_of(const SetRequest& r, const geom::Mesh& solid, double di
     if (const double wished = least_thickness(r, diagonal);
         wished > 0 && geom::least_width(body.core, wished).lower < wished)
       return {"a body is thinner than «min-thickness»", {}, {}};
+    if (r.max_facets && geom::float32_facet_count(body.core) > *r.max_facets)
+      return {"a body has more facets than «max-facets-per-body»", {}, {}};
     if (!r.max_aspect) continue;
     const double least = geom::longest_upper(body.core.vertices) / *r.max_aspect;
     if (geom::least_width(body.core, least).lower < least)
@@ -375,6 +380,7 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.thickened = s.thickened;
   c.min_thickness = least_thickness(r, diagonal);
   c.max_aspect = r.max_aspect.value_or(0);
+  c.max_facets = r.max_facets.value_or(0);
   c.safety = safety;
   c.out_of_work = s.out_of_work;
   c.notes = prepared.report.notes;

@@ -95,6 +95,16 @@ void add_limits(std::vector<Option<R>>& out) {
        .high = 100000,
        .always_recorded = true},
       [](auto& r) -> auto& { return r.request.max_vertices; }));
+  out.push_back(option<R>(
+      {.name = "max-facets-per-body",
+       .text = "Most facets of a body, for planners that take half-spaces: planes are chosen so "
+               "that bodies have small volumes. Corners are float32, so facets are flat within "
+               "eight spacings of that. {max-vertices-per-body} holds as well: a body of F facets "
+               "has up to 2 F - 4 vertices",
+       .low = 6,
+       .high = 1000,
+       .otherwise = "no limit"},
+      [](auto& r) -> auto& { return r.request.max_facets; }));
 }
 
 void add_search(std::vector<Option<R>>& out) {
@@ -324,8 +334,9 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
     if (options.request.direction != SetRequest::Direction::Outer &&
         options.request.body_kind != SetRequest::BodyKind::Spheres)
       return "{bodies} " + kind + " needs {direction} outer";
-    for (const char* name : {"max-total-vertices", "max-vertices-per-body", "min-thickness",
-                             "max-aspect", "simplify", "improve-work", "max-work", "pre-step"})
+    for (const char* name :
+         {"max-total-vertices", "max-vertices-per-body", "max-facets-per-body", "min-thickness",
+          "max-aspect", "simplify", "improve-work", "max-work", "pre-step"})
       if (stated.contains(name))
         return "{" + std::string(name) + "} means nothing with {bodies} " + kind;
   }
@@ -334,7 +345,8 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
       return "{prepare} wrap: what lies in a wrap need not lie in the input; only {direction} "
              "outer";
     const char* outer_only = nullptr;
-    for (const char* name : {"max-total-vertices", "simplify", "improve-work"})
+    for (const char* name :
+         {"max-total-vertices", "max-facets-per-body", "simplify", "improve-work"})
       if (outer_only == nullptr && stated.contains(name)) outer_only = name;
     if (outer_only != nullptr) return "{" + std::string(outer_only) + "} needs {direction} outer";
     if (options.request.pre_step == bcd::PreStep::On)
@@ -346,6 +358,11 @@ std::string contradiction(const SetOptions& options, const std::set<std::string>
       return regions + " needs {direction} outer";
     for (const char* name : {"max-bodies", "max-total-vertices", "min-thickness", "max-aspect"})
       if (stated.contains(name)) return regions + (" does not go with {" + std::string(name)) + "}";
+  }
+  if (options.request.max_facets) {
+    for (const char* name : {"max-total-vertices", "min-thickness", "max-aspect", "simplify"})
+      if (stated.contains(name))
+        return "{max-facets-per-body} does not go with {" + std::string(name) + "}";
   }
   if (options.request.simplify && options.request.max_total_vertices)
     return "{simplify} means nothing with {max-total-vertices}, which leaves out as many vertices "

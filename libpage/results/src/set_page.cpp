@@ -79,7 +79,9 @@ std::string shortfall_of(const certify::SetCertificate& c) {
                    "epsilon could not be reached: the search for deep points gave up; "
                    "allow a larger epsilon") +
                (c.largest_body_vertices == 1 ? "" : ", or «effort=best»");
-      return "epsilon could not be reached; allow more vertices per body";
+      return c.max_facets > 0
+                 ? "epsilon could not be reached; allow more facets with «max-facets-per-body»"
+                 : "epsilon could not be reached; allow more vertices per body";
     case bcd::Stop::TooManyBodies:
     case bcd::Stop::TooCoarse:
       break;

@@ -50,6 +50,9 @@ struct CoverSettings : SearchSettings {
   /// Most vertices of all bodies together, ≥ 8; otherwise like max_bodies, and together with it:
   /// the smallest distance with which both hold. Not with min_thickness.
   std::optional<std::size_t> max_total_vertices;
+  /// Most facets of a body, ≥ 6, counted as geom::float32_facet_count does. max_vertices holds as
+  /// well. Not with max_total_vertices, min_thickness or max_aspect.
+  std::optional<std::size_t> max_facets;
   /// No two points of a body are farther apart than so many times its least width, ≥ 4: what is
   /// too thin for its length is thickened in the same way. Not with max_total_vertices.
   std::optional<double> max_aspect;

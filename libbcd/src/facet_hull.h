@@ -1,0 +1,25 @@
+#pragma once
+
+#include <kaboum/geom/mesh.h>
+
+#include <span>
+
+namespace kaboum::bcd {
+
+/// What is done to the planes of a facet_hull, each after the one before.
+enum class PlaneSteps {
+  Removal,   ///< those that cost the least volume are left out
+  Turning,   ///< those that stay are turned about the points where they touch
+  Exchange,  ///< the one that saves least is exchanged for the one that saves most
+};
+
+/// A polytope of few facets round points: exactly convex, with float32 corners, it contains them
+/// exactly. Its planes touch the hull of the points, up to rounding, and are chosen for a small
+/// volume (docs/algorithms/convex-decomposition.md, "Few facets").
+/// @param required  float32 points; at least one
+/// @param most      facets (geom::float32_facet_count), ≥ 6; so it has 2 most − 4 vertices at most
+/// @throws Error{LimitReached} when coordinates exceed float32.
+geom::Mesh facet_hull(std::span<const geom::Vec3> required, std::size_t most,
+                      PlaneSteps steps = PlaneSteps::Exchange);
+
+}  // namespace kaboum::bcd
