@@ -8,6 +8,7 @@ the lines are. --faults shows what kaboum-plan makes of a driver that is late, d
 """
 import argparse
 import json
+import math
 import random
 import sys
 import time
@@ -33,7 +34,12 @@ class Driver:
         if self.options.real_time:
             time.sleep(points[-1]["time_from_start"])
         self.q[message["robot"]] = points[-1]["positions"]
-        return {"done": True, "q": self.q[message["robot"]]}
+        reply = {"done": True, "q": self.q[message["robot"]]}
+        if self.options.stray is not None:  # what encoders would have seen: farthest off half way
+            end = points[-1]["time_from_start"]
+            reply["executed"] = [[p["time_from_start"], *(x + self.options.stray * math.sin(math.pi * p["time_from_start"] / end) for x in p["positions"])]
+                                 for p in points]
+        return reply
 
     def take(self, message):
         hold = message["object"], message["robot"]
@@ -89,6 +95,7 @@ def main():
     parser.add_argument("--sense", action="append", default=[], metavar="FACT=VALUE", help="what a fact turns out to be; others at random")
     parser.add_argument("--seed", type=int, default=1, help="of what is random [1]")
     parser.add_argument("--faults", type=float, default=0, metavar="SHARE", help="of messages that something goes wrong at [0]")
+    parser.add_argument("--stray", type=float, metavar="RAD", help="say how joints moved: so far beside the trajectory half way [not said]")
     parser.add_argument("--late", type=float, default=60, metavar="SECONDS", help="how long a late answer takes [60]")
     driver = Driver(parser.parse_args())
     print(json.dumps({"kaboum_driver": 1}), flush=True)

@@ -7,7 +7,9 @@ import json
 import math
 import os
 import pathlib
+import random
 import resource
+import shlex
 import subprocess
 import sys
 import time
@@ -122,6 +124,9 @@ def options(name, n, least, most, more=lambda parser: None):
     parser.add_argument("--timeout", type=float, default=300, help="of planning, in seconds [300]")
     parser.add_argument("--scene-only", action="store_true", help="make scene and problem, and stop")
     parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
+    parser.add_argument("--physics", type=int, nargs="?", const=1, default=0, metavar="RUNS",
+                        help="carry the plan out in MuJoCo as well, so many times; needs scripts/setup --engines [1]")
+    parser.add_argument("--film", action="store_true", help="pictures of the first of these runs")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
     parser.add_argument("--detail", type=int, default=1, choices=range(1, 9), metavar="K", help="K² times as many triangles, 1 to 8 [1]")
     parser.add_argument("--gaps", action="store_true", help="arms whose links end before the next one begins, and never touch it")
@@ -156,9 +161,62 @@ def domain_of(o, name):
     return file
 
 
-def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}):
+# Of a run in physics that counts as a success: things end so far beside [m] and below [m] the plan's places, and so much turned [rad].
+# Plans keep gaps between things that rest on each other; in a stack these add up.
+BESIDE, BELOW, TURNED = 0.005, 0.03, 0.1
+
+
+def in_physics(o, cell, files, plan, driver_options):
+    """The plan carried out by robots that MuJoCo simulates, --physics times; things begin up to a millimetre beside their places.
+    @param driver_options  more options of the driver, for a source of chance"""
+    root = HERE.parent.parent
+    python = str(pathlib.Path(os.environ.get("KABOUM_ENGINES", root / "build/engines")) / "bin/python")
+    if not pathlib.Path(python).exists() or subprocess.run([python, "-c", "import mujoco, numpy"], capture_output=True, check=False).returncode != 0:
+        misused(f"--physics needs MuJoCo: run scripts/setup --engines, or set KABOUM_ENGINES to a Python environment with mujoco and numpy ({python})")
+    out = o.out.resolve() / "physics"
+    out.mkdir(exist_ok=True)
+    decompose = [tool("bcd-decompose"), "--effort", "fast", "--quiet"]
+    command = [python, str(root / "examples/drivers/physics.py"), "--scene", str(o.out.resolve() / "cell.json"), "--disturb", "0.001"]
+    for name in cell.robots:
+        robot = pathlib.Path(o.out.resolve() / cell.files.get(name, name + ".urdf"))
+        subprocess.run([*decompose, str(robot), "-o", str(out / name), "--robot-format", "mjcf", "--epsilon", "5mm"], check=True)
+        command += ["--robot", f"{name}={out / name / robot.stem}.xml"]
+    for file in sorted(set(cell.shapes.values())):
+        made = out / pathlib.Path(file).with_suffix(".glb")
+        made.unlink(missing_ok=True)
+        subprocess.run([*decompose, file, "-o", str(made), "--epsilon", "0.3%"], check=True, cwd=o.out)
+    for name, file in cell.shapes.items():
+        command += ["--set", f"{name}={out / pathlib.Path(file).with_suffix('.glb')}"]
+    good, most, contacts, why = 0, {"beside": 0.0, "below": 0.0, "turned": 0.0, "tracking": 0.0}, 0, []
+    for k in range(o.physics):
+        seed = o.seed + k
+        report = out / f"robot-{seed}.json"
+        report.unlink(missing_ok=True)
+        robot = [*command, "--seed", str(seed), "--report", str(report), *driver_options(random.Random(seed))]
+        if o.film and k == 0:
+            robot += ["--film", str(out / "film")]
+        done = subprocess.run([tool("kaboum-plan"), "run", *files, "--plan", plan, "--robot", shlex.join(robot), "--journal", str(out / f"run-{seed}.jsonl"),
+                               "--report", str(out / f"run-{seed}.json"), "--robot-timeout", "120", "--quiet"], capture_output=True, text=True, check=False)
+        if not report.exists():
+            why.append(f"seed {seed}: exit code {done.returncode}: {(done.stderr.strip().splitlines() or [''])[-1]}")
+            continue
+        said = json.loads(report.read_text())
+        ends = said["most"]
+        for key, value in {**ends, "tracking": said["tracking"]}.items():
+            most[key] = max(most[key], value)
+        contacts += len(said["contacts"])
+        if done.returncode == 0 and ends["beside"] <= BESIDE and ends["below"] <= BELOW and ends["turned"] <= TURNED:
+            good += 1
+        else:
+            why.append(f"seed {seed}: exit code {done.returncode}, {ends}, {said['contacts'][:2]}: {(done.stderr.strip().splitlines() or [''])[-1]}")
+    for line in why:
+        print(line, file=sys.stderr)
+    return {"runs": o.physics, "good": good, "unplanned_contacts": contacts, **{f"most_{k}": round(v, 5) for k, v in most.items()}}
+
+
+def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}, driver_options=lambda chance: []):
     """All that comes after scene and problem. @param domain  None where the problem is a task in a few lines.
-    @param compare  what the last line says more of a plan."""
+    @param compare  what the last line says more of a plan. @param driver_options  of examples/drivers/physics.py, for a source of chance."""
     out = o.out.resolve()
     cell.make(out)
     task = out / ("problem.kpl" if domain else "problem.task")
@@ -189,6 +247,9 @@ def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {
         result["checked"] = checked == 0
         if checked == 1:  # not that there is no plan: one was found that does not hold
             checked = 6
+        if o.physics and checked == 0:
+            result["physics"] = in_physics(o, cell, files, plan, driver_options)
+            checked = int(result["physics"]["good"] < o.physics)
         if o.plan_only:
             print(json.dumps(result))
             return checked
@@ -199,6 +260,7 @@ def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {
         for drawing in (["-o", str(out / "plan.svg")], ["--html", str(out / "plan.html")]):
             subprocess.run([tool("kaboum-plan"), "show", *files, "--plan", plan, *drawing], check=True)
         status = max(checked, executed)
+        print(f"see {out / 'plan.html'}", file=sys.stderr)
     print(json.dumps(result))
     return status
 

@@ -62,7 +62,7 @@ class Drive {
     return said;
   }
 
-  void finish() { driver_.finish(); }
+  void finish() { driver_.finish(end_ ? &*end_ : nullptr); }
 
   /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
   void close() {
@@ -77,7 +77,11 @@ class Drive {
       };
       again.unplanned = [](const plan::Unplanned&) {};
       plan::run(done.model, done.plan, again, [&](const plan::RunStep& step) {
-        if (done.nodes.contains(step.node)) simulation.carry_out(step);
+        const auto executed = done.executed.find(step.node);
+        if (done.nodes.contains(step.node))
+          simulation.carry_out(step, executed != done.executed.end()
+                                         ? executed->second
+                                         : std::vector<ExecutedMotion>{});
       });
       report_.run.simulation += simulation.report();
     }
@@ -127,7 +131,8 @@ class Drive {
       for (MotionPart& part :
            parts_of(call.payload, world_, "node " + std::to_string(node) + ", " + action))
         parts.push_back(std::move(part));
-    for (std::size_t i = 0; i < parts.size(); ++i) move(parts, i, action);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      done_.back().executed[node].push_back(move(parts, i, action));
   }
 
   /// The robot that holds an object in a later motion of the node, if it is another one.
@@ -141,7 +146,8 @@ class Drive {
     return std::nullopt;
   }
 
-  void move(const std::vector<MotionPart>& parts, std::size_t i, const std::string& action) {
+  ExecutedMotion move(const std::vector<MotionPart>& parts, std::size_t i,
+                      const std::string& action) {
     const MotionPart& part = parts[i];
     if (part.path.empty() || part.path.front() != q_[part.robot])
       throw DriverStop(Kind::Uncertified, action + ": a path of " + world_.robots[part.robot].name +
@@ -154,13 +160,15 @@ class Drive {
     for (const auto& [object, link] : part.holds) hold(object, Holder{part.robot, link});
     SimulationOptions options = request_.simulation;
     options.rate = rate_;
-    driver_.move(part.robot, trajectory_of(part, world_, options));
+    ExecutedMotion out = driver_.move(part.robot, trajectory_of(part, world_, options));
     q_[part.robot] = part.path.back();
+    return out;
   }
 
   /// Takes and lets go what the state after a node says.
   void settle(const plan::KnownState& after) {
-    const judge::CellState state = known_state(after).state;
+    end_ = known_state(after).state;
+    const judge::CellState& state = *end_;
     for (std::size_t o = 0; o < state.objects.size(); ++o)
       if (!state.objects[o].hold) hold(o, std::nullopt);
     for (std::size_t o = 0; o < state.objects.size(); ++o)
@@ -198,13 +206,15 @@ class Drive {
   bool begun_ = false;
   std::vector<std::vector<double>> q_;
   std::map<std::size_t, Holder> held_;
+  std::optional<judge::CellState> end_;  ///< of what was carried out last
   /// A plan as far as it was carried out.
   struct Done {
     Done(const plan::Model& m, const plan::Plan& p) : model(m), plan(p) {}
     plan::Model model;
     plan::Plan plan;
     std::set<plan::Index> nodes = {};
-    std::vector<std::string> sensed = {};  ///< in their order
+    std::map<plan::Index, std::vector<ExecutedMotion>> executed = {};  ///< by node
+    std::vector<std::string> sensed = {};                              ///< in their order
   };
   std::deque<Done> done_;
 };

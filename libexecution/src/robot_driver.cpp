@@ -338,6 +338,32 @@ struct RobotDriver::Data {
                                 dump(options.tracking) + " is allowed");
   }
 
+  /// The rows [TIME, VALUE...] of an answer; none where it has none.
+  std::vector<ExecutedSample> executed(const json& answer, std::size_t values) {
+    std::vector<ExecutedSample> out;
+    if (!answer.contains("executed")) return out;
+    const auto nonsense = [&] {
+      stop(Kind::Nonsense,
+           "'executed' is [[TIME, VALUE...], ...], times from 0 on that do not fall, and " +
+               std::to_string(values) + " values, not as in " + excerpt(line));
+    };
+    if (!answer["executed"].is_array()) nonsense();
+    double last = 0;
+    for (const json& row : answer["executed"]) {
+      if (!row.is_array() || row.size() != values + 1) nonsense();
+      ExecutedSample& sample = out.emplace_back();
+      for (const json& x : row) {
+        if (!x.is_number() || !std::isfinite(x.get<double>())) nonsense();
+        sample.q.push_back(x.get<double>());
+      }
+      sample.time = sample.q.front();
+      sample.q.erase(sample.q.begin());
+      if (sample.time < last) nonsense();
+      last = sample.time;
+    }
+    return out;
+  }
+
   /// What changes nothing in the world if it fails is told again.
   json ask_again(const json& message, double seconds, const char* kind) {
     for (std::size_t tried = 0;; ++tried) {
@@ -373,15 +399,11 @@ RobotDriver::RobotDriver(const world::World& world, const DriverOptions& options
 
 RobotDriver::~RobotDriver() { data_->side->end(data_->finished); }
 
-void RobotDriver::begin(const judge::CellState& state) {
-  data_->doing = "at the start";
-  const world::World& world = data_->world;
-  json robots = json::object(), objects = json::object();
-  for (std::size_t r = 0; r < world.robots.size(); ++r) {
-    json joints = json::array();
-    for (const robot::Variable& v : world.robots[r].kinematics.variables) joints.push_back(v.name);
-    robots[world.robots[r].name] = {{"joint_names", std::move(joints)}, {"q", state.q[r]}};
-  }
+namespace {
+
+/// Where a state has the objects: poses, or who holds them.
+json objects_of(const world::World& world, const judge::CellState& state) {
+  json objects = json::object();
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
     const judge::CellState::Place& place = state.objects[o];
     json& entry = objects[world.objects[o].name];
@@ -397,6 +419,21 @@ void RobotDriver::begin(const judge::CellState& state) {
       entry = {{"pose", std::move(rows)}};
     }
   }
+  return objects;
+}
+
+}  // namespace
+
+void RobotDriver::begin(const judge::CellState& state) {
+  data_->doing = "at the start";
+  const world::World& world = data_->world;
+  json robots = json::object();
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    json joints = json::array();
+    for (const robot::Variable& v : world.robots[r].kinematics.variables) joints.push_back(v.name);
+    robots[world.robots[r].name] = {{"joint_names", std::move(joints)}, {"q", state.q[r]}};
+  }
+  const json objects = objects_of(world, state);
   const json answer = data_->ask_again({{"do", "begin"}, {"robots", robots}, {"objects", objects}},
                                        data_->options.most_seconds, "done");
   if (!answer.contains("q")) return;
@@ -416,7 +453,7 @@ void RobotDriver::act(const std::string& action) {
   data_->ask_again({{"do", "act"}, {"action", action}}, data_->options.most_seconds, "done");
 }
 
-void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory) {
+ExecutedMotion RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory) {
   const world::RobotModel& model = data_->world.robots[robot];
   json names = json::array(), points = json::array();
   for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
@@ -438,7 +475,7 @@ void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory) 
         data_->ask(message, data_->options.most_seconds + kSlower * trajectory.duration());
     if (answer.contains("done")) {
       data_->require_near(answer, robot, to);
-      return;
+      return {trajectory.rate(), data_->executed(answer, to.size())};
     }
     if (!answer.contains("failed"))
       data_->stop(Kind::Nonsense, "a motion is 'done' or 'failed', not " + excerpt(data_->line));
@@ -474,9 +511,11 @@ std::string RobotDriver::sense(const std::string& fact, const std::vector<std::s
       .get<std::string>();
 }
 
-void RobotDriver::finish() {
+void RobotDriver::finish(const judge::CellState* end) {
   data_->doing = "at the end";
-  data_->ask_again({{"do", "finish"}}, data_->options.most_seconds, "done");
+  json told = {{"do", "finish"}};
+  if (end != nullptr) told["objects"] = objects_of(data_->world, *end);
+  data_->ask_again(std::move(told), data_->options.most_seconds, "done");
   data_->require_silence();
   data_->finished = data_->over = true;
   data_->note({{"finished", true}});

@@ -35,6 +35,11 @@ SimulationReport& SimulationReport::operator+=(const SimulationReport& other) {
   samples += other.samples;
   collisions += other.collisions;
   limit_violations += other.limit_violations;
+  executed.motions += other.executed.motions;
+  executed.samples += other.executed.samples;
+  executed.collisions += other.executed.collisions;
+  executed.most_strayed = std::max(executed.most_strayed, other.executed.most_strayed);
+  executed.margin = std::max(executed.margin, other.executed.margin);
   jumps += other.jumps;
   seconds += other.seconds;
   most_velocity = std::max(most_velocity, other.most_velocity);
@@ -63,7 +68,7 @@ void Simulation::say(const std::string& problem) {
   if (report_.problems.size() < kMostProblems) report_.problems.push_back(where_ + ": " + problem);
 }
 
-void Simulation::carry_out(const plan::RunStep& step) {
+void Simulation::carry_out(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed) {
   const plan::Plan::Node& node = plan_.nodes[step.node];
   const auto before = state_of(world_, model_, step.before);
   const auto after = state_of(world_, model_, step.after);
@@ -84,10 +89,11 @@ void Simulation::carry_out(const plan::RunStep& step) {
       say(meeting->names[0] + " and " + meeting->names[1] + " meet at the start");
     }
   }
+  std::size_t next = 0;
   for (const plan::Plan::Call& call : node.calls)
     for (const MotionPart& part :
          parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_))
-      follow(part, state, step);
+      follow(part, state, step, next < executed.size() ? &executed[next++] : nullptr);
   mounted_ = after->mounted;
   for (std::size_t o = 0; o < state.objects.size(); ++o)
     if (after->state.objects[o].away && before->state.objects[o].hold && !state.objects[o].hold &&
@@ -173,8 +179,8 @@ void Simulation::look_at_pushed(const judge::CellState& state) {
   }
 }
 
-void Simulation::follow(const MotionPart& part, judge::CellState& state,
-                        const plan::RunStep& step) {
+void Simulation::follow(const MotionPart& part, judge::CellState& state, const plan::RunStep& step,
+                        const ExecutedMotion* executed) {
   if (part.path.empty() || part.path.front() != state.q[part.robot]) {
     ++report_.jumps;
     say("a path of " + world_.robots[part.robot].name + " does not begin where it is");
@@ -185,8 +191,37 @@ void Simulation::follow(const MotionPart& part, judge::CellState& state,
   ++report_.motions;
   report_.seconds += trajectory.duration();
   look(trajectory, part.robot, state);
+  if (executed != nullptr) look_at_executed(*executed, part, state);
   state.q[part.robot] = part.path.back();
   if (sink_) sink_(step, part.robot, trajectory);
+}
+
+void Simulation::look_at_executed(const ExecutedMotion& executed, const MotionPart& part,
+                                  judge::CellState state) {
+  if (executed.samples.empty()) return;
+  const std::size_t robot = part.robot;
+  SimulationOptions as_told = options_;
+  as_told.rate = executed.rate;
+  const motion::Trajectory trajectory = trajectory_of(part, world_, as_told);
+  ExecutedReport& report = report_.executed;
+  ++report.motions;
+  judge::CellState told = state;
+  bool met = false;
+  for (const ExecutedSample& sample : executed.samples) {
+    ++report.samples;
+    state.q[robot] = sample.q;
+    told.q[robot] = trajectory.at(std::min(sample.time, trajectory.duration())).q;
+    for (std::size_t j = 0; j < sample.q.size(); ++j)
+      report.most_strayed = std::max(report.most_strayed, std::abs(sample.q[j] - told.q[robot][j]));
+    report.margin = std::max(report.margin, cell_.displacement(told, state, robot));
+    if (const auto meeting = cell_.find_meeting(state, robot)) {
+      ++report.collisions;
+      if (!met)
+        say(meeting->names[0] + " and " + meeting->names[1] + " meet as it was executed, at " +
+            std::to_string(sample.time) + " s");
+      met = true;
+    }
+  }
 }
 
 void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,

@@ -161,6 +161,16 @@ std::optional<Meeting> Cell::find_meeting(const CellState& state, std::size_t ro
   });
 }
 
+double Cell::displacement(const CellState& from, const CellState& to, std::size_t robot) const {
+  const std::vector<PosedThing> a = place(from), b = place(to);
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i].mover == robot)
+      most = std::max(most, (a[i].center - b[i].center).norm() +
+                                (a[i].at.linear - b[i].at.linear).norm() * a[i].thing->radius);
+  return most;
+}
+
 std::optional<Meeting> Cell::find_meeting_of(const CellState& state, std::size_t object) const {
   const Thing* thing = &things_[objects_.at(object)];
   return find(state, [&](const PosedThing& a, const PosedThing& b) {

@@ -114,6 +114,29 @@ def main():
         if len(sensed) != 2:
             fail(f"sensed: {sensed}")
 
+        # How joints moved is judged: as told; a little beside it; far beside it, into something; and nonsense.
+        for stray, code in (("0", 0), ("0.001", 0), ("0.9", 1)):
+            done, report = run(scenario, f"{DRIVER} --stray {stray}")
+            executed = report["driver"]["executed"]
+            if done.returncode != code or (executed["collisions"] > 0) != (code == 1) or executed["motions"] != report["motions"]:
+                fail(f"executed {stray} beside: exit code {done.returncode}: {executed}, {done.stderr}")
+            if abs(executed["most_strayed"] - float(stray)) > 1e-6 + 1e-3 * float(stray):
+                fail(f"executed {stray} beside: {executed}")
+            # An arm of six joints that is about one metre long.
+            if not float(stray) <= executed["margin"] + 1e-9 <= 12 * float(stray) + 1e-6:
+                fail(f"executed {stray} beside: {executed}")
+        for rows in ("[[0, 1]]", "7", "[[1] + 6 * [0], 7 * [0]]", "[6 * [0] + ['x']]"):
+            liar = folder / "liar.py"
+            liar.write_text((ROOT / "examples/drivers/driver.py").read_text().replace(
+                "        return reply\n\n    def take", f'        return {{**reply, "executed": {rows}}}\n\n    def take'))
+            done, report = run(scenario, f"{sys.executable} {liar}")
+            if done.returncode != 1 or report["driver"]["end"] != "nonsense":
+                fail(f"executed is {rows}: exit code {done.returncode}: {done.stderr}")
+        done, report = run(scenario, DRIVER)
+        (end,) = [json.loads(e["told"]) for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "finish"]
+        if set(end["objects"]) != {o["name"] for o in json.loads((scenario / "cell.json").read_text())["objects"]} or "pose" not in end["objects"]["o1"]:
+            fail(f"where things are at the end: {end}")
+
         # What is handed over is taken before it is let go.
         handed = folder / "handed"
         made = subprocess.run([ROOT / "examples/scenarios/bimanual-assembly/run", "--hand-over", "--plan-only", "--out", handed], env=environment, capture_output=True,

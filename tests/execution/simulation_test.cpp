@@ -108,13 +108,14 @@ struct Outcome {
 };
 
 Outcome carry_out(Case& c, double stop, const std::string& grasp,
-                  const plan::RunOptions& options = {}) {
+                  const plan::RunOptions& options = {},
+                  const std::vector<ExecutedMotion>& executed = {}) {
   const plan::Model model = plan::load({"test", kDomain}, nullptr, host());
   const plan::Plan plan = plan_to(model, stop, grasp);
   Simulation simulation(c.world, c.cell, model, plan, {});
   Outcome out;
-  out.summary =
-      run(model, plan, options, [&](const plan::RunStep& step) { simulation.carry_out(step); });
+  out.summary = run(model, plan, options,
+                    [&](const plan::RunStep& step) { simulation.carry_out(step, executed); });
   out.report = simulation.report();
   return out;
 }
@@ -151,6 +152,32 @@ TEST(Simulation, CountsWhatIsWrong) {
   // Beyond the limit of the joint.
   c.world.objects[0].pose.translation = {-1.38, 0, 0};
   EXPECT_GT(carry_out(c, -1.5, "on arm/hand 0.12 0 0 0 0 0 1").report.limit_violations, 0U);
+}
+
+TEST(Simulation, LooksAtWhatWasExecuted) {
+  Case c;
+  const std::string held = "on arm/hand 0.12 0 0 0 0 0 1";
+  // 3.75 s to 1; at 50 Hz 188 steps.
+  ExecutedMotion executed{50, {{0, {0}}, {1.88, {0.5}}, {3.76, {1}}, {9, {1}}}};
+  Outcome as_told = carry_out(c, 1, held, {}, {executed});
+  EXPECT_TRUE(as_told.report.good()) << as_told.report.problems.front();
+  EXPECT_EQ(as_told.report.executed.motions, 1U);
+  EXPECT_EQ(as_told.report.executed.samples, 4U);
+  EXPECT_LT(as_told.report.executed.most_strayed, 1e-9);
+  EXPECT_LT(as_told.report.executed.margin, 1e-9);
+  // A slider: points are as far as the joint.
+  executed.samples[1].q = {0.53};
+  as_told = carry_out(c, 1, held, {}, {executed});
+  EXPECT_TRUE(as_told.report.good());
+  EXPECT_NEAR(as_told.report.executed.most_strayed, 0.03, 1e-9);
+  EXPECT_NEAR(as_told.report.executed.margin, 0.03, 1e-9);
+  // Into the block before it has stopped, though what it was told is free.
+  executed.samples[2].q = {1.03};
+  const Outcome into = carry_out(c, 1, held, {}, {executed});
+  EXPECT_EQ(into.report.collisions, 0U);
+  EXPECT_EQ(into.report.executed.collisions, 1U);
+  EXPECT_FALSE(into.report.good());
+  EXPECT_NE(into.report.problems.front().find("as it was executed"), std::string::npos);
 }
 
 TEST(Simulation, AToolIsAtAnyMemberOfAFamily) {

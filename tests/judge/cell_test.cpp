@@ -4,6 +4,8 @@
 #include <kaboum/judge/cell.h>
 #include <kaboum/judge/placement.h>
 
+#include <cmath>
+
 namespace kaboum::judge {
 namespace {
 
@@ -77,6 +79,24 @@ TEST(Cell, AllowedPairsAreNotLookedAt) {
   state.objects[0].away = true;
   state.objects[0].pose.translation = {0.5, 0, 0};
   EXPECT_FALSE(cell.find_meeting(state));
+}
+
+TEST(Cell, DisplacementBoundsAllPoints) {
+  const Cell cell = make_cell();
+  CellState from = far_away(), to = from;
+  EXPECT_EQ(cell.displacement(from, to, 0), 0);
+  for (const double turn : {1e-9, 0.01, 0.3, -2.0}) {
+    to.q = {{turn, 0}};
+    // The end of the last bar is at 3, the joint at 1.
+    const double end = 2 * 2 * std::abs(std::sin(turn / 2));
+    EXPECT_GE(cell.displacement(from, to, 0), end * (1 - 1e-9));
+    EXPECT_LE(cell.displacement(from, to, 0), 1.2 * end);
+  }
+  // What it holds counts, too: 3 from the last joint.
+  from.objects[0] = {{}, Hold{0, 3, {Eigen::Matrix3d::Identity(), {3, 0, 0}}, {}}, false};
+  to.objects[0] = from.objects[0];
+  to.q = {{0, 0.01}};
+  EXPECT_GE(cell.displacement(from, to, 0), 3 * 2 * std::sin(0.005));
 }
 
 TEST(Cell, WhatIsHeldMovesWithTheLink) {

@@ -80,7 +80,14 @@ Json report_json(const execution::SimulationReport& r, const plan::RunSummary& s
 }
 
 Json driver_json(const execution::DriveReport& r) {
-  return {{"end", r.stopped  ? execution::name_of(*r.stopped)
+  const execution::ExecutedReport& e = r.run.simulation.executed;
+  return {{"executed",
+           {{"motions", e.motions},
+            {"samples", e.samples},
+            {"collisions", e.collisions},
+            {"most_strayed", e.most_strayed},
+            {"margin", e.margin}}},
+          {"end", r.stopped  ? execution::name_of(*r.stopped)
                   : r.good() ? "goal"
                              : "no plan"},
           {"reason", r.reason},
@@ -199,6 +206,11 @@ int run_plan(const PlanOptions& o) {
                                   : ", planned again " + std::to_string(replans.size()) +
                                         (replans.size() == 1 ? " time" : " times"))
               << '\n';
+  if (const execution::ExecutedReport& e = r.executed; e.samples > 0 && (!o.common.quiet || !good))
+    std::cout << "as executed: " << e.motions << " motions, " << e.samples << " samples, "
+              << e.collisions << " collisions, joints within " << e.most_strayed
+              << " of the trajectories, points within " << e.margin
+              << ": margins as large would have held\n";
   const int missing = say_missing(replans);
   if (!r.good() || drive.stopped) return kNo;
   return good || missing != kDone ? missing : kNo;

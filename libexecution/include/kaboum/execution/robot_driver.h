@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kaboum/execution/simulation.h>
 #include <kaboum/judge/cell.h>
 #include <kaboum/motion/trajectory.h>
 #include <kaboum/world/world.h>
@@ -69,13 +70,15 @@ class RobotDriver {
   void act(const std::string& action);
   /// @pre the trajectory begins where the robot is. A motion that has failed is told again if the
   ///   driver says that the robot is where it began.
-  void move(std::size_t robot, const motion::Trajectory& trajectory);
+  /// @return what the driver says it has done: empty where it does not say
+  ExecutedMotion move(std::size_t robot, const motion::Trajectory& trajectory);
   void take(std::size_t object, std::size_t robot, std::uint32_t link);
   void release(std::size_t object, std::size_t robot);
   /// @return one of the values, or whatever else was sensed
   std::string sense(const std::string& fact, const std::vector<std::string>& values);
-  /// Says that the plan has come to its end.
-  void finish();
+  /// Says that the plan has come to its end. @param end  where the plan has everything then; null:
+  ///   nothing was carried out
+  void finish(const judge::CellState* end);
 
   [[nodiscard]] std::uint64_t messages() const;
   [[nodiscard]] double waited() const;         ///< for answers [s]

@@ -22,6 +22,26 @@ struct SimulationOptions {
   std::function<void(const std::string& stage)> progress = {};
 };
 
+/// What a robot has really done: the values of its joints, at times from the motion's start.
+struct ExecutedSample {
+  double time = 0;  ///< [s]
+  std::vector<double> q;
+};
+struct ExecutedMotion {
+  double rate = 0;  ///< of the trajectory that was told: see SimulationOptions [1/s]
+  std::vector<ExecutedSample> samples = {};
+};
+
+/// What was looked at of executed motions, and what was wrong.
+struct ExecutedReport {
+  std::uint64_t motions = 0, samples = 0;
+  std::uint64_t collisions = 0;  ///< samples at which meshes meet
+  double most_strayed = 0;       ///< of a joint from the trajectory at that time [rad, length]
+  /// No point of a robot, or of what it held, was farther from where the trajectory has it at that
+  /// time: a plan with margins as large would have been free for what was done. [length]
+  double margin = 0;
+};
+
 /// Result of a simulation: what was looked at, and what was wrong.
 struct SimulationReport {
   std::uint64_t steps = 0;    ///< nodes carried out, each once for every geometric state
@@ -33,8 +53,11 @@ struct SimulationReport {
   double seconds = 0;       ///< of motion
   double most_velocity = 0, most_acceleration = 0;  ///< as shares of the limits
   std::vector<std::string> problems;                ///< the first twenty, in words
+  ExecutedReport executed;
 
-  [[nodiscard]] bool good() const { return collisions + limit_violations + jumps == 0; }
+  [[nodiscard]] bool good() const {
+    return collisions + limit_violations + jumps + executed.collisions == 0;
+  }
   /// With what another simulation looked at.
   SimulationReport& operator+=(const SimulationReport& other);
 };
@@ -58,12 +81,16 @@ class Simulation {
              const plan::Plan& plan, SimulationOptions options, MotionSink sink = {});
 
   /// One node in one state. Those that were carried out in the same geometric state are skipped.
-  void carry_out(const plan::RunStep& step);
+  /// @param executed  of the node's motions, in their order, where it is known
+  void carry_out(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed = {});
 
   [[nodiscard]] const SimulationReport& report() const { return report_; }
 
  private:
-  void follow(const MotionPart& part, judge::CellState& state, const plan::RunStep& step);
+  void follow(const MotionPart& part, judge::CellState& state, const plan::RunStep& step,
+              const ExecutedMotion* executed);
+  void look_at_executed(const ExecutedMotion& executed, const MotionPart& part,
+                        judge::CellState state);
   void hold(const MotionPart& part, judge::CellState& state);
   void look(const motion::Trajectory& trajectory, std::size_t robot, judge::CellState& state);
   void count_limits(std::size_t robot, const std::vector<double>& before,

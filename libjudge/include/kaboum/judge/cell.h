@@ -68,6 +68,12 @@ class Cell {
   [[nodiscard]] geom::Transform pose_of(const CellState& state, std::size_t robot,
                                         std::uint32_t link) const;
 
+  /// How far a point of what a robot moves is from where it is in another state, at most: an upper
+  /// bound, by the ball round each thing. [length]
+  /// @pre the states differ in the robot's values only.
+  [[nodiscard]] double displacement(const CellState& from, const CellState& to,
+                                    std::size_t robot) const;
+
   [[nodiscard]] const robot::Robot& kinematics(std::size_t robot) const {
     return robots_[robot].kinematics;
   }
