@@ -319,25 +319,63 @@ class Search {
   bool simplified_ = false;
 };
 
-/// A wrap round the input, and what it leaves of epsilon to the search: `r` becomes that.
-CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r, const Hooks& hooks) {
+/// Of the request's regions those that bodies within epsilon may reach, with lengths; others are
+/// taken away, into `apart`.
+void take_apart(const geom::Box3& box, double epsilon, SetRequest& r,
+                std::vector<geom::RequestedRegion>& apart) {
+  std::array<geom::Vec3, 8> corners;
+  for (unsigned i = 0; i < corners.size(); ++i)
+    for (unsigned k = 0; k < 3; ++k) corners[i][k] = ((i >> k) & 1U ? box.max : box.min)[k];
+  std::vector<geom::RequestedRegion> near;
+  for (geom::RequestedRegion& one : r.regions) {
+    one.epsilon = Length{one.epsilon.of(box.diagonal())};
+    const bool is_apart = geom::distance_from(one.region, corners) > 1.001 * epsilon;
+    (is_apart ? apart : near).push_back(std::move(one));
+  }
+  r.regions = std::move(near);
+}
+
+/// A wrap round the input, and what it leaves of epsilon and of those of regions to the search: `r`
+/// becomes that.
+/// @param apart  gets regions that bodies within epsilon do not reach
+CertifiedWrap wrapped(const geom::Mesh& mesh, SetRequest& r,
+                      std::vector<geom::RequestedRegion>& apart, const Hooks& hooks) {
   if (r.direction != SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument,
                 "what lies in a wrap need not lie in the input: bodies inside it have none");
   const auto epsilon = r.wanted_epsilon();
-  const double whole = epsilon ? epsilon->of(geom::bounding_box(mesh).diagonal()) : 0;
+  const geom::Box3 box = geom::bounding_box(mesh);
+  const double whole = epsilon ? epsilon->of(box.diagonal()) : 0;
+  take_apart(box, whole, r, apart);
+  double finest = whole;
+  for (const geom::RequestedRegion& one : r.regions) finest = std::min(finest, one.epsilon.value);
   WrapRequest asked = *r.wrap;
   asked.float32 = asked.may_be_double = true;
   asked.progress = hooks.progress;
   asked.farthest.reset();
-  if (epsilon) asked.farthest = kWrapShare * whole;
+  if (epsilon) asked.farthest = kWrapShare * finest;
   CertifiedWrap made = certify_wrap(mesh, asked);
-  if (epsilon) r.epsilon = Length{whole / (kSumUp * kSumUp) - distance_of(made.certificate())};
-  if (epsilon && !(r.epsilon->value > 0))
-    throw Error(ErrorCode::InvalidInput,
-                "the wrap and the exact faces' deviation leave nothing of epsilon for the bodies; "
-                "allow a larger epsilon");
+  const auto rest_of = [&](double length) {
+    const double rest = length / (kSumUp * kSumUp) - distance_of(made.certificate());
+    if (!(rest > 0))
+      throw Error(
+          ErrorCode::InvalidInput,
+          "the wrap and the exact faces' deviation leave nothing of epsilon for the bodies; "
+          "allow a larger epsilon");
+    return Length{rest};
+  };
+  if (epsilon) r.epsilon = rest_of(whole);
+  for (geom::RequestedRegion& one : r.regions) one.epsilon = rest_of(one.epsilon.value);
   return made;
+}
+
+/// A region that the bodies may reach after all; empty: none.
+std::string reached_of(const geom::ConvexSet& set,
+                       const std::vector<geom::RequestedRegion>& regions) {
+  for (const geom::RequestedRegion& one : regions)
+    if (verify::may_reach(set, one.region))
+      return "bodies come into the region " + one.name + ", which is farther than epsilon";
+  return {};
 }
 
 /// Why not every triangle of a mesh is in the bodies; empty: they are.
@@ -401,20 +439,19 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   const bool outer = request.direction == SetRequest::Direction::Outer;
   require_possible_regions(request);
   SetRequest asked = request;
+  std::vector<geom::RequestedRegion> apart;
   // A flat sheet that is closed by its own fill has no volume.
   const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : geom::prepare;
   if (asked.wrap) asked.wrap->input_triangles = mesh.triangles.size();
   const GivenSolid given = give_solid(
       mesh, prepare, asked.preparation, asked.wrap,
-      [&](const geom::Mesh& triangles) { return wrapped(triangles, asked, hooks); }, because);
+      [&](const geom::Mesh& triangles) { return wrapped(triangles, asked, apart, hooks); },
+      because);
   const std::optional<CertifiedWrap>& wrap = given.wrap;
   const geom::Prepared& prepared = given.prepared;
   if (!given.why.empty()) note(why_wrapped(given.why));
   if (wrap) note(in_words(wrap->certificate()));
   const geom::Mesh& solid = prepared.solid.mesh();
-  if (wrap && !request.regions.empty())
-    throw Error(ErrorCode::InvalidInput,
-                "an epsilon of regions needs a mesh that bounds a solid, without a wrap");
   if (outer) require_area(solid);
   const double diagonal = geom::bounding_box(solid).diagonal();
   for (const std::string& text : prepared.report.notes) note(text);
@@ -436,12 +473,14 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     // What is written is what is verified.
     if (hooks.progress) hooks.progress("verifying");
     geom::ConvexSet set = io::parse_convex_set(container, io::Format::Glb, "the result");
-    Refutation found = refutation_of(request, solid, diagonal, set, certificate.distance_upper);
+    Refutation found = refutation_of(asked, solid, diagonal, set, certificate.distance_upper);
     if (found.reason.empty() && wrap && !given.wrapped.empty())
       found.reason = outside_of(set, given.wrapped);
+    if (found.reason.empty()) found.reason = reached_of(set, apart);
     wrong = found.reason;
     if (wrong.empty()) {
-      for (const geom::BoundedRegion& one : geom::bounded(request.regions, diagonal))
+      const double of_regions = wrap ? geom::bounding_box(mesh).diagonal() : diagonal;
+      for (const geom::BoundedRegion& one : geom::bounded(request.regions, of_regions))
         certificate.regions.push_back({one.name, one.epsilon, verify::may_reach(set, one.region)});
       // Segments, and walls of which the solid holds middle and corners.
       if (outer && !wrap && !prepared.report.left_out.empty())
@@ -461,7 +500,7 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
     note("the bodies found do not pass the exact check (" + wrong + "); trying " +
          search.other_means(found));
   }
-  if (request.body_kind != SetRequest::BodyKind::Polytopes)
+  if (request.body_kind != SetRequest::BodyKind::Polytopes || !request.regions.empty())
     throw Error(ErrorCode::LimitReached, "no " + std::string(plural_of(request.body_kind)) +
                                              " were found that pass the exact check (" + wrong +
                                              "); nothing is written. A larger «epsilon»" +

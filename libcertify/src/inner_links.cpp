@@ -43,7 +43,7 @@ class InnerMeshes {
       : why_(found.meshes.size()) {
     for (std::size_t i = 0; i < found.meshes.size(); ++i) try {
         made.push_back(
-            certify_link_mesh(found.meshes[i], found.epsilons[i], request, cache, hooks));
+            certify_link_mesh(found.meshes[i], found.epsilons[i], {}, request, cache, hooks));
         if (hooks.made) hooks.made(made.back());
         index_[i] = made.size() - 1;
       } catch (const Error& error) {

@@ -23,9 +23,12 @@ using robot::Geometry;
 
 namespace {
 
+using Regions = std::vector<geom::RequestedRegion>;
+
 SetRequest request_for(const RobotRequest& request, const std::optional<Length>& epsilon,
-                       const geom::Vec3& scale) {
+                       const Regions& regions, const geom::Vec3& scale) {
   SetRequest out = request.set;
+  out.regions = regions;
   if (epsilon) out.epsilon = epsilon;
   if (out.epsilon) out.epsilon = in_unit_of_mesh(*out.epsilon, scale);
   if (out.wrap)
@@ -46,10 +49,10 @@ SetRequest request_for(const RobotRequest& request, const std::optional<Length>&
 }  // namespace
 
 CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
-                                    const std::optional<Length>& epsilon,
+                                    const std::optional<Length>& epsilon, const Regions& regions,
                                     const RobotRequest& request, const SetCache* cache,
                                     const RobotHooks& hooks) {
-  const SetRequest asked = request_for(request, epsilon, mesh.scale);
+  const SetRequest asked = request_for(request, epsilon, regions, mesh.scale);
   Hooks of_mesh{hooks.progress, {}};
   if (hooks.note)
     of_mesh.note = [&](const std::string& text) { hooks.note(mesh.file.string(), text); };
@@ -66,6 +69,7 @@ namespace {
 /// One body round a wrap, however far it is from the mesh.
 SetRequest loosest(SetRequest r) {
   r.epsilon.reset();
+  r.regions.clear();
   r.max_total_vertices.reset();
   r.max_bodies = 1;
   r.wrap.emplace();
@@ -98,15 +102,17 @@ RobotHooks watched(const RobotHooks& hooks, bool& ended) {
 
 /// Spheres, capsules or boxes for a mesh that none were found for: within a few times epsilon.
 /// @return whether there are some; then `out` has them, and says so
-bool hold_by_larger_ones(const RobotRequest& request, const SetCache* cache,
+bool hold_by_larger_ones(const RobotRequest& request, const Regions& regions, const SetCache* cache,
                          const RobotHooks& hooks, const bool& ended, CertifiedLinkMesh& out) {
   const std::optional<Length> wanted = out.epsilon ? out.epsilon : request.set.epsilon;
   if (request.set.body_kind == SetRequest::BodyKind::Polytopes || !wanted) return false;
   for (const double times : {2.0, 4.0, 8.0}) {
     Length larger = *wanted;
     larger.value *= times;
+    Regions wider = regions;
+    for (geom::RequestedRegion& one : wider) one.epsilon.value *= times;
     try {
-      out.made = certify_link_mesh(out.mesh, larger, request, cache, hooks).made;
+      out.made = certify_link_mesh(out.mesh, larger, wider, request, cache, hooks).made;
     } catch (const Error& error) {
       if (ended || !is_of_mesh(error)) throw;
       continue;
@@ -121,8 +127,9 @@ bool hold_by_larger_ones(const RobotRequest& request, const SetCache* cache,
 
 /// As certify_link_mesh, but for what may be wrong with the mesh: RobotRequest::partial.
 CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::optional<Length>& epsilon,
-                                  const RobotRequest& request, const SetCache* cache,
-                                  const RobotHooks& given, std::exception_ptr& first) {
+                                  const Regions& regions, const RobotRequest& request,
+                                  const SetCache* cache, const RobotHooks& given,
+                                  std::exception_ptr& first) {
   if (!mesh.missing.empty()) {
     if (!first) first = std::make_exception_ptr(Error(ErrorCode::InvalidInput, mesh.missing));
     return {mesh, epsilon, {}, mesh.missing, false};
@@ -131,19 +138,19 @@ CertifiedLinkMesh certify_somehow(const robot::LinkMesh& mesh, const std::option
   const RobotHooks hooks = watched(given, ended);
   std::string flaw;
   try {
-    return certify_link_mesh(mesh, epsilon, request, cache, hooks);
+    return certify_link_mesh(mesh, epsilon, regions, request, cache, hooks);
   } catch (const Error& error) {
     if (ended || !request.partial || !is_of_mesh(error)) throw;
     flaw = error.what();
     if (!first) first = std::current_exception();
   }
   CertifiedLinkMesh out{mesh, epsilon, {}, flaw, false};
-  if (hold_by_larger_ones(request, cache, hooks, ended, out)) return out;
+  if (hold_by_larger_ones(request, regions, cache, hooks, ended, out)) return out;
   if (!request.set.wrap) return out;
   RobotRequest loose = request;
   loose.set = loosest(loose.set);
   try {
-    out.made = certify_link_mesh(mesh, {}, loose, cache, hooks).made;
+    out.made = certify_link_mesh(mesh, {}, {}, loose, cache, hooks).made;
     out.held = true;
   } catch (const Error& error) {
     if (ended || !is_of_mesh(error)) throw;
@@ -176,7 +183,7 @@ bool is_of_kind(const Geometry& g, SetRequest::BodyKind kind) {
 
 /// Bodies of the kind for a box, a cylinder or a sphere that is none, in the frame of its link. Its
 /// polytope's corners are placed within placing_error. What the polytope is farther than the shape
-/// is taken off epsilon.
+/// is taken off epsilon, and off those of regions that its bodies can reach.
 CertifiedSet bodies_for(const Geometry& g, const robot::RobotFile& robot, const std::string& link,
                         const RobotRequest& request) {
   SetRequest asked = request.set;
@@ -190,11 +197,23 @@ CertifiedSet bodies_for(const Geometry& g, const robot::RobotFile& robot, const 
       high = high.cwiseMax(p);
     }
     const double beyond = robot::bounding_excess(g) + placing_error(g, 2 * g.size.norm());
-    asked.epsilon = Length{asked.epsilon->of((high - low).norm()) - beyond, false};
-    if (!(asked.epsilon->value > 0))
-      throw TooCoarse(robot.path.string() + ": link '" + link + "': its " + robot::describe(g) +
-                      " is covered by way of a polytope that is up to " + number_text(beyond) +
-                      " farther: allow an epsilon above that");
+    const auto rest_of = [&](const Length& epsilon, const std::string& where) {
+      const double rest = epsilon.of((high - low).norm()) - beyond;
+      if (!(rest > 0))
+        throw TooCoarse(robot.path.string() + ": link '" + link + "': its " + robot::describe(g) +
+                        " is covered by way of a polytope that is up to " + number_text(beyond) +
+                        " farther: allow an epsilon above that" + where);
+      return Length{rest, false};
+    };
+    asked.epsilon = rest_of(*asked.epsilon, "");
+    if (const auto own = request.regions.find(link); own != request.regions.end())
+      for (const robot::LinkRegion& one : own->second) {
+        geom::RequestedRegion region = *robot::region_in_link(one, robot::Side::Round);
+        const double apart = geom::distance_from(region.region, points);
+        if (apart > 2 * (asked.epsilon->value + beyond)) continue;
+        region.epsilon = rest_of(region.epsilon, " in the region " + region.name);
+        asked.regions.push_back(std::move(region));
+      }
   }
   std::optional<CertifiedSet> set = certify_set(*geom::convex_hull(points), robot.sha256, asked);
   if (!set)
@@ -251,18 +270,34 @@ RobotHooks hooks_of(Notes& notes, std::function<void(const std::string&)> progre
   return hooks;
 }
 
+void RobotRequest::take(robot::LinkBounds bounds) {
+  if (!epsilons.empty() && !bounds.epsilons.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "«epsilon-map» names whole links, and so does «epsilons»: state the epsilons of "
+                "links in one of them");
+  epsilons.merge(bounds.epsilons);
+  regions = std::move(bounds.regions);
+}
+
 std::string RobotRequest::parameters() const {
   RobotSetOptions options{options_of(set), shapes.visual};
   options.set.request.epsilon = set.wanted_epsilon();
   std::string out = record_of(robot_set_options(), options);
   for (const auto& [link, epsilon] : epsilons) out += " " + link + ": " + epsilon.text();
-  return out;
+  std::vector<geom::RequestedRegion> all;
+  for (const auto& [link, own] : regions)
+    for (const robot::LinkRegion& one : own) {
+      all.push_back(one);
+      all.back().name.insert(0, link + ": ");
+    }
+  return out + record_of(all);
 }
 
 std::string RobotRequest::parameters(const std::string& link) const {
-  RobotRequest own{set, shapes, format, tool, {}};
+  RobotRequest own{set, shapes, format, tool, {}, {}};
   if (const auto found = epsilons.find(link); found != epsilons.end())
     own.set.epsilon = found->second;
+  if (const auto found = regions.find(link); found != regions.end()) own.regions.insert(*found);
   return own.parameters();
 }
 
@@ -291,7 +326,9 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
                                const SetCache* cache, const RobotHooks& hooks) {
   if (request.set.direction != SetRequest::Direction::Outer)
     throw Error(ErrorCode::InvalidArgument, "a robot's links are held by outer sets only");
-  WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons);
+  if (!request.set.regions.empty())
+    throw Error(ErrorCode::InvalidArgument, "regions of a robot are those of its links");
+  WantedMeshes found = wanted_meshes(robot, request.shapes, request.epsilons, request.regions);
   BodiesCertificate out;
   std::vector<robot::LinkBody> bodies;
   out.choice = request.shapes;
@@ -300,8 +337,8 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
   for (std::size_t i = 0; i < found.meshes.size(); ++i) {
     RobotRequest own = request;
     own.set.improve_work = work[i];
-    out.meshes.push_back(
-        certify_somehow(found.meshes[i], found.epsilons[i], own, cache, hooks, first));
+    out.meshes.push_back(certify_somehow(found.meshes[i], found.epsilons[i], found.regions[i], own,
+                                         cache, hooks, first));
     const CertifiedFile& made = out.meshes.back().made;
     if (found.meshes[i].missing.empty()) out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());

@@ -8,8 +8,10 @@ namespace kaboum::certify {
 
 /// The set of one mesh of a robot, in the mesh's own frame and unit.
 /// @param epsilon  instead of the request's, in the robot's unit
+/// @param regions  in the mesh's frame and unit
 CertifiedLinkMesh certify_link_mesh(const robot::LinkMesh& mesh,
                                     const std::optional<Length>& epsilon,
+                                    const std::vector<geom::RequestedRegion>& regions,
                                     const RobotRequest& request, const SetCache* cache,
                                     const RobotHooks& hooks);
 

@@ -156,6 +156,63 @@ std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot) {
                      [](std::uint32_t) { return std::string("its shapes stay as they are"); });
 }
 
+namespace {
+
+/// Adds what a link's shapes have of a region.
+void look_at(const robot::RobotFile& robot, std::uint32_t link, const robot::LinkRegion& region,
+             const CertifiedBodies& bodies, RegionVerdict& out) {
+  const BodiesCertificate& made = bodies.certificate();
+  for (const robot::LinkBody& body : bodies.artefact())
+    out.reached =
+        out.reached || (body.link == link && !(geom::distance_from(region.region, body.points) >
+                                               body.margin + region.rounding));
+  if (!region.epsilon.percent) out.epsilon = std::max(out.epsilon, region.epsilon.value);
+  for (const robot::LinkShape& shape : made.shapes) {
+    if (shape.link != link || !shape.mesh) continue;
+    const CertifiedLinkMesh& mesh = made.meshes[*shape.mesh];
+    const auto of_mesh = [&]() -> const SetCertificate::Region* {
+      if (!mesh.held || !mesh.flaw.empty()) return nullptr;
+      const auto& all = mesh.made.found.set.certificate().regions;
+      const auto at = std::ranges::find(all, region.name, &SetCertificate::Region::name);
+      return at == all.end() ? nullptr : &*at;
+    };
+    const SetCertificate::Region* found = of_mesh();
+    out.held = out.held && found != nullptr;
+    if (found == nullptr || !region.epsilon.percent) continue;
+    const robot::Geometry& g = made.choice.shapes_of(robot.robot.links[link])[shape.index];
+    out.epsilon = std::max(out.epsilon, found->epsilon * g.size.cwiseAbs().maxCoeff());
+  }
+}
+
+}  // namespace
+
+std::vector<RegionVerdict> region_verdicts(const robot::RobotFile& robot,
+                                           const robot::LinkRegions& regions,
+                                           const CertifiedBodies& bodies) {
+  std::vector<RegionVerdict> out;
+  for (std::uint32_t link = 0; link < robot.robot.links.size(); ++link) {
+    const std::string& name = robot.robot.links[link].name;
+    const auto own = regions.find(name);
+    if (own == regions.end()) continue;
+    for (const robot::LinkRegion& region : own->second) {
+      auto at = std::ranges::find(out, region.name, &RegionVerdict::name);
+      if (at == out.end()) at = out.insert(at, {region.name, {}});
+      at->links.push_back(name);
+      look_at(robot, link, region, bodies, *at);
+    }
+  }
+  return out;
+}
+
+std::string in_words(const RegionVerdict& region) {
+  if (!region.held)
+    return "distance in the region " + region.name +
+           ": NOT verified: a mesh near it is not held as asked for";
+  if (!region.reached) return "note: no body reaches the region " + region.name;
+  return "distance in the region " + region.name + ": verified: nowhere more than " +
+         number_up(region.epsilon);
+}
+
 Outcome outcome_of(const std::vector<LinkVerdict>& links) {
   Outcome out = Outcome::Held;
   for (const LinkVerdict& link : links) out = std::max(out, link.outcome);

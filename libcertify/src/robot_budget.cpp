@@ -84,7 +84,8 @@ class Trials {
 
 Length epsilon_within(const robot::RobotFile& robot, RobotRequest request,
                       const RobotBudget& budget, const SetCache* cache, const RobotHooks& hooks) {
-  if (!request.epsilons.empty() || request.set.max_bodies || request.set.max_total_vertices)
+  if (!request.epsilons.empty() || !request.regions.empty() || request.set.max_bodies ||
+      request.set.max_total_vertices)
     throw Error(ErrorCode::InvalidArgument,
                 "a robot's budget is shared out by one epsilon: no others and no limits of single "
                 "meshes beside it");

@@ -303,9 +303,13 @@ std::string word_of(const std::vector<geom::RequestedRegion>& regions) {
 std::string SetRequest::parameters() const {
   SetOptions options = options_of(*this);
   options.request.epsilon = wanted_epsilon();
-  std::string out = record_of(set_options(), options);
-  if (!regions.empty()) out += std::string(" --") + kRegionsOption + ' ' + word_of(regions);
-  return out;
+  const std::string out = record_of(set_options(), options);
+  return out + certify::record_of(regions);
+}
+
+std::string record_of(const std::vector<geom::RequestedRegion>& regions) {
+  return regions.empty() ? std::string()
+                         : std::string(" --") + kRegionsOption + ' ' + word_of(regions);
 }
 
 geom::Provenance origin_of(const SetRequest& request, const std::string& sha256) {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 namespace kaboum::io {
@@ -18,41 +19,84 @@ using nlohmann::json;
 constexpr const char* kMapForm =
     "give {\"regions\": [{\"epsilon\": \"0.2%\", \"box\": [[0, 0, 0], [1, 1, 1]]}, …]}, each with "
     "one of box, half_space and ball";
+constexpr const char* kFrameForm =
+    "give {\"regions\": [{\"frame\": \"hand\", \"radius\": 0.1, \"epsilon\": \"0.2%\"}, …]}, each "
+    "with a frame and one of radius, box, half_space and ball, or with a link";
 
 /// One region of the text.
 class RegionReader {
  public:
   /// @param name  that messages call it by, after that of the text, unless it states one itself
-  RegionReader(const json& entry, std::string text, std::string name)
-      : entry_(entry), text_(std::move(text)), name_(std::move(name)) {}
+  /// @param form  how regions of the text are to look
+  RegionReader(const json& entry, std::string text, std::string name, const char* form)
+      : entry_(entry), text_(std::move(text)), name_(std::move(name)), form_(form) {}
 
   geom::RequestedRegion read() const {
-    if (!entry_.is_object()) fail(kMapForm);
-    int shapes = 0;
     geom::RequestedRegion out;
-    out.name = name_;
-    for (const auto& [key, value] : entry_.items()) {
-      if (key == "name") {
-        if (!value.is_string()) fail("name is no text");
-        out.name = std::string("'").append(value.get<std::string>()).append("'");
-      } else if (key == "epsilon") {
-        out.epsilon = length(value);
-      } else if (key == "box" || key == "half_space" || key == "ball") {
-        ++shapes;
-        out.region = key == "box" ? box(value) : key == "ball" ? ball(value) : half_space(value);
-      } else {
-        fail("there is no member '" + key + "'; " + kMapForm);
-      }
-    }
-    if (shapes != 1) fail("one of box, half_space and ball is needed, and no other one");
-    if (!(out.epsilon.value > 0)) fail("epsilon is missing");
+    take(out, nullptr, nullptr);
     return out;
+  }
+
+  /// A region of a robot, or a link.
+  void read(geom::FrameRegions& all) const {
+    geom::FrameRegions::Fixed out;
+    std::optional<std::string> frame, link;
+    out.place = std::string(text_).append(": ").append(name_);
+    const bool has_shape = take(out, &frame, &link);
+    out.epsilon = out.epsilon.in("m");
+    if (link) {
+      if (frame || has_shape) fail("a link is meant as a whole: it has an epsilon only");
+      all.links.push_back({*link, out.epsilon, out.place});
+      return;
+    }
+    if (!frame) fail("frame is missing: the name of a link that the region is fixed to");
+    out.frame = *frame;
+    all.regions.push_back(std::move(out));
   }
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
     throw Error(ErrorCode::InvalidInput,
                 std::string(text_).append(": ").append(name_).append(": ").append(why));
+  }
+
+  /// @param frame, link  of a robot's; null: it has none
+  /// @return whether it has a shape, which all but whole links need
+  bool take(geom::RequestedRegion& out, std::optional<std::string>* frame,
+            std::optional<std::string>* link) const {
+    if (!entry_.is_object()) fail(form_);
+    int shapes = 0;
+    out.name = name_;
+    for (const auto& [key, value] : entry_.items()) {
+      if (key == "name") {
+        out.name = std::string("'").append(text_of(value, "name")).append("'");
+      } else if (key == "epsilon") {
+        out.epsilon = length(value);
+      } else if (key == "box" || key == "half_space" || key == "ball") {
+        ++shapes;
+        out.region = key == "box" ? box(value) : key == "ball" ? ball(value) : half_space(value);
+      } else if (frame != nullptr && key == "radius") {
+        ++shapes;
+        out.region = about({0, 0, 0}, value);
+      } else if (frame != nullptr && (key == "frame" || key == "link")) {
+        *(key == "frame" ? frame : link) = text_of(value, key.c_str());
+      } else if (key == "frame" || key == "link") {
+        fail("a mesh has no frames and no links: '" + key + "' is for robots");
+      } else {
+        fail("there is no member '" + key + "'; " + form_);
+      }
+    }
+    if (shapes != 1 && (link == nullptr || !*link || shapes > 1))
+      fail(frame != nullptr
+               ? "one of radius, box, half_space and ball is needed, and no other one, or a link"
+               : "one of box, half_space and ball is needed, and no other one");
+    if (!(out.epsilon.value > 0)) fail("epsilon is missing");
+    return shapes == 1;
+  }
+
+  std::string text_of(const json& value, const char* name) const {
+    if (!value.is_string()) fail(std::string(name) + " is no text");
+    return value.get<std::string>();
   }
 
   Length length(const json& value) const {
@@ -99,15 +143,20 @@ class RegionReader {
   }
 
   geom::Region ball(const json& value) const {
+    return about(point(member(value, "center", 2), "center"), member(value, "radius", 2));
+  }
+
+  geom::Region about(const geom::Vec3& center, const json& radius) const {
     geom::Region out;
-    out.center = point(member(value, "center", 2), "center");
-    out.radius = number(member(value, "radius", 2), "radius");
+    out.center = center;
+    out.radius = number(radius, "radius");
     if (!(out.radius > 0)) fail("radius must be above 0");
     return out;
   }
 
   const json& entry_;
   std::string text_, name_;
+  const char* form_;
 };
 
 /// Refuses members that are given twice, of which a parser would take the last one.
@@ -144,24 +193,47 @@ json parse_json(std::string_view text, const std::string& name) {
   return out;
 }
 
-}  // namespace
-
-std::vector<geom::RequestedRegion> parse_regions(std::string_view text, const std::string& name) {
+/// Calls `take` with each region of a text.
+template <class Take>
+void for_each_region(std::string_view text, const std::string& name, const char* form,
+                     const Take& take) {
   const json all = parse_json(text, name);
   if (!all.is_object() || all.size() != 1 || !all.contains("regions") ||
       !all["regions"].is_array() || all["regions"].empty())
-    throw Error(ErrorCode::InvalidInput, name + ": " + kMapForm);
+    throw Error(ErrorCode::InvalidInput, name + ": " + form);
+  std::size_t count = 0;
+  for (const json& entry : all["regions"])
+    take(RegionReader(entry, name, "region " + std::to_string(++count), form));
+}
+
+/// What `parse` makes of a file.
+template <class Parse>
+auto of_file(const std::string& file, const Parse& parse) {
+  const std::vector<char> bytes = read_file(file);
+  return parse(std::string_view(bytes.data(), bytes.size()), file == "-" ? "standard input" : file);
+}
+
+}  // namespace
+
+std::vector<geom::RequestedRegion> parse_regions(std::string_view text, const std::string& name) {
   std::vector<geom::RequestedRegion> out;
-  for (const json& entry : all["regions"]) {
-    const std::string region = "region " + std::to_string(out.size() + 1);
-    out.push_back(RegionReader(entry, name, region).read());
-  }
+  for_each_region(text, name, kMapForm,
+                  [&](const RegionReader& one) { out.push_back(one.read()); });
   return out;
 }
 
 std::vector<geom::RequestedRegion> read_regions(const std::string& file) {
-  const std::vector<char> bytes = read_file(file);
-  return parse_regions({bytes.data(), bytes.size()}, file == "-" ? "standard input" : file);
+  return of_file(file, parse_regions);
+}
+
+geom::FrameRegions parse_frame_regions(std::string_view text, const std::string& name) {
+  geom::FrameRegions out;
+  for_each_region(text, name, kFrameForm, [&](const RegionReader& one) { one.read(out); });
+  return out;
+}
+
+geom::FrameRegions read_frame_regions(const std::string& file) {
+  return of_file(file, parse_frame_regions);
 }
 
 }  // namespace kaboum::io

@@ -359,16 +359,19 @@ class Reader {
         named != nullptr ? named + suffix : "body" + std::to_string(out_.robot.links.size());
     std::vector<BodyJoint> joints;
     collect_joints(e, {}, class_inside, joints);
-    if (const char* mocap = e.Attribute("mocap");
-        mocap != nullptr && std::string_view(mocap) == "true")
-      unmodelled(e, "body '" + name + "' is moved from outside (mocap)");
+    const char* mocap = e.Attribute("mocap");
+    bool is_unmodelled = mocap != nullptr && std::string_view(mocap) == "true";
+    if (is_unmodelled) unmodelled(e, "body '" + name + "' is moved from outside (mocap)");
     Transform ahead = frame * pose(e);  // from the link that comes next to the last one
     std::uint32_t link = parent;
     bool is_body = false;  // the last link has the body's frame
     for (std::size_t i = 0; i < joints.size(); ++i) {
       Joint joint;
       Vec3 anchor;
-      if (!take_joint(joints[i], name, suffix, joint, anchor)) continue;
+      if (!take_joint(joints[i], name, suffix, joint, anchor)) {
+        is_unmodelled = true;
+        continue;
+      }
       joint.origin = ahead;
       joint.origin.translation += ahead.linear * anchor;
       is_body = i + 1 == joints.size() && anchor.isZero(0);
@@ -379,6 +382,7 @@ class Reader {
       Joint fixed;
       fixed.name = joint_names_.give(name + ":fixed");
       fixed.origin = ahead;
+      fixed.unmodelled = is_unmodelled;
       link = add_below(link, name, fixed);
     }
     out_.bodies[link] = &e;

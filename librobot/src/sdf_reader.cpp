@@ -370,6 +370,7 @@ class Reader {
     if (type == "fixed") return out;
     if (type != "revolute" && type != "continuous" && type != "prismatic") {
       unmodelled(e, "joint '" + out.name + "' is of type " + type);
+      out.unmodelled = true;
       return out;
     }
     out.type = type == "prismatic" ? JointType::Prismatic : JointType::Revolute;

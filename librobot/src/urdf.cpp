@@ -417,6 +417,7 @@ class Assembly {
       robot_.variables.push_back(entry.variable);
     }
     place_[joint.name] = robot_.joints.size();
+    joint.unmodelled = entry.unmodelled;
     if (entry.unmodelled)
       robot_.unmodelled.push_back(name_ + ":" + std::to_string(entry.line) + ": joint '" +
                                   joint.name + "' is planar or floating");

@@ -217,6 +217,8 @@ class CertifiedRobot:
     @property
     def verdicts(self) -> list[tuple[str, str, str]]: ...
     @property
+    def regions(self) -> list[dict[str, Any]]: ...
+    @property
     def distance(self) -> float: ...
     @property
     def notes(self) -> list[str]: ...
@@ -895,6 +897,7 @@ def verify_robot(
     original: _Robot,
     result: _Robot,
     *,
+    epsilon_map: _EpsilonMap | None = None,
     # options of verify_robot
     claims: Literal["all", "solid", "surface"] = "all",
     epsilon: _Length | None = None,
@@ -916,6 +919,7 @@ def verify_spheres(
     spheres: _Path,
     *,
     epsilon: _Length | None = None,
+    epsilon_map: _EpsilonMap | None = None,
     # options of shapes
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",
@@ -929,6 +933,7 @@ def write_spheres(
     file: _Path,
     *,
     epsilon: _Length | None = None,
+    epsilon_map: _EpsilonMap | None = None,
     robot_bodies: int | None = None,
     share: Literal["farthest", "mean"] = "farthest",
     effort: Literal["fast", "normal", "best"] = "normal",
@@ -960,6 +965,7 @@ def certify_robot(
     robot: _Robot,
     *,
     epsilons: Mapping[str, _Length] | None = None,
+    epsilon_map: _EpsilonMap | None = None,
     robot_bodies: int | None = None,
     robot_vertices: int | None = None,
     partial: bool = False,

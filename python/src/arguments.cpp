@@ -146,16 +146,35 @@ std::string json_text(const py::object& value, const std::string& of) {
               of + ": numbers must be finite, and all else texts, lists and dicts by name");
 }
 
-std::vector<geom::RequestedRegion> regions_of(const py::object& epsilon_map) {
+namespace {
+
+/// What `read` makes of a file, or `parse` of a list.
+/// @param example  of a region
+template <class Read, class Parse>
+auto map_of(const py::object& epsilon_map, const char* example, const Read& read,
+            const Parse& parse) -> decltype(read(std::string())) {
   if (epsilon_map.is_none()) return {};
-  if (const auto file = path_of(epsilon_map)) return io::read_regions(*file);
+  if (const auto file = path_of(epsilon_map)) return read(*file);
   if (!py::isinstance<py::list>(epsilon_map))
     throw Error(ErrorCode::InvalidArgument,
-                "epsilon_map must be the name of a file, or a list of dicts, each a region: "
-                "{'epsilon': '0.2%', 'box': [[0, 0, 0], [1, 1, 1]]}");
+                std::string("epsilon_map must be the name of a file, or a list of dicts, each a "
+                            "region: ") +
+                    example);
   py::dict all;
   all["regions"] = epsilon_map;
-  return io::parse_regions(json_text(all, "epsilon_map"), "epsilon_map");
+  return parse(json_text(all, "epsilon_map"), "epsilon_map");
+}
+
+}  // namespace
+
+std::vector<geom::RequestedRegion> regions_of(const py::object& epsilon_map) {
+  return map_of(epsilon_map, "{'epsilon': '0.2%', 'box': [[0, 0, 0], [1, 1, 1]]}", io::read_regions,
+                io::parse_regions);
+}
+
+geom::FrameRegions frame_regions_of(const py::object& epsilon_map) {
+  return map_of(epsilon_map, "{'frame': 'hand', 'radius': 0.1, 'epsilon': '0.2%'}",
+                io::read_frame_regions, io::parse_frame_regions);
 }
 
 std::vector<std::string> spelled(std::vector<std::string> notes) {

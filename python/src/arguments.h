@@ -78,6 +78,9 @@ std::string json_text(const py::object& value, const std::string& of);
 /// @throws Error as io::read_regions
 std::vector<geom::RequestedRegion> regions_of(const py::object& epsilon_map);
 
+/// The same of a robot. @throws Error as io::read_frame_regions
+geom::FrameRegions frame_regions_of(const py::object& epsilon_map);
+
 /// Notes of libraries with options as Python names them.
 std::vector<std::string> spelled(std::vector<std::string> notes);
 

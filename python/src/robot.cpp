@@ -100,12 +100,13 @@ std::vector<Keyword> certify_keywords() {
 }
 
 CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons,
-                             std::optional<std::size_t> robot_bodies,
+                             const py::object& epsilon_map, std::optional<std::size_t> robot_bodies,
                              std::optional<std::size_t> robot_vertices, bool partial,
                              const py::kwargs& given) {
   py::dict keywords = given;
   certify::SetOptions options;
-  const std::set<std::string> stated = take_options(link_options(), keywords, options);
+  std::set<std::string> stated = take_options(link_options(), keywords, options);
+  if (!epsilon_map.is_none()) stated.insert(certify::kRegionsOption);
   certify::RobotRequest r;
   take_options(robot::held_shape_options(), keywords, r.shapes);
   const RunKeywords running = take_run_keywords(keywords);
@@ -117,6 +118,7 @@ CertifiedValue certify_robot(const py::object& robot, const py::object& epsilons
   r.set = certify::request_of(options);
   r.partial = partial;
   r.epsilons = epsilons_of(epsilons);
+  r.take(robot::bounds_of_links(*value.file, r.shapes, frame_regions_of(epsilon_map)));
   if (has_budget)
     for (const char* other : {"epsilon", "max-bodies", "max-total-vertices"})
       if (stated.contains(other))
@@ -275,6 +277,23 @@ void bind_certified(py::module_& module) {
           "The verdict is 'held' if it is, as near as asked for; 'epsilon not reached' or 'work "
           "ended' if it is farther; 'kept' if a mesh of it could not be held.")
       .def_property_readonly(
+          "regions",
+          [](const Value& r) {
+            py::list out;
+            for (const certify::RegionVerdict& one :
+                 certify::region_verdicts(*r.file, r.request->regions, r.made.bodies)) {
+              py::dict region;
+              region["name"] = one.name;
+              region["links"] = one.links;
+              region["answer"] = one.held ? "verified" : "undecided";
+              region["bound"] = one.epsilon;
+              region["reached"] = one.reached;
+              out.append(region);
+            }
+            return out;
+          },
+          "Dicts of the regions of `epsilon_map`, as `bcd-decompose` reports them.")
+      .def_property_readonly(
           "distance", [](const Value& r) { return r.made.bodies.certificate().distance; },
           "Bound of how far a body reaches beyond its shape. [length]")
       .def_property_readonly("notes", notes_of(&Value::notes),
@@ -308,6 +327,9 @@ Parameters
 robot : Robot or path
 epsilons : dict, optional
     Of single links, by name: a length or a percentage, instead of `epsilon`.
+epsilon_map : name of a file, or list of dict, optional
+    Regions fixed in frames of links, or whole links, with an epsilon each, as `bcd-decompose ROBOT
+    --epsilon-map` reads them, or its "regions" (docs/formats.md, "Regions of robots").
 robot_bodies, robot_vertices : int, optional
     The most of all links together: the least epsilon, the same for all links, that allows it.
 partial : bool
@@ -323,9 +345,8 @@ Error
 
 /// Keywords that are no options of a set, in the signature.
 constexpr const char* kRobotParameters =
-    "robot: object, *, epsilons: object = None, robot_bodies: object = None, robot_vertices: "
-    "object = None, "
-    "partial: bool = False";
+    "robot: object, *, epsilons: object = None, epsilon_map: object = None, "
+    "robot_bodies: object = None, robot_vertices: object = None, partial: bool = False";
 
 RobotValue read_robot_file(const py::object& file, const py::object& xacro_args,
                            const py::object& package_path) {
@@ -464,8 +485,9 @@ Error
   const std::string text = document("certify_robot", kRobotParameters, certify_keywords(),
                                     "kaboum.CertifiedRobot", kRobotDoc);
   module.def("certify_robot", &certify_robot, py::arg("robot"), py::kw_only(),
-             py::arg("epsilons") = py::none(), py::arg("robot_bodies") = py::none(),
-             py::arg("robot_vertices") = py::none(), py::arg("partial") = false, text.c_str());
+             py::arg("epsilons") = py::none(), py::arg("epsilon_map") = py::none(),
+             py::arg("robot_bodies") = py::none(), py::arg("robot_vertices") = py::none(),
+             py::arg("partial") = false, text.c_str());
 }
 
 }  // namespace kaboum::python

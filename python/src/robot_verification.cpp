@@ -9,6 +9,7 @@
 #include <map>
 
 #include "answers.h"
+#include "arguments.h"
 #include "request_options.h"
 #include "robot.h"
 #include "running.h"
@@ -71,6 +72,11 @@ Verdict verdict_of(const verify::RobotVerdict& found) {
       shape["shape"] = s.name;
       shape["answer"] = verify::name_of(s.answer);
       shape["reason"] = s.answer == Answer::Verified ? std::string() : s.text;
+      if (!s.region.empty()) {
+        shape["region"] = s.region;
+        shape["reached"] = s.reached;
+        if (s.bound) shape["bound"] = *s.bound;
+      }
       shapes.append(shape);
     }
   }
@@ -90,7 +96,7 @@ Verdict verdict_of(const verify::RobotVerdict& found) {
 }
 
 Verdict verify_robot(const py::object& original, const py::object& result,
-                     const py::kwargs& given) {
+                     const py::object& epsilon_map, const py::kwargs& given) {
   verify::RobotVerdictOptions options;
   const RunKeywords running =
       take_keywords("verify_robot", verify::robot_verdict_options(), given, options, Runs::Threads);
@@ -107,6 +113,8 @@ Verdict verify_robot(const py::object& original, const py::object& result,
                         !of_result && options.shapes.skip_missing);
       },
       options);
+  question.bounds =
+      robot::bounds_of_links(*first.file, options.shapes, frame_regions_of(epsilon_map));
   Watch watch(running.progress);
   question.limits.progress = watch.hook();
   verify::RobotVerdict found;
@@ -120,6 +128,9 @@ constexpr const char* kRobotVerificationDoc =
 Parameters
 ----------
 original, result : Robot or path
+epsilon_map : name of a file, or list of dict, optional
+    Also decide that no point of a body in a region is farther than the region's own epsilon from
+    the meshes that it holds, as `certify_robot` takes it; shapes with 'region' say so.
 {keywords}
 
 Returns
@@ -127,7 +138,8 @@ Returns
 Verdict
     Its claims are 'joints' (both move alike), 'links', a list of dicts with 'link', 'answer' and
     'sentence' (is every triangle of it inside: yes, or which not, and by how much), and 'shapes', a
-    list of dicts with 'link', 'shape', 'answer' and 'reason'.
+    list of dicts with 'link', 'shape', 'answer' and 'reason'; of a region also 'region', its name,
+    'bound', in the mesh's unit, and 'reached'.
 
 Raises
 ------
@@ -139,10 +151,12 @@ Error
 void bind_robot_verification(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
-  const std::string text = document("verify_robot", "original: object, result: object",
-                                    keywords_of(verify::robot_verdict_options()), "kaboum.Verdict",
-                                    kRobotVerificationDoc, Runs::Threads);
-  module.def("verify_robot", &verify_robot, py::arg("original"), py::arg("result"), text.c_str());
+  const std::string text =
+      document("verify_robot", "original: object, result: object, *, epsilon_map: object = None",
+               keywords_of(verify::robot_verdict_options()), "kaboum.Verdict",
+               kRobotVerificationDoc, Runs::Threads);
+  module.def("verify_robot", &verify_robot, py::arg("original"), py::arg("result"), py::kw_only(),
+             py::arg("epsilon_map") = py::none(), text.c_str());
 }
 
 }  // namespace kaboum::python

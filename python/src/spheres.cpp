@@ -64,8 +64,9 @@ certify::SphereShare share_of(const std::string& name) {
 }
 
 py::dict write_spheres(const py::object& robot, const py::object& file, const py::object& epsilon,
-                       std::optional<std::size_t> robot_bodies, const std::string& share,
-                       const std::string& effort, const py::kwargs& given) {
+                       const py::object& epsilon_map, std::optional<std::size_t> robot_bodies,
+                       const std::string& share, const std::string& effort,
+                       const py::kwargs& given) {
   certify::RobotRequest r;
   py::dict keywords = given;
   take_options(robot::shape_options(), keywords, r.shapes);
@@ -82,6 +83,7 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
   r.set.effort = effort_of(effort);
   if (!epsilon.is_none()) r.set.epsilon = epsilon_of(epsilon);
   r.set.nearest = robot_bodies.has_value();
+  r.take(robot::bounds_of_links(*value.file, r.shapes, frame_regions_of(epsilon_map)));
   const certify::SphereShare how = share_of(share);
   Watch watch(running.progress);
   std::vector<std::string> notes;
@@ -163,7 +165,19 @@ py::dict dict_of(const verify::LinkSpheresVerdict& link) {
     out["missed"] = py::make_tuple(p.x(), p.y(), p.z());
     out["depth"] = link.missed->depth;
   }
-  if (link.distance) out["distance"] = verify::name_of(link.distance->answer);
+  if (link.reach.all) out["distance"] = verify::name_of(link.reach.all->answer);
+  if (link.reach.regions.empty()) return out;
+  py::list regions;
+  for (const verify::LinkReach::InRegion& one : link.reach.regions) {
+    py::dict region;
+    region["name"] = one.name;
+    region["answer"] = verify::name_of(one.claim.answer);
+    region["reason"] = one.claim.reason;
+    region["bound"] = one.epsilon;
+    region["reached"] = one.reached;
+    regions.append(region);
+  }
+  out["regions"] = regions;
   return out;
 }
 
@@ -179,7 +193,8 @@ std::optional<double> reach_of(const py::object& epsilon) {
 }
 
 Verdict verify_spheres(const py::object& robot, const py::object& spheres,
-                       const py::object& epsilon, const py::kwargs& given) {
+                       const py::object& epsilon, const py::object& epsilon_map,
+                       const py::kwargs& given) {
   robot::ShapeChoice shapes;
   const RunKeywords running =
       take_keywords("verify_spheres", robot::shape_options(), given, shapes, Runs::Threads);
@@ -187,13 +202,16 @@ Verdict verify_spheres(const py::object& robot, const py::object& spheres,
   robot::require_links(*value.file, shapes.links);
   const std::string file = file_of(spheres, "spheres");
   const std::optional<double> reach = reach_of(epsilon);
+  const robot::LinkBounds bounds =
+      robot::bounds_of_links(*value.file, shapes, frame_regions_of(epsilon_map));
   Watch watch(running.progress);
   verify::SpheresVerdict found;
   run(running.threads, [&] {
     const robot::SphereFile read = robot::read_spheres(file);
     found = verify::decide_spheres(
         *value.file, read, file, shapes,
-        [&](const verify::LinkSpheresVerdict& link) { watch("deciding: " + link.link); }, reach);
+        [&](const verify::LinkSpheresVerdict& link) { watch("deciding: " + link.link); }, reach,
+        bounds);
   });
   Verdict out;
   out.answer = found.answer;
@@ -217,6 +235,8 @@ file : str or path
     .yaml, .yml (cuRobo), .xrdf, .srdf or .urdf.
 epsilon : float or str
     No point of a sphere is farther from its link's shapes. [length, or "2%" of each mesh's diagonal]
+epsilon_map : name of a file, or list of dict, optional
+    With epsilon: regions fixed in frames of links, or whole links, as `certify_robot` takes them.
 robot_bodies : int
     Instead: so many spheres for all links together.
 share : {'farthest', 'mean'}
@@ -261,13 +281,15 @@ spheres : str or path
     cuRobo's YAML, XRDF, SRDF with link_sphere_approximation, or URDF with spheres as collision shapes.
 epsilon : float or str
     Also decides that no point of a sphere is farther from its link's shapes. [length]
+epsilon_map : name of a file, or list of dict, optional
+    The same of whole links, and of regions fixed in their frames, as `certify_robot` takes them; lengths only.
 {keywords}
 
 Returns
 -------
 Verdict
     Its claims are 'links', a list of dicts with 'link', 'answer', 'sentence', 'spheres', 'share_outside' (bounds of the share
-    of the surface), with epsilon 'distance' (an answer) and, where it is refuted, 'missed' (a point) and 'depth';
+    of the surface), with epsilon 'distance' (an answer), with epsilon_map 'regions' (dicts) and, where it is refuted, 'missed' (a point) and 'depth';
     'share_outside', 'depth' and 'sentence' of all.
 
 Raises
@@ -281,14 +303,15 @@ void bind_spheres(py::module_& module) {
   py::options signatures;
   signatures.disable_function_signatures();  // the table's
   const std::vector<Keyword> shapes = keywords_of(robot::shape_options());
-  const std::string write =
-      document("write_spheres",
-               "robot: object, file: object, *, epsilon: object = None, robot_bodies: int = None, "
-               "share: str = 'farthest', effort: str = 'normal'",
-               shapes, "dict", kWriteDoc);
+  const std::string write = document(
+      "write_spheres",
+      "robot: object, file: object, *, epsilon: object = None, epsilon_map: object = None, "
+      "robot_bodies: int = None, share: str = 'farthest', effort: str = 'normal'",
+      shapes, "dict", kWriteDoc);
   module.def("write_spheres", &write_spheres, py::arg("robot"), py::arg("file"), py::kw_only(),
-             py::arg("epsilon") = py::none(), py::arg("robot_bodies") = py::none(),
-             py::arg("share") = "farthest", py::arg("effort") = "normal", write.c_str());
+             py::arg("epsilon") = py::none(), py::arg("epsilon_map") = py::none(),
+             py::arg("robot_bodies") = py::none(), py::arg("share") = "farthest",
+             py::arg("effort") = "normal", write.c_str());
   const std::string repair = document(
       "repair_spheres",
       "robot: object, spheres: object, file: object, *, epsilon: object, effort: str = 'normal'",
@@ -296,11 +319,12 @@ void bind_spheres(py::module_& module) {
   module.def("repair_spheres", &repair_spheres, py::arg("robot"), py::arg("spheres"),
              py::arg("file"), py::kw_only(), py::arg("epsilon"), py::arg("effort") = "normal",
              repair.c_str());
-  const std::string verify =
-      document("verify_spheres", "robot: object, spheres: object, *, epsilon: object = None",
-               shapes, "kaboum.Verdict", kVerifyDoc, Runs::Threads);
+  const std::string verify = document(
+      "verify_spheres",
+      "robot: object, spheres: object, *, epsilon: object = None, epsilon_map: object = None",
+      shapes, "kaboum.Verdict", kVerifyDoc, Runs::Threads);
   module.def("verify_spheres", &verify_spheres, py::arg("robot"), py::arg("spheres"), py::kw_only(),
-             py::arg("epsilon") = py::none(), verify.c_str());
+             py::arg("epsilon") = py::none(), py::arg("epsilon_map") = py::none(), verify.c_str());
 }
 
 }  // namespace kaboum::python

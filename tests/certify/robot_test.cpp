@@ -6,10 +6,12 @@
 #include <kaboum/certify/cache_folder.h>
 #include <kaboum/certify/link_verdict.h>
 #include <kaboum/certify/robot.h>
+#include <kaboum/certify/robot_budget.h>
 #include <kaboum/certify/sweep.h>
 #include <kaboum/geom/width.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/region_excess.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -119,6 +121,70 @@ TEST_F(RobotTest, ThicknessIsInTheRobotsUnit) {
     EXPECT_GE(width, 0.05 * (1 - 1e-6));  // posed, and rounded
     EXPECT_LE(width, 0.05 * 2.5);
   }
+}
+
+// The mirrored shape and the other one have regions in other places of the one mesh: two sets.
+TEST_F(RobotTest, RegionsAreNearerInEveryPlacement) {
+  const robot::RobotFile file = arm();
+  RobotRequest request = fast(), coarse = fast();
+  for (RobotRequest* one : {&request, &coarse}) one->set.epsilon = Length{0.1};
+  const robot::Geometry& g = file.robot.links[1].collision[0];
+  geom::FrameRegions map;
+  map.regions.push_back({{"'grip'", {{}, g.origin * geom::Vec3(0.3, 0, 0), 0.1}, Length{0.01}},
+                         "tip",
+                         "map.json: region 1"});
+  request.take(robot::bounds_of_links(file, request.shapes, map));
+  ASSERT_EQ(request.regions.size(), 1U);
+  EXPECT_NE(request.parameters(), coarse.parameters());
+  EXPECT_NE(request.parameters("fore arm"), coarse.parameters("fore arm"));
+  EXPECT_EQ(request.parameters("base"), coarse.parameters("base"));
+  const SetCache cache(folder_ / "cache");
+  const CertifiedRobot plain = certify_robot(file, coarse, &cache),
+                       made = certify_robot(file, request, &cache);
+  EXPECT_EQ(plain.bodies.certificate().meshes.size(), 1U);
+  ASSERT_EQ(made.bodies.certificate().meshes.size(), 2U);
+  EXPECT_GT(made.bodies.artefact().size(), plain.bodies.artefact().size());
+  const std::vector<RegionVerdict> verdicts = region_verdicts(file, request.regions, made.bodies);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_TRUE(verdicts[0].held && verdicts[0].reached);
+  EXPECT_EQ(verdicts[0].epsilon, 0.01);
+  EXPECT_EQ(verdicts[0].links, std::vector<std::string>{"fore arm"});
+  EXPECT_FALSE(region_verdicts(file, request.regions, plain.bodies)[0].held);
+  // The bodies of the shape that the region is at, in the link's frame.
+  geom::Mesh posed = part();
+  for (geom::Vec3& v : posed.vertices) v = g.origin * v.cwiseProduct(g.size);
+  for (geom::Triangle& t : posed.triangles) std::swap(t[1], t[2]);
+  const auto farthest = [&](const CertifiedRobot& robot) {
+    const auto& shapes = robot.bodies.certificate().shapes;
+    const auto first = std::ranges::find(shapes, 1U, &robot::LinkShape::link);
+    geom::ConvexSet set = robot.bodies.certificate().meshes[*first->mesh].made.found.set.artefact();
+    for (geom::ConvexBody& body : set.bodies) {
+      for (geom::Vec3& v : body.core.vertices) v = g.origin * v.cwiseProduct(g.size);
+      for (geom::Triangle& t : body.core.triangles) std::swap(t[1], t[2]);
+    }
+    return verify::verify_region_excess(set, posed, {"", map.regions[0].region, 0.01 + 1e-9}, true)
+        .answer;
+  };
+  EXPECT_EQ(farthest(made), verify::Answer::Verified);
+  EXPECT_EQ(farthest(plain), verify::Answer::Refuted);
+}
+
+TEST_F(RobotTest, RegionsAndBudgetsDoNotGoTogether) {
+  RobotRequest request = fast();
+  robot::LinkRegion region;
+  region.name = "'grip'";
+  region.region.radius = 1;
+  region.epsilon = Length{0.01};
+  request.regions["fore arm"] = {region};
+  EXPECT_THROW(epsilon_within(arm(), request, {9, {}}), Error);
+  request.set.max_bodies = 3;
+  EXPECT_THROW(certify_robot(arm(), request), Error);
+  request = fast();
+  request.regions["nose"] = {region};
+  EXPECT_THROW(certify_robot(arm(), request), Error);
+  request = fast();
+  request.epsilons["base"] = Length{0.1};
+  EXPECT_THROW(request.take({{{"base", Length{0.2}}}, {}}), Error);
 }
 
 TEST_F(RobotTest, HasTheBytesOfTheTools) {

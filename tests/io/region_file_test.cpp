@@ -58,5 +58,57 @@ TEST(Regions, RefusalsNameTextAndRegion) {
   refused(R"("epsilon": 1, "colour": 2, "box": [[0,0,0],[1,1,1]])", "there is no member 'colour'");
 }
 
+TEST(Regions, OfRobotsNameFramesAndLinks) {
+  const geom::FrameRegions map = parse_frame_regions(R"({"regions": [
+      {"frame": "hand", "radius": 0.1, "epsilon": "2mm", "name": "grip"},
+      {"link": "finger", "epsilon": "0.5%"},
+      {"frame": "hand", "box": [[0, 0, 0], [1, 2, 3]], "epsilon": 1}]})",
+                                                     "map.json");
+  ASSERT_EQ(map.regions.size(), 2U);
+  ASSERT_EQ(map.links.size(), 1U);
+  EXPECT_EQ(map.regions[0].frame, "hand");
+  EXPECT_EQ(map.regions[0].name, "'grip'");
+  EXPECT_EQ(map.regions[0].place, "map.json: region 1");
+  EXPECT_EQ(map.regions[0].epsilon, Length{0.002});
+  EXPECT_TRUE(geom::holds(map.regions[0].region, {0, 0.09, 0}));
+  EXPECT_FALSE(geom::holds(map.regions[0].region, {0, 0.11, 0}));
+  EXPECT_EQ(map.regions[1].name, "region 3");
+  EXPECT_TRUE(geom::holds(map.regions[1].region, {0.5, 1.5, 2.5}));
+  EXPECT_EQ(map.links[0].link, "finger");
+  EXPECT_EQ(map.links[0].epsilon.text(), "0.5%");
+}
+
+TEST(Regions, OfRobotsAreRefusedWithTextAndRegion) {
+  const auto refused = [](const std::string& members, const std::string& why) {
+    std::string said = "no error";
+    try {
+      parse_frame_regions("{\"regions\": [{\"link\": \"a\", \"epsilon\": 1}, {" + members + "}]}",
+                          "map.json");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+      said = error.what();
+    }
+    EXPECT_TRUE(said.starts_with("map.json: region 2: " + why)) << said;
+  };
+  refused(R"("epsilon": 1, "box": [[0,0,0],[1,1,1]])", "frame is missing");
+  refused(R"("epsilon": 1, "frame": "hand")", "one of radius, box");
+  refused(R"("epsilon": 1, "frame": "hand", "radius": 1, "box": [[0,0,0],[1,1,1]])",
+          "one of radius");
+  refused(R"("epsilon": 1, "frame": 3, "radius": 1)", "frame is no text");
+  refused(R"("epsilon": 1, "frame": "hand", "radius": 0)", "radius must be above 0");
+  refused(R"("epsilon": 1, "frame": "hand", "frame": "arm", "radius": 1)",
+          "'frame' is given twice");
+  refused(R"("frame": "hand", "radius": 1)", "epsilon is missing");
+  refused(R"("epsilon": 1, "link": "hand", "radius": 1)", "a link is meant as a whole");
+  refused(R"("epsilon": 1, "link": "hand", "frame": "hand")", "a link is meant as a whole");
+  refused(R"("epsilon": 1, "frame": "hand", "radius": 1, "colour": 2)",
+          "there is no member 'colour'");
+  // Meshes have none of them.
+  EXPECT_TRUE(second(R"("epsilon": 1, "frame": "hand", "box": [[0,0,0],[1,1,1]])")
+                  .starts_with("map.json: region 2: a mesh has no frames"));
+  EXPECT_TRUE(
+      second(R"("epsilon": 1, "radius": 1)").starts_with("map.json: region 2: there is no"));
+}
+
 }  // namespace
 }  // namespace kaboum::io

@@ -1,5 +1,6 @@
 """Robots, sweeps and what the verifier says of them."""
 
+import json
 import os
 import pathlib
 import re
@@ -53,6 +54,41 @@ def test_links_are_held(arm):
     assert set(only.links) == {"tool"} and only.distance <= 0.01
     with pytest.raises(kaboum.Error, match="nose"):
         kaboum.certify_robot(arm, links=["nose"])
+
+
+def test_regions_as_the_tool(arm, tmp_path):
+    """The same bytes and answers of a map in a file, a map in Python, and the programs."""
+    regions = [{"name": "end", "frame": "tool", "radius": 1, "epsilon": "1%"}, {"link": "upper", "epsilon": "2%"}]
+    file = tmp_path / "map.json"
+    file.write_text(json.dumps({"regions": regions}))
+    made = kaboum.certify_robot(arm, epsilon="10%", effort="fast", epsilon_map=regions)
+    assert [(r["name"], r["links"], r["answer"], r["reached"]) for r in made.regions] == [("'end'", ["tool"], "verified", True)]
+    made.write(tmp_path / "mine")
+    program("bcd-decompose", arm, "-o", tmp_path / "its", "--epsilon", "10%", "--effort", "fast", "--epsilon-map", file, "--quiet")
+    assert files_in(tmp_path / "mine") == files_in(tmp_path / "its")
+    result = tmp_path / "mine" / "arm.urdf"
+    for given in (regions, file):
+        verdict = kaboum.verify_robot(arm, result, prepare=True, epsilon="10%", epsilon_map=given)
+        assert verdict
+        assert [s["region"] for s in verdict.claims["shapes"] if "region" in s] == ["'end'"]
+    kaboum.certify_robot(arm, epsilon="10%", effort="fast").write(tmp_path / "coarse")
+    coarse = kaboum.verify_robot(arm, tmp_path / "coarse" / "arm.urdf", prepare=True, epsilon="10%", epsilon_map=regions)
+    assert coarse.answer == "refuted"
+    spheres = tmp_path / "s.yaml"
+    lengths = [{"frame": "tool", "radius": 1, "epsilon": "20mm"}]
+    kaboum.write_spheres(arm, spheres, epsilon=0.05, effort="fast", epsilon_map=lengths)
+    verdict = kaboum.verify_spheres(arm, spheres, epsilon_map=lengths)
+    assert verdict and [r["answer"] for link in verdict.claims["links"] for r in link.get("regions", [])] == ["verified"]
+    for wrong, says in (([{"frame": "nose", "radius": 1, "epsilon": 1}], "epsilon_map: region 1: robot 'arm' has no frame 'nose'"),
+                        ({}, "epsilon_map must be"), ([{"frame": "tool", "epsilon": 1}], "one of radius")):
+        with pytest.raises(kaboum.Error, match=says):
+            kaboum.certify_robot(arm, epsilon_map=wrong)
+        with pytest.raises(kaboum.Error, match=says):
+            kaboum.verify_robot(arm, result, epsilon_map=wrong)
+    with pytest.raises(kaboum.Error, match="epsilon_map .*epsilons"):
+        kaboum.certify_robot(arm, epsilon_map=regions, epsilons={"tool": 0.1})
+    with pytest.raises(kaboum.Error, match="percentage"):
+        kaboum.verify_spheres(arm, spheres, epsilon_map=regions)
 
 
 def test_sweep_holds_the_robot_at_every_instant(arm):

@@ -222,5 +222,103 @@ TEST(RobotVerdict, TheWorstShapeIsTheLinks) {
       << gone.links[0].sentence;
 }
 
+/// A question about a box in a turned and scaled frame, and a ball about one of its corners.
+struct RegionCase : Case {
+  robot::LinkBounds bounds = {};
+  std::optional<Length> epsilon = Length{0.6};
+
+  /// @param bodies  in the mesh's frame
+  explicit RegionCase(const std::vector<geom::Mesh>& bodies, double radius = 0.3,
+                      const geom::Vec3& scale = {2, 2, 2})
+      : Case(kBox, bodies) {
+    robot::Transform pose;
+    pose.linear = robot::rotation_from_rpy(0.4, -1.1, 2.3);
+    pose.translation = {3, -1, 2};
+    for (robot::Robot* one : {&original, &result})
+      for (Geometry& g : one->links[0].collision) {
+        g.size = scale;
+        g.origin = pose;
+      }
+    robot::LinkRegion region;
+    region.name = "'corner'";
+    region.epsilon = Length{0.05};
+    region.region.center = pose * scale;  // of the corner (1, 1, 1)
+    region.region.radius = radius;
+    bounds.regions["l"] = {region};
+  }
+  verify::RobotVerdict decide_it() {
+    verify::RobotQuestion q{
+        original, result,
+        [this](const Geometry& g, bool) -> const verify::MeshFile& { return files.at(g.mesh); }};
+    q.epsilon = epsilon;
+    q.bounds = bounds;
+    return verify::decide(q);
+  }
+};
+
+// Bodies are scaled by 2: 0.1 of the mesh's unit is 0.2 of the robot's.
+TEST(RobotVerdict, RegionsAreNearerInTheFrameOfTheLink) {
+  const geom::Mesh near = block_between({-0.1, -0.1, -0.1}, {1.01, 1.01, 1.01}),
+                   far = block_between({-0.01, -0.01, -0.01}, {1.01, 1.01, 1.1});
+  const verify::RobotVerdict yes = RegionCase({near}).decide_it();
+  EXPECT_EQ(yes.answer, Answer::Verified);
+  ASSERT_EQ(yes.links.at(0).shapes.size(), 3U);
+  EXPECT_EQ(yes.links[0].shapes[2].region, "'corner'");
+  EXPECT_TRUE(yes.links[0].shapes[2].reached);
+  EXPECT_EQ(yes.links[0].shapes[2].bound, 0.025);
+  // 0.2 is too far there, and would do elsewhere.
+  RegionCase out({far});
+  const verify::RobotVerdict no = out.decide_it();
+  EXPECT_EQ(no.answer, Answer::Refuted);
+  EXPECT_EQ(no.links.at(0).shapes.at(1).answer, Answer::Verified);
+  EXPECT_EQ(no.links[0].shapes.at(2).answer, Answer::Refuted);
+  EXPECT_NE(no.links[0].sentence.find("in the region 'corner'"), std::string::npos)
+      << no.links[0].sentence;
+  out.epsilon.reset();  // regions need none
+  EXPECT_EQ(out.decide_it().answer, Answer::Refuted);
+  out.bounds = {};
+  EXPECT_EQ(out.decide_it().answer, Answer::Verified);
+  // A part beside the corner that is too far, as near to it as the region reaches, and beyond.
+  const auto beside = [&](double at) {
+    return std::vector<geom::Mesh>{near, block_between({at - 0.01, 0.4, 0.4}, {at, 1.1, 1.1})};
+  };
+  EXPECT_EQ(RegionCase(beside(0.9)).decide_it().answer, Answer::Refuted);
+  EXPECT_EQ(RegionCase(beside(0.8)).decide_it().answer, Answer::Verified);
+  // Not reached at all.
+  RegionCase apart({far});
+  apart.bounds.regions["l"][0].region.center = {50, 50, 50};
+  const verify::RobotVerdict nothing = apart.decide_it();
+  EXPECT_EQ(nothing.answer, Answer::Verified);
+  EXPECT_FALSE(nothing.links.at(0).shapes.at(2).reached);
+}
+
+// Where the scale is uneven, what is certain is said, and nothing else.
+TEST(RobotVerdict, RegionsOfUnevenScales) {
+  const geom::Vec3 uneven(1, 2, 4);
+  const auto body = [](double x, double y, double z) {
+    return std::vector{block_between({-0.01, -0.01, -0.01}, {1 + x, 1 + y, 1 + z})};
+  };
+  // 0.05 is 0.0125 where all axes may be the longest, 0.05 where none is.
+  EXPECT_EQ(RegionCase(body(0.005, 0.005, 0.005), 0.3, uneven).decide_it().answer,
+            Answer::Verified);
+  EXPECT_EQ(RegionCase(body(0.03, 0.001, 0.001), 0.3, uneven).decide_it().answer,
+            Answer::Undecided);
+  EXPECT_EQ(RegionCase(body(0.07, 0.001, 0.001), 0.3, uneven).decide_it().answer, Answer::Refuted);
+}
+
+TEST(RobotVerdict, LinksHaveAnEpsilonOfTheirOwn) {
+  RegionCase one({kRound});
+  one.bounds = {};
+  EXPECT_EQ(one.decide_it().answer, Answer::Verified);
+  one.bounds.epsilons["l"] = Length{0.1};
+  EXPECT_EQ(one.decide_it().answer, Answer::Refuted);
+  one.epsilon = Length{0.1};
+  one.bounds.epsilons["l"] = Length{0.6};
+  EXPECT_EQ(one.decide_it().answer, Answer::Verified);
+  one.epsilon.reset();
+  one.bounds.epsilons["l"] = Length{0.1};
+  EXPECT_EQ(one.decide_it().answer, Answer::Refuted);
+}
+
 }  // namespace
 }  // namespace kaboum::test

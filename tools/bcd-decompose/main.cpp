@@ -106,7 +106,7 @@ int decompose(const CLI::App& app, DecomposeOptions& o) {
                  {"--preview", o.preview},
                  {"--depfile", o.depfile}},
                 inputs);
-  if (o.epsilon_map) o.set.request.regions = io::read_regions(*o.epsilon_map);
+  if (o.epsilon_map && !is_robot(o.input)) o.set.request.regions = io::read_regions(*o.epsilon_map);
   const ThreadLimit threads(o.common.threads);
   if (is_robot(o.input) && o.robot_bodies + o.robot_vertices == 0) certify::be_of_robot(o.set);
   try {

@@ -109,7 +109,7 @@ void describe(CLI::App& app, DecomposeOptions& o) {
          "Regions (boxes, half-spaces and balls in the coordinates of the bodies, which are "
          "those of INPUT after --scale; a JSON file: docs/formats.md) with an epsilon each: no "
          "point of the bodies in one is farther than that from the solid, and elsewhere --epsilon "
-         "counts; for one mesh")
+         "counts. Of a robot each is fixed in the frame of a link, or is a link as a whole")
       ->type_name("FILE");
   add_require_closed(app, o.set.preparation);
   add_output(app, o);
@@ -152,9 +152,6 @@ void describe(CLI::App& app, DecomposeOptions& o) {
 
 void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
   require_none(certify::contradiction(o.set, o.stated));
-  if (o.epsilon_map && is_robot(o.input))
-    throw Error(ErrorCode::InvalidArgument,
-                "--epsilon-map is for one mesh; --epsilons states those of a robot's links");
   if (o.set.preparation.mode != certify::PreparationOptions::Mode::Auto)
     require_absent(app, "--prepare", {"--require-closed"});
   if (is_robot(o.input))
@@ -177,8 +174,9 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
       throw Error(ErrorCode::InvalidArgument, std::string(budget) +
                                                   " is for robots (.urdf, .xacro, .xml, .sdf); " +
                                                   o.input + " is taken for a mesh");
-    require_absent(app, budget,
-                   {"--epsilon", "--epsilons", "--max-bodies", "--max-total-vertices"});
+    require_absent(
+        app, budget,
+        {"--epsilon", "--epsilons", "--epsilon-map", "--max-bodies", "--max-total-vertices"});
   }
   if (app.count("--share") != 0 &&
       o.set.request.body_kind != certify::SetRequest::BodyKind::Spheres)
@@ -195,9 +193,10 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
     if (!is_robot(o.input))
       throw Error(ErrorCode::InvalidArgument,
                   "--repair is for robots (.urdf, .xacro); " + o.input + " is taken for a mesh");
-    std::vector<std::string> others{"--bodies", "--epsilons", "--robot-bodies", "--robot-vertices",
-                                    "--srdf",   "--preview",  "--html-report",  "--robot-format",
-                                    "--for",    "--no-cache", "--inertia",      "--pairs"};
+    std::vector<std::string> others{
+        "--bodies",   "--epsilons", "--epsilon-map", "--robot-bodies", "--robot-vertices",
+        "--srdf",     "--preview",  "--html-report", "--robot-format", "--for",
+        "--no-cache", "--inertia",  "--pairs"};
     for (const auto& option : certify::set_options())
       if (option.name != "epsilon" && option.name != "effort" && option.name != "geometry")
         others.push_back("--" + std::string(option.name));

@@ -10,6 +10,7 @@
 #include <kaboum/certify/sphere_repair.h>
 #include <kaboum/io/convex_io.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/region_file.h>
 #include <kaboum/page/robot_page.h>
 #include <kaboum/page/set_page.h>
 #include <kaboum/pairs/matrix.h>
@@ -49,6 +50,8 @@ certify::RobotRequest robot_request(const DecomposeOptions& o, const robot::Robo
   certify::RobotRequest r{
       certify::request_of(o.set), choice, {}, {}, read_epsilons(o.robot.epsilons, robot.robot)};
   r.format = o.input_format.stated();
+  if (o.epsilon_map)
+    r.take(robot::bounds_of_links(robot, choice, io::read_frame_regions(*o.epsilon_map)));
   return r;
 }
 
@@ -79,6 +82,7 @@ struct Run {
   certify::CertifiedRobot made = {};
   std::vector<double> seconds = {};  ///< of each mesh, by the clock [s]
   std::vector<certify::LinkVerdict> verdicts = {};
+  std::vector<certify::RegionVerdict> regions = {};
   Notes notes = {};                             ///< on meshes
   Notes written = {};                           ///< on what was written
   std::size_t cached = 0;                       ///< meshes
@@ -167,6 +171,23 @@ void say_table(const Run& run, const std::vector<LinkLine>& links, const Notes& 
   for (const std::string& line : shortfalls.lines()) log(run.o.common.quiet, line);
 }
 
+/// Of the regions of --epsilon-map.
+void say_regions(Run& run, const certify::CertifiedBodies& bodies) {
+  run.regions = certify::region_verdicts(run.robot, run.request.regions, bodies);
+  for (const certify::RegionVerdict& one : run.regions) log(run.o.common.quiet, in_words(one));
+}
+
+Json regions_report(const Run& run) {
+  Json out = Json::array();
+  for (const certify::RegionVerdict& one : run.regions)
+    out.push_back({{"name", one.name},
+                   {"links", one.links},
+                   {"answer", one.held ? "verified" : "undecided"},
+                   {"bound", one.epsilon},
+                   {"reached", one.reached}});
+  return out;
+}
+
 std::vector<std::string> all_notes(const Run& run) {
   std::vector<std::string> out = run.notes.lines();
   for (std::string& text : run.written.lines()) out.push_back(std::move(text));
@@ -252,12 +273,13 @@ Json links_report(const Run& run, const std::vector<std::string>& files) {
 /// and of distances to what the files hold, not to wraps.
 RobotCheck check_of(const Run& run, const RobotWriter& output) {
   std::optional<Length> epsilon = run.request.set.wanted_epsilon();
-  if (!run.request.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
+  if (!run.o.robot.epsilons.empty() || outcome_of(run.verdicts) != certify::Outcome::Held)
     epsilon.reset();
   for (const certify::CertifiedLinkMesh& mesh : run.bodies().meshes)
     if (!mesh.held || mesh.made.found.set.certificate().wrap) epsilon.reset();
   return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.set.preparation, epsilon, run.verdicts);
+                         run.o.set.preparation, epsilon, epsilon ? run.o.epsilon_map : std::nullopt,
+                         run.verdicts);
 }
 
 Json robot_report(const Run& run, const RobotWriter& output) {
@@ -275,6 +297,7 @@ Json robot_report(const Run& run, const RobotWriter& output) {
                  {"check", check_of(run, output).command},
                  {"input", {{"file", run.o.input}}},
                  {"notes", all_notes(run)},
+                 {"regions", regions_report(run)},
                  {"parameters", run.request.parameters()}});
   if (run.pairs) report["pairs_of_links"] = pairs_report(*run.pairs);
   if (!run.o.inertia.empty()) report["inertia"] = report_of(run.robot.robot, run.inertia);
@@ -406,10 +429,10 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   Json meshes = Json::array();
   Notes shortfalls;
   const certify::CertifiedBodies bodies = [&] {
-    MeshProgress progress(
-        "bcd-decompose", o.common.quiet,
-        certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons),
-        cache != nullptr);
+    MeshProgress progress("bcd-decompose", o.common.quiet,
+                          certify::wanted_meshes(run.robot, run.request.shapes,
+                                                 run.request.epsilons, run.request.regions),
+                          cache != nullptr);
     certify::RobotHooks hooks = hooks_of(run, progress, shortfalls);
     hooks.made = [&, say = hooks.made](const certify::CertifiedLinkMesh& mesh) {
       // A link without spheres is no obstacle for whoever reads them.
@@ -425,6 +448,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   }();
   run.verdicts = verdicts(bodies);
   say_table(run, lines_of(run, bodies), shortfalls);
+  say_regions(run, bodies);
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   double distance = bodies.certificate().distance;
   distance += write_shapes(run, format, bodies, unchecked);
@@ -437,7 +461,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                    : counted(bodies.artefact().size(), "body", "bodies")) +
           ", no point farther from its link's shapes than " + number_up(distance) +
           ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
-          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output + " decides it");
+          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output +
+          (o.epsilon_map ? " --epsilon-map " + *o.epsilon_map : "") + " decides it");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
@@ -449,11 +474,13 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                   {"input", {{"file", o.input}, {"sha256", run.robot.sha256}}},
                   {"output", {{"file", o.output}}},
                   {"parameters", run.request.parameters()},
+                  {"regions", regions_report(run)},
                   {"notes", run.notes.lines()}});
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.pairs.empty()) inputs.push_back(o.pairs);
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    if (o.epsilon_map) inputs.push_back(*o.epsilon_map);
     inputs.insert(inputs.end(), parts.begin(), parts.end());
     for (std::string& file : strings(bodies.certificate().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, {o.output}, inputs);
@@ -563,12 +590,13 @@ int decompose_robot(const DecomposeOptions& o) {
   RobotWriter output(std::move(folder), o.output, run.robot, "bodies", "");
   run.request = robot_request(o, run.robot, output.options().shapes);
   run.request.partial = true;
-  const certify::WantedMeshes meshes =
-      certify::wanted_meshes(run.robot, run.request.shapes, run.request.epsilons);
+  const certify::WantedMeshes meshes = certify::wanted_meshes(
+      run.robot, run.request.shapes, run.request.epsilons, run.request.regions);
   output.plan(meshes);
   if (o.srdf) output.folder().require_own_document(".srdf");
   require_formats(meshes, o.input_format);
   certify_links(run, meshes);
+  say_regions(run, run.made.bodies);
   if (run.pairs) output.add_document(".srdf", run.pairs->srdf);
   write(run, output);
   log(o.common.quiet,
@@ -596,6 +624,7 @@ int decompose_robot(const DecomposeOptions& o) {
   if (!o.depfile.empty()) {
     std::vector<std::string> inputs{o.input};
     if (!o.robot.epsilons.empty()) inputs.push_back(o.robot.epsilons);
+    if (o.epsilon_map) inputs.push_back(*o.epsilon_map);
     inputs.insert(inputs.end(), included.begin(), included.end());
     for (std::string& file : strings(run.bodies().files)) inputs.push_back(std::move(file));
     write_depfile(o.depfile, output.documents(), inputs);

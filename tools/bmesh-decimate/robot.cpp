@@ -148,7 +148,7 @@ RobotCheck check_of(const Run& run, const RobotWriter& output) {
   for (const certify::EnclosedLinkMesh& mesh : run.made.meshes)
     if (!mesh.flaw.empty() || mesh.made.enclosure.certificate().wrap) epsilon.reset();
   return tools::check_of(run.o.input, output.folder().urdf().string(), run.o.robot,
-                         run.o.mesh.preparation, epsilon, run.verdicts);
+                         run.o.mesh.preparation, epsilon, {}, run.verdicts);
 }
 
 Json decimated_report(const Run& run, const RobotWriter& output) {

@@ -189,22 +189,30 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
        "deep. With --epsilon, a length, also whether no point of a sphere is farther than that "
        "from "
        "its link's shapes (meshes prepared as bcd-decompose does, holes filled). Lengths are those "
-       "of the robot's file: metres. Beside these only --geometry, --links, --package-path and "
-       "--page may be stated")
+       "of the robot's file: metres. Beside these only --epsilon-map, --geometry, --links, "
+       "--package-path "
+       "and --page may be stated")
       ->type_name("FILE");
   c->add_option("--page", o.robot.page,
                 "With spheres: write a page (.html) that shows the robot with them in a browser, "
                 "what sticks out in red, and a row for each link")
       ->check(page_name())
       ->type_name("FILE");
-  c->add_option("--bodies", o.robot.bodies,
-                "Instead of RESULT, a robot (URDF, MJCF, SDF) whose collision shapes are spheres, "
-                "boxes, capsules and "
-                "cylinders with or without spheres at their ends: decides of each link whether its "
-                "own shapes hold its triangles, as --spheres does of spheres, with --epsilon "
-                "whether none is farther from the link's shapes, and whether both "
-                "robots move alike (of a file in another format up to 1e-9 of the robot's size). "
-                "Beside it only --epsilon, --geometry, --links and --package-path may be stated")
+  c->add_option(
+       "--bodies", o.robot.bodies,
+       "Instead of RESULT, a robot (URDF, MJCF, SDF) whose collision shapes are spheres, "
+       "boxes, capsules and "
+       "cylinders with or without spheres at their ends: decides of each link whether its "
+       "own shapes hold its triangles, as --spheres does of spheres, with --epsilon "
+       "whether none is farther from the link's shapes, and whether both "
+       "robots move alike (of a file in another format up to 1e-9 of the robot's size). "
+       "Beside it only --epsilon, --epsilon-map, --geometry, --links and --package-path may be "
+       "stated")
+      ->type_name("FILE");
+  c->add_option("--epsilon-map", o.robot.epsilon_map,
+                "Also decide that no point of a body in a region is farther from what the body's "
+                "link has than the region's own epsilon, and of links as a whole their own instead "
+                "of --epsilon (a JSON file, as for bcd-decompose ROBOT)")
       ->type_name("FILE");
   add_xacro_arguments(*c, o.robot.xacro_arguments);
   add_request_options(*c, verify::robot_verdict_options(), o.robot.how, o.stated);

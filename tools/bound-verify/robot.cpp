@@ -5,12 +5,14 @@
 #include <kaboum/base/notes.h>
 #include <kaboum/geom/inside_out.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/io/region_file.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 #include "common/verdict.h"
 #include "mesh_input.h"
@@ -94,6 +96,10 @@ Json shape_json(const verify::ShapeVerdict& s) {
                         {"reason", s.distance->reason},
                         {"bound", *s.bound},
                         {"largest_found", s.distance->largest}};
+  if (!s.region.empty()) {
+    json["region"] = s.region;
+    json["reached"] = s.reached;
+  }
   return json;
 }
 
@@ -163,6 +169,7 @@ class RobotVerifier {
                              !of_result && o_.how.shapes.skip_missing);
     };
     verify::RobotQuestion q = verify::question_of(original_.robot, result_.robot, file_of, o_.how);
+    q.bounds = bounds_of(o_, original_);
     q.progress = [this](const std::string& what) { progress_.show("deciding: " + what); };
     return q;
   }
@@ -189,6 +196,12 @@ class RobotVerifier {
 
   void take_notes(const verify::RobotVerdict& verdict) {
     for (const auto& [file, text] : verdict.notes) notes_.add(file, text);
+    std::map<std::string, bool> regions;  // whether any body reaches them
+    for (const verify::LinkVerdict& link : verdict.links)
+      for (const verify::ShapeVerdict& shape : link.shapes)
+        if (!shape.region.empty()) regions[shape.region] = regions[shape.region] || shape.reached;
+    for (const auto& [region, reached] : regions)
+      if (!reached) notes_.add(*o_.epsilon_map, "no body of a mesh reaches the region " + region);
     if (!is_prepared())
       for (const verify::LinkVerdict& link : verdict.links)
         for (const verify::ShapeVerdict& shape : link.shapes)
@@ -300,6 +313,11 @@ class RobotVerifier {
 };
 
 }  // namespace
+
+robot::LinkBounds bounds_of(const VerifyRobotOptions& o, const robot::RobotFile& robot) {
+  if (!o.epsilon_map) return {};
+  return robot::bounds_of_links(robot, o.how.shapes, io::read_frame_regions(*o.epsilon_map));
+}
 
 std::string line_on_joints(const std::string& difference) {
   return difference.empty() ? "joints: verified: both robots move alike"

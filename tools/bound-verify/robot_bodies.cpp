@@ -146,7 +146,7 @@ struct LinkAnswer {
   std::size_t shapes = 0, triangles = 0;
   Answer answer = Answer::Verified;
   Answer held = Answer::Undefined;  ///< `answer` without the distance
-  std::optional<verify::DistanceClaim> distance = {};
+  verify::LinkReach reach = {};
   verify::Inclusion inclusion;
 };
 
@@ -309,7 +309,9 @@ std::optional<double> length_of_reach(const std::optional<Length>& epsilon) {
   return epsilon->in("m").value;
 }
 
-Json reach_json(const verify::DistanceClaim& claim) {
+namespace {
+
+Json json_of_reach(const verify::DistanceClaim& claim) {
   Json json{{"answer", name_of(claim.answer)}, {"reason", claim.reason}};
   if (claim.answer == verify::Answer::Refuted)
     json["witness"] = {{"point", {claim.at.x(), claim.at.y(), claim.at.z()}},
@@ -317,15 +319,29 @@ Json reach_json(const verify::DistanceClaim& claim) {
   return json;
 }
 
+}  // namespace
+
+void add_reach(const verify::LinkReach& reach, Json& claims) {
+  if (reach.all) claims["distance"] = json_of_reach(*reach.all);
+  for (const verify::LinkReach::InRegion& one : reach.regions) {
+    Json json = json_of_reach(one.claim);
+    json["name"] = one.name;
+    json["bound"] = one.epsilon;
+    json["reached"] = one.reached;
+    claims["regions"].push_back(std::move(json));
+  }
+}
+
 int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
-  require_apart({{"--report", common.report}}, {o.original, o.bodies});
+  require_apart({{"--report", common.report}}, {o.original, o.bodies, o.epsilon_map.value_or("")});
   const robot::RobotFile robot =
       robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
   robot::require_links(robot, o.how.shapes.links);
   const robot::RobotFile bodies = robot::read_robot(o.bodies, robot::Motions::None);
   require_known(bodies, robot);
   const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
+  const robot::LinkBounds of_links = bounds_of(o, robot);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   Answer all = Answer::Verified;
   std::size_t held = 0, within = 0, judged = 0, count = 0;
@@ -345,14 +361,11 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     const Bounds bounds = bounds_of(own, o.bodies);
     LinkAnswer now = judge(link.name, mesh, round, bounds, own.collision);
     now.held = now.answer;
-    if (epsilon) {
-      now.distance = verify::verify_link_reach(
-          bounds.inside, bounds.outside, verify::measured_link(o.how.shapes.shapes_of(link), files),
-          *epsilon);
-      now.answer = verify::worse(now.answer, now.distance->answer);
-      now.sentence += "; " + verify::sentence_of_reach(*now.distance, *epsilon);
-      within += now.distance->answer == Answer::Verified ? 1 : 0;
-    }
+    now.reach = verify::decide_link_reach(bounds.inside, bounds.outside, link.name,
+                                          o.how.shapes.shapes_of(link), files, epsilon, of_links);
+    now.answer = verify::worse(now.answer, now.reach.answer());
+    now.sentence += now.reach.sentence();
+    within += now.reach.all && now.reach.all->answer == Answer::Verified ? 1 : 0;
     all = verify::worse(all, now.answer);
     ++judged;
     held += now.held == Answer::Verified ? 1 : 0;
@@ -365,7 +378,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
                      {"claims",
                       {{"surface", json_of_claim(now.inclusion.surface)},
                        {"solid", json_of_claim(now.inclusion.solid)}}}});
-    if (now.distance) links.back()["claims"]["distance"] = reach_json(*now.distance);
+    add_reach(now.reach, links.back()["claims"]);
     if (!common.quiet)
       out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
           << std::endl;

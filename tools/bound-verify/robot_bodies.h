@@ -1,6 +1,6 @@
 #pragma once
 
-#include <kaboum/verify/distance.h>
+#include <kaboum/verify/link_reach.h>
 
 #include <optional>
 
@@ -24,7 +24,7 @@ int verify_bodies(const VerifyRobotOptions& options, const CommonOptions& common
 /// @throws Error{InvalidArgument} on a percentage: links are of several meshes
 std::optional<double> length_of_reach(const std::optional<Length>& epsilon);
 
-/// A distance claim about a link's bodies, as reports have it.
-Json reach_json(const verify::DistanceClaim& claim);
+/// Adds what was decided of the reach of a link's bodies to its claims, as reports have it.
+void add_reach(const verify::LinkReach& reach, Json& claims);
 
 }  // namespace kaboum::tools

@@ -41,7 +41,7 @@ Json link_json(const verify::LinkSpheresVerdict& link) {
     json["missed"] = {{"point", point_json(link.missed->point)}};
     if (std::isfinite(link.missed->depth)) json["missed"]["depth"] = link.missed->depth;
   }
-  if (link.distance) json["claims"]["distance"] = reach_json(*link.distance);
+  add_reach(link.reach, json["claims"]);
   return json;
 }
 
@@ -49,7 +49,8 @@ Json link_json(const verify::LinkSpheresVerdict& link) {
 
 int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
-  require_apart({{"--report", common.report}, {"--page", o.page}}, {o.original, o.spheres});
+  require_apart({{"--report", common.report}, {"--page", o.page}},
+                {o.original, o.spheres, o.epsilon_map.value_or("")});
   const robot::RobotFile robot =
       robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
   robot::require_links(robot, o.how.shapes.links);
@@ -62,7 +63,7 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
           out << "link '" << link.link << "': " << name_of(link.answer) << ": " << link.sentence
               << std::endl;
       },
-      length_of_reach(o.how.epsilon));
+      length_of_reach(o.how.epsilon), bounds_of(o, robot));
   for (const std::string& note : verdict.notes)
     log(common.quiet, "note: " + o.spheres + ": " + note);
   if (!o.page.empty()) io::write_file(o.page, page_of_spheres(robot, o.spheres, verdict));

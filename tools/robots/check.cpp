@@ -57,7 +57,7 @@ void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerd
 
 RobotCheck check_of(const std::string& original, const std::string& result,
                     const RobotOptions& options, const certify::PreparationOptions& preparation,
-                    const std::optional<Length>& epsilon,
+                    const std::optional<Length>& epsilon, const std::optional<std::string>& map,
                     const std::vector<certify::LinkVerdict>& verdicts) {
   const auto file = [](const std::string& path) {
     return shell_word(path.starts_with('-') ? "./" + path : path);
@@ -87,6 +87,7 @@ RobotCheck check_of(const std::string& original, const std::string& result,
   for (const std::string& folder : options.shapes.packages)
     out.command += " --package-path " + shell_word(folder);
   if (epsilon) out.command += " --epsilon " + shell_word(epsilon->text());
+  if (map) out.command += " --epsilon-map " + shell_word(*map);
   return out;
 }
 

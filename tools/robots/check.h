@@ -38,9 +38,10 @@ struct RobotCheck {
 
 /// @param original, result  URDFs
 /// @param epsilon  that is to be decided as well
+/// @param map      file of regions that are; nullopt: none
 RobotCheck check_of(const std::string& original, const std::string& result,
                     const RobotOptions& options, const certify::PreparationOptions& preparation,
-                    const std::optional<Length>& epsilon,
+                    const std::optional<Length>& epsilon, const std::optional<std::string>& map,
                     const std::vector<certify::LinkVerdict>& verdicts);
 
 }  // namespace kaboum::tools

@@ -92,20 +92,40 @@ HeldShape Holders::hold_any(const geom::Mesh& mesh, Claims claims,
   return out;
 }
 
+namespace {
+
+/// All meshes; `to_solid` becomes false where one is open.
+geom::Mesh sum_of_meshes(const std::vector<geom::Mesh>& meshes, bool& to_solid) {
+  geom::ConvexSet all;
+  for (const geom::Mesh& mesh : meshes) {
+    all.bodies.push_back({"", mesh});
+    to_solid = to_solid && closed(mesh);
+  }
+  return sum_of(all);
+}
+
+}  // namespace
+
 HeldDistance Holders::distance(const std::vector<geom::Mesh>& meshes, double bound,
                                const InclusionOptions& limits) const {
   HeldDistance out;
   if (set_.bodies.empty() || set_.bodies.size() < given_) return out;
-  geom::ConvexSet all;
-  for (const geom::Mesh& mesh : meshes) {
-    all.bodies.push_back({"", mesh});
-    out.to_solid = out.to_solid && closed(mesh);
-  }
+  const geom::Mesh all = sum_of_meshes(meshes, out.to_solid);
   out.of_surface = !all_convex();
   DistanceClaimOptions options;
   options.to_solid = out.to_solid;
-  out.claim = out.of_surface ? verify_distance(sum_, sum_of(all), bound, options)
-                             : verify_excess(set_, sum_of(all), bound, out.to_solid, limits);
+  out.claim = out.of_surface ? verify_distance(sum_, all, bound, options)
+                             : verify_excess(set_, all, bound, out.to_solid, limits);
+  return out;
+}
+
+HeldDistance Holders::distance_in_region(const std::vector<geom::Mesh>& meshes,
+                                         const geom::BoundedRegion& region,
+                                         const InclusionOptions& limits) const {
+  HeldDistance out;
+  if (set_.bodies.empty() || set_.bodies.size() < given_ || !all_convex()) return out;
+  const geom::Mesh all = sum_of_meshes(meshes, out.to_solid);
+  out.claim = verify_region_excess(set_, all, region, out.to_solid, limits);
   return out;
 }
 

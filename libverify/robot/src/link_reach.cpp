@@ -1,4 +1,5 @@
 // How far bodies of a link reach beyond its shapes.
+#include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/geom/body_polytopes.h>
 #include <kaboum/geom/convex_hull.h>
@@ -7,6 +8,7 @@
 #include <kaboum/robot/mesh_files.h>
 #include <kaboum/verify/cover.h>
 #include <kaboum/verify/link_reach.h>
+#include <kaboum/verify/region_excess.h>
 #include <kaboum/verify/subject.h>
 
 #include <cmath>
@@ -83,28 +85,111 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles
   return out;
 }
 
-DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
-                                const MeasuredLink& link, double epsilon) {
+namespace {
+
+/// The answer that bodies round those that are meant and a polytope within the link's shapes
+/// verify, and the others refute.
+/// @param reaches_round, reaches_inside  decide it of bodies and shapes
+template <class ReachesRound, class ReachesInside>
+DistanceClaim between(const geom::ConvexSet& inside, const geom::ConvexSet& round,
+                      const MeasuredLink& link, const ReachesRound& reaches_round,
+                      const ReachesInside& reaches_inside) {
   DistanceClaim out;
   if (round.bodies.empty()) {
     out.answer = Answer::Verified;
     return out;
   }
-  const auto of = [&](const geom::ConvexSet& set, const geom::Mesh& shapes) {
+  const auto of = [&](const geom::ConvexSet& set, const geom::Mesh& shapes, const auto& reaches) {
     DistanceClaim claim;
     claim.answer = Answer::Undecided;
     claim.reason = "the link's shapes have no area";
-    return shapes.triangles.empty() ? claim : verify_excess(set, shapes, epsilon, true);
+    return shapes.triangles.empty() ? claim : reaches(set, shapes);
   };
-  out = of(round, link.inside);
+  out = of(round, link.inside, reaches_round);
   if (out.answer == Answer::Verified) return out;
   if (!inside.bodies.empty()) {
-    DistanceClaim necessary = of(inside, link.round);
+    DistanceClaim necessary = of(inside, link.round, reaches_inside);
     if (necessary.answer == Answer::Refuted) return necessary;
   }
   out.answer = Answer::Undecided;
   if (out.reason.empty())
     out.reason = "bodies a little larger are farther away, and a little smaller ones are not";
+  return out;
+}
+
+}  // namespace
+
+DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
+                                const MeasuredLink& link, double epsilon) {
+  const auto reaches = [&](const geom::ConvexSet& set, const geom::Mesh& shapes) {
+    return verify_excess(set, shapes, epsilon, true);
+  };
+  return between(inside, round, link, reaches, reaches);
+}
+
+namespace {
+
+double length_of(const Length& epsilon, const std::string& what) {
+  if (epsilon.percent)
+    throw Error(ErrorCode::InvalidArgument,
+                what +
+                    ": a percentage has no meaning for bodies that hold several meshes: state a "
+                    "length");
+  return epsilon.in("m").value;
+}
+
+LinkReach::InRegion reach_in(const robot::LinkRegion& region, const geom::ConvexSet& inside,
+                             const geom::ConvexSet& round, const MeasuredLink& link) {
+  LinkReach::InRegion out{region.name, length_of(region.epsilon, "the region " + region.name)};
+  const auto in = [&](robot::Side side) {
+    return [&, side](const geom::ConvexSet& set, const geom::Mesh& shapes) {
+      const auto placed = robot::region_in_link(region, side);
+      DistanceClaim claim;
+      claim.answer = Answer::Undecided;
+      claim.reason = "rounding leaves nothing of the region";
+      return placed ? verify_region_excess(set, shapes, {region.name, placed->region, out.epsilon},
+                                           true)
+                    : claim;
+    };
+  };
+  out.reached = may_reach(round, robot::region_in_link(region, robot::Side::Round)->region);
+  out.claim = between(inside, round, link, in(robot::Side::Round), in(robot::Side::Within));
+  return out;
+}
+
+}  // namespace
+
+Answer LinkReach::answer() const {
+  Answer out = all ? all->answer : Answer::Verified;
+  for (const InRegion& one : regions) out = worse(out, one.claim.answer);
+  return out;
+}
+
+std::string LinkReach::sentence() const {
+  std::string out = all ? "; " + sentence_of_reach(*all, epsilon) : std::string();
+  for (const InRegion& one : regions)
+    out += "; in the region " + one.name + " " +
+           (one.reached ? sentence_of_reach(one.claim, one.epsilon) : "there is no point of them");
+  return out;
+}
+
+LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
+                            const std::string& link, const std::vector<Geometry>& shapes,
+                            robot::MeshFiles& files, std::optional<double> epsilon,
+                            const robot::LinkBounds& bounds) {
+  LinkReach out;
+  if (const auto own = bounds.epsilons.find(link); own != bounds.epsilons.end())
+    epsilon = length_of(own->second, "link '" + link + "'");
+  const auto regions = bounds.regions.find(link);
+  if (!epsilon && regions == bounds.regions.end()) return out;
+  const MeasuredLink measured = measured_link(shapes, files);
+  if (epsilon) {
+    out.epsilon = *epsilon;
+    out.all = verify_link_reach(inside, round, measured, *epsilon);
+  }
+  if (regions != bounds.regions.end())
+    for (const robot::LinkRegion& region : regions->second)
+      out.regions.push_back(reach_in(region, inside, round, measured));
   return out;
 }
 

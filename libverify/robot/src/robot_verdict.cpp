@@ -6,6 +6,7 @@
 #include <kaboum/verify/held_shape.h>
 #include <kaboum/verify/matching_shapes.h>
 #include <kaboum/verify/motion_alike.h>
+#include <kaboum/verify/region_excess.h>
 #include <kaboum/verify/robot_verdict.h>
 #include <kaboum/verify/subject.h>
 
@@ -214,7 +215,7 @@ class RobotJudge {
       return std::ranges::any_of(link.shapes, &ShapeVerdict::is_judged);
     });
     if (first_error_ && !any_judged) throw Error(*first_error_);
-    if (q_.epsilon) look_for_strangers();
+    look_for_strangers();
     return std::move(out_);
   }
 
@@ -267,11 +268,12 @@ class RobotJudge {
         throw Error(*body.error);
       bodies.push_back(&body);
     }
-    const geom::Vec3 scale = shapes[match.originals.front()].size.cwiseAbs();
-    const Key key{originals, bodies, scale.x(), scale.y(), scale.z()};
+    const Geometry& g = shapes[match.originals.front()];
+    const geom::Vec3 scale = g.size.cwiseAbs();
+    const Key key{originals, bodies,    scale.x(),
+                  scale.y(), scale.z(), bounds_key(link, match.originals.front())};
     auto at = judged_.find(key);
-    if (at == judged_.end())
-      at = judged_.emplace(key, decide(link, originals, bodies, scale)).first;
+    if (at == judged_.end()) at = judged_.emplace(key, decide(link, originals, bodies, g)).first;
     for (ShapeVerdict verdict : at->second) {
       const Answer answer =
           verdict.is_judged ? beside_others(verdict.answer, match) : verdict.answer;
@@ -286,7 +288,7 @@ class RobotJudge {
   std::vector<ShapeVerdict> decide(const std::string& link,
                                    const std::vector<const MeshFile*>& originals,
                                    const std::vector<const MeshFile*>& bodies,
-                                   const geom::Vec3& scale) {
+                                   const Geometry& shape) {
     std::vector<Holders::NamedMesh> named;
     named.reserve(bodies.size());
     for (const MeshFile* file : bodies)
@@ -323,7 +325,14 @@ class RobotJudge {
       if (!out.back().closed && q_.solid == Solid::AsFile) out_.open = true;
       held = held && out.back().answer == Answer::Verified;
     }
-    if (q_.epsilon && held) out.push_back(distance(link, subjects, holders, scale));
+    const std::optional<Length> epsilon = q_.epsilon_of(link);
+    const auto own = q_.bounds.regions.find(link);
+    if (!held || (!epsilon && own == q_.bounds.regions.end())) return out;
+    const Measured to = measured(subjects);
+    if (epsilon) out.push_back(distance(link, *epsilon, to, holders, shape.size.cwiseAbs()));
+    if (own == q_.bounds.regions.end()) return out;
+    for (const robot::LinkRegion& region : own->second)
+      out.push_back(region_distance(link, region, to, holders, shape));
     return out;
   }
 
@@ -341,50 +350,107 @@ class RobotJudge {
     return out;
   }
 
-  /// How far the bodies of one frame are from all of its meshes together.
-  ShapeVerdict distance(const std::string& link, const std::vector<JudgedFile>& subjects,
-                        const Holders& holders, const geom::Vec3& scale) {
-    if (q_.progress) q_.progress("link " + link + ": distance");
-    double diagonal = 0;
-    bool has_solid = true;
+  /// The meshes of one frame that distances are measured to.
+  struct Measured {
+    std::string path;  ///< of the first
     std::vector<geom::Mesh> meshes;
+    double diagonal = 0;    ///< the largest [length, as the meshes]
+    bool has_solid = true;  ///< else it is not known which solid the triangles bound
+  };
+
+  [[nodiscard]] Measured measured(const std::vector<JudgedFile>& subjects) const {
+    Measured out{subjects.front().file->path, {}};
     for (const JudgedFile& subject : subjects) {
       MeasuredMesh to = q_.solid == Solid::AsFile ? MeasuredMesh{subject.mesh}
                                                   : measured_mesh(subject, subject.file->mesh);
-      has_solid = has_solid && to.has_solid;
-      diagonal = std::max(diagonal, geom::bounding_box(to.mesh).diagonal());
-      meshes.push_back(std::move(to.mesh));
+      out.has_solid = out.has_solid && to.has_solid;
+      out.diagonal = std::max(out.diagonal, geom::bounding_box(to.mesh).diagonal());
+      out.meshes.push_back(std::move(to.mesh));
     }
-    const ScaledBound scaled = scaled_bound(*q_.epsilon, diagonal, scale);
-    const std::string& path = subjects.front().file->path;
-    if (!(scaled.bound > 0) || !std::isfinite(scaled.bound))
+    return out;
+  }
+
+  /// How far the bodies of one frame are from all of its meshes together.
+  ShapeVerdict distance(const std::string& link, const Length& epsilon, const Measured& to,
+                        const Holders& holders, const geom::Vec3& scale) {
+    if (q_.progress) q_.progress("link " + link + ": distance");
+    const ScaledBound scaled = scaled_bound(epsilon, to.diagonal, scale);
+    require_length(scaled.bound, to.path, scale);
+    const HeldDistance found =
+        naming(to.path, [&] { return holders.distance(to.meshes, scaled.bound, q_.limits); });
+    ShapeVerdict out;
+    out.answer = answer_of(found, scaled);
+    out.bound = scaled.bound;
+    put_into_words(found, to, "", out);
+    if (out.answer == Answer::Undecided && scaled.uneven) out.text += "; the scale is uneven";
+    return out;
+  }
+
+  static void require_length(double bound, const std::string& path, const geom::Vec3& scale) {
+    if (!(bound > 0) || !std::isfinite(bound))
       throw Error(ErrorCode::InvalidInput, "epsilon is no length in the unit of " + path +
                                                ", whose scale is " + number_text(scale.maxCoeff()));
+  }
+
+  /// How far what of them lies in a region is. A region round it verifies, one within it refutes.
+  ShapeVerdict region_distance(const std::string& link, const robot::LinkRegion& region,
+                               const Measured& to, const Holders& holders, const Geometry& shape) {
+    if (q_.progress) q_.progress("link " + link + ": distance in the region " + region.name);
     ShapeVerdict out;
+    HeldDistance found;
+    const auto look = [&](robot::Side side) {
+      const auto placed = robot::region_in_shape(region, shape, side);
+      if (!placed) return Answer::Undecided;
+      const geom::BoundedRegion bounded{placed->name, placed->region,
+                                        placed->epsilon.of(to.diagonal)};
+      require_length(bounded.epsilon, to.path, shape.size.cwiseAbs());
+      found = naming(to.path,
+                     [&] { return holders.distance_in_region(to.meshes, bounded, q_.limits); });
+      if (side == robot::Side::Round) {
+        out.bound = bounded.epsilon;
+        out.reached = may_reach(holders.set(), bounded.region);
+      }
+      return found.claim ? found.claim->answer : Answer::Undecided;
+    };
+    out.answer = look(robot::Side::Round);
+    if (out.answer != Answer::Verified) {
+      out.answer = Answer::Undecided;
+      if (look(robot::Side::Within) == Answer::Refuted) out.answer = Answer::Refuted;
+    }
+    out.region = region.name;
+    put_into_words(found, to, "in the region " + region.name + " ", out);
+    return out;
+  }
+
+  /// @param where  in front of what is said
+  static void put_into_words(const HeldDistance& found, const Measured& to,
+                             const std::string& where, ShapeVerdict& out) {
     out.name = "bodies";
-    out.bound = scaled.bound;
-    const HeldDistance found =
-        naming(path, [&] { return holders.distance(meshes, scaled.bound, q_.limits); });
-    out.answer = answer_of(found, scaled);
     if (!found.claim) {
-      out.text = "distances are decided of closed meshes only, and not all are";
-      return out;
+      out.text = where + "distances are decided of closed " + (where.empty() ? "" : "convex ") +
+                 "meshes only, and not all are";
+      return;
     }
     const DistanceClaim& claim = *found.claim;
     out.distance = claim;
     out.of_surface = found.of_surface;
-    if (out.answer == Answer::Refuted && !has_solid) out.answer = Answer::Undecided;
-    out.text = out.answer == Answer::Verified
-                   ? (found.of_surface ? "its surface is nowhere more than "
-                                       : std::string("nowhere more than ")) +
-                         number_text(scaled.bound) + " from the solid"
-                   : "at least " + number_text(claim.largest) + " from the solid at " +
-                         text_of(claim.at) + ", claimed " + number_text(scaled.bound);
+    if (out.answer == Answer::Refuted && !to.has_solid) out.answer = Answer::Undecided;
+    out.text = where;
+    if (out.answer == Answer::Verified)
+      out.text += (found.of_surface ? "its surface is nowhere more than "
+                                    : std::string("nowhere more than ")) +
+                  number_text(*out.bound) + " from the solid";
+    else if (claim.answer == Answer::Refuted)
+      out.text += "at least " + number_text(claim.largest) + " from the solid at " +
+                  text_of(claim.at) + ", claimed " + number_text(*out.bound);
+    else
+      out.text += "not known to be within " + number_text(*out.bound) + " of the solid: " +
+                  (claim.answer == Answer::Verified
+                       ? "a little farther into the region than is certainly in it"
+                       : claim.reason);
     out.text += ", in the mesh's own unit";
     if (!found.to_solid) out.text += " (to the surface, as it is open)";
-    if (!has_solid) out.text += "; which solid its triangles bound is not known";
-    if (out.answer == Answer::Undecided && scaled.uneven) out.text += "; the scale is uneven";
-    return out;
+    if (!to.has_solid) out.text += "; which solid its triangles bound is not known";
   }
 
   [[nodiscard]] std::string sentence_of(const LinkVerdict& link) const {
@@ -431,7 +497,9 @@ class RobotJudge {
 
   void look_for_strangers() {
     for (const robot::Link& link : q_.result.links) {
-      if (!q_.is_asked(link)) continue;
+      if (!q_.is_asked(link) ||
+          (!q_.epsilon_of(link.name) && !q_.bounds.regions.contains(link.name)))
+        continue;
       const auto index = q_.original.find_link(link.name);
       const std::vector<Geometry> known =
           index ? q_.shapes_of(q_.original.links[*index]) : std::vector<Geometry>{};
@@ -442,8 +510,15 @@ class RobotJudge {
     }
   }
 
+  /// Of a link with bounds of its own the shape's name: it shares its verdict with no other one,
+  /// for regions are elsewhere in other poses.
+  [[nodiscard]] std::string bounds_key(const std::string& link, std::size_t shape) const {
+    const bool has_own = q_.bounds.epsilons.contains(link) || q_.bounds.regions.contains(link);
+    return has_own ? std::to_string(shape) + link : std::string();
+  }
+
   using Key = std::tuple<std::vector<const MeshFile*>, std::vector<const MeshFile*>, double, double,
-                         double>;
+                         double, std::string>;
   const RobotQuestion& q_;
   RobotVerdict out_;
   std::optional<Error> first_error_;  // of a mesh that is not judged

@@ -6,7 +6,6 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/exact_shapes.h>
-#include <kaboum/verify/link_reach.h>
 #include <kaboum/verify/motion_alike.h>
 
 #include <algorithm>
@@ -214,14 +213,6 @@ void judge(const std::vector<Geometry>& round, LinkSpheresVerdict& out) {
   out.sentence = sentence_of(out);
 }
 
-/// The distance of a link's spheres from its shapes.
-void judge_distance(const std::vector<Geometry>& shapes, robot::MeshFiles& files, double epsilon,
-                    LinkSpheresVerdict& out) {
-  out.distance = verify_link_reach(out.balls, out.balls, measured_link(shapes, files), epsilon);
-  out.answer = worse(out.answer, out.distance->answer);
-  out.sentence += "; " + sentence_of_reach(*out.distance, epsilon);
-}
-
 /// Links of which no sphere comes near: most likely another robot's, or of another frame.
 void note_far_spheres(SpheresVerdict& out) {
   std::vector<std::string> far;
@@ -247,7 +238,7 @@ void sum_up(SpheresVerdict& out) {
     out.spheres += link.spheres;
     out.bare += link.spheres == 0 ? 1 : 0;
     out.held += link.held == Answer::Verified ? 1 : 0;
-    out.within += link.distance && link.distance->answer == Answer::Verified ? 1 : 0;
+    out.within += link.reach.all && link.reach.all->answer == Answer::Verified ? 1 : 0;
     area += link.outside.area;
     lower += link.outside.area * link.outside.share_lower;
     upper += link.outside.area * link.outside.share_upper;
@@ -280,7 +271,7 @@ void require_spheres_of(const robot::RobotFile& robot, const robot::SphereFile& 
 SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::SphereFile& spheres,
                               const std::string& file, const robot::ShapeChoice& shapes,
                               const std::function<void(const LinkSpheresVerdict&)>& judged,
-                              std::optional<double> epsilon) {
+                              std::optional<double> epsilon, const robot::LinkBounds& bounds) {
   require_spheres_of(robot, spheres, file);
   SpheresVerdict out;
   out.epsilon = epsilon;
@@ -300,7 +291,10 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     for (const robot::LinkSpheres& given : spheres.links)
       if (given.link == link.name) one.balls = given.balls;
     judge(round, one);
-    if (epsilon) judge_distance(shapes.shapes_of(link), files, *epsilon, one);
+    one.reach = decide_link_reach(one.balls, one.balls, link.name, shapes.shapes_of(link), files,
+                                  epsilon, bounds);
+    one.answer = worse(one.answer, one.reach.answer());
+    one.sentence += one.reach.sentence();
     out.links.push_back(std::move(one));
     if (judged) judged(out.links.back());
   }

@@ -22,10 +22,17 @@ struct RobotRequest {
   std::string tool;  ///< that the containers name; by default bcd-decompose, with its version
 
   LinkEpsilons epsilons = {};  ///< instead of the sets'
+  /// Regions of links with an epsilon each, besides the sets': what of the bodies lies in one is
+  /// within it, where that is less.
+  robot::LinkRegions regions = {};
   /// A mesh that cannot be held as asked for does not refuse the robot: it gets one body round a
   /// wrap of it, farther than epsilon, or none; CertifiedLinkMesh::flaw says why. Where no mesh has
   /// bodies, and no other shape, the first flaw is thrown.
   bool partial = false;
+
+  /// Takes what a map says of links and regions.
+  /// @throws Error{InvalidArgument} where both say something of whole links
+  void take(robot::LinkBounds bounds);
 
   /// As bcd-decompose spells it: the containers' record.
   [[nodiscard]] std::string parameters() const;

@@ -39,6 +39,23 @@ std::vector<LinkVerdict> verdicts(const CertifiedBodies& robot);
 std::vector<LinkVerdict> verdicts(const CertifiedRobot& robot);
 std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot);
 
+/// What came of a region of links (RobotRequest::regions), of all links together.
+struct RegionVerdict {
+  std::string name;
+  std::vector<std::string> links;  ///< in whose frames it is
+  bool held = true;      ///< no point of a mesh's bodies in it is farther than its epsilon
+  bool reached = false;  ///< else no body has a point in it
+  double epsilon = 0;    ///< the largest of its meshes [length, as the robot]
+};
+
+/// Of all regions, those of the first links first; those of one name are one.
+std::vector<RegionVerdict> region_verdicts(const robot::RobotFile& robot,
+                                           const robot::LinkRegions& regions,
+                                           const CertifiedBodies& bodies);
+
+/// "distance in the region 'grip': nowhere more than 0.002", or what else came of it.
+std::string in_words(const RegionVerdict& region);
+
 /// The worst of all.
 Outcome outcome_of(const std::vector<LinkVerdict>& links);
 

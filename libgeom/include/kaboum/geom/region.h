@@ -13,6 +13,8 @@ namespace kaboum::geom {
 struct HalfSpace {
   Vec3 normal = Vec3::Zero();  ///< a unit vector, up to rounding
   double offset = 0;           ///< [length]
+
+  friend bool operator==(const HalfSpace&, const HalfSpace&) = default;
 };
 
 /// A convex part of space: what several half-spaces have in common or, without any, a closed ball.
@@ -20,6 +22,8 @@ struct Region {
   std::vector<HalfSpace> sides;
   Vec3 center = Vec3::Zero();
   double radius = 0;  ///< [length]
+
+  friend bool operator==(const Region&, const Region&) = default;
 };
 
 /// The box along the axes.
@@ -44,6 +48,23 @@ struct RequestedRegion {
   std::string name;
   Region region;
   Length epsilon;
+
+  friend bool operator==(const RequestedRegion&, const RequestedRegion&) = default;
+};
+
+/// Regions fixed in frames of a robot, and epsilons of whole links, as they are asked for.
+struct FrameRegions {
+  struct Fixed : RequestedRegion {
+    std::string frame;  ///< name of a link
+    std::string place;  ///< where it is stated, for messages
+  };
+  struct OfLink {
+    std::string link;
+    Length epsilon;
+    std::string place;
+  };
+  std::vector<Fixed> regions;
+  std::vector<OfLink> links;
 };
 
 /// The regions of a mesh with such a diagonal of its box.

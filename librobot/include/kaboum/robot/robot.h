@@ -61,6 +61,8 @@ struct Joint {
   /// Its own limits, where it mimics another joint and its file has some. The variable's limits are
   /// the other joint's, and may drive this one beyond. [rad or length]
   std::optional<double> lower = {}, upper = {};
+  /// It moves in ways that no type says (Robot::unmodelled), and is fixed here.
+  bool unmodelled = false;
 };
 
 /// A degree of freedom, and its limits [rad or length].

@@ -2,6 +2,7 @@
 
 #include <kaboum/verify/claims.h>
 #include <kaboum/verify/cover.h>
+#include <kaboum/verify/region_excess.h>
 
 #include <optional>
 #include <string>
@@ -62,6 +63,13 @@ class Holders {
   /// @pre bound > 0 [length, as the meshes]
   [[nodiscard]] HeldDistance distance(const std::vector<geom::Mesh>& meshes, double bound,
                                       const InclusionOptions& limits = {}) const;
+
+  /// Decides whether no point of the holders in a region is farther than its epsilon from the
+  /// solids of the meshes. Of holders that are not all convex it is not decided.
+  /// @pre as distance; as verify_region_excess [length, as the meshes]
+  [[nodiscard]] HeldDistance distance_in_region(const std::vector<geom::Mesh>& meshes,
+                                                const geom::BoundedRegion& region,
+                                                const InclusionOptions& limits = {}) const;
 
   /// The ones that hold.
   [[nodiscard]] const geom::ConvexSet& set() const { return set_; }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
+#include <kaboum/robot/link_regions.h>
 #include <kaboum/robot/mesh_files.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/verify/distance.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,37 @@ MeasuredLink measured_link(const std::vector<robot::Geometry>& shapes, robot::Me
 /// @pre epsilon > 0; all bodies are convex
 DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
                                 const MeasuredLink& link, double epsilon);
+
+/// What was decided of a link's bodies.
+struct LinkReach {
+  /// Of all of them, where an epsilon of the link, or of all, is asked for.
+  std::optional<DistanceClaim> all;
+  double epsilon = 0;  ///< then [length]
+  /// Of what of them lies in regions of the link, as asked for.
+  struct InRegion {
+    std::string name;
+    double epsilon = 0;   ///< [length]
+    bool reached = true;  ///< else no body has a point in it
+    DistanceClaim claim = {};
+  };
+  std::vector<InRegion> regions;
+
+  /// The worst; Verified where nothing was asked for.
+  [[nodiscard]] Answer answer() const;
+  /// "; no point of them is …" for each claim; empty where nothing was asked for.
+  [[nodiscard]] std::string sentence() const;
+};
+
+/// Decides how far a link's bodies reach beyond its shapes. Regions are known up to rounding: one
+/// that holds what is meant verifies, one that lies in it refutes.
+/// @param inside, round  as of verify_link_reach
+/// @param epsilon  of links without one of their own
+/// @throws Error{InvalidInput} as measured_link; Error{InvalidArgument} on percentages: a link has
+///   several meshes
+LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
+                            const std::string& link, const std::vector<robot::Geometry>& shapes,
+                            robot::MeshFiles& files, std::optional<double> epsilon,
+                            const robot::LinkBounds& bounds);
 
 /// The answer in words: "no point of them is farther than 0.02 from its shapes".
 std::string sentence_of_reach(const DistanceClaim& claim, double epsilon);

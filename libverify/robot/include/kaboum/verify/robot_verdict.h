@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/length.h>
+#include <kaboum/robot/link_regions.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/verify/bracket.h>
 #include <kaboum/verify/claims.h>
@@ -61,6 +62,9 @@ struct RobotQuestion {
   /// No body is to be farther than this from the meshes that it holds: in the robot's unit, or of
   /// each mesh's diagonal.
   std::optional<Length> epsilon = {};
+  /// Of links whose bodies are to be nearer, or may be farther; of regions in which they are to be
+  /// nearer to the meshes of one frame that come there.
+  robot::LinkBounds bounds = {};
   InclusionOptions limits = {};
   std::function<void(const std::string&)> progress = {};
 
@@ -70,6 +74,10 @@ struct RobotQuestion {
   /// The shapes to be held: for drawings, of links without, those for collisions, which stay.
   [[nodiscard]] const std::vector<robot::Geometry>& shapes_of(const robot::Link& link) const {
     return visual && !link.visual.empty() ? link.visual : link.collision;
+  }
+  [[nodiscard]] std::optional<Length> epsilon_of(const std::string& link) const {
+    const auto own = bounds.epsilons.find(link);
+    return own == bounds.epsilons.end() ? epsilon : std::optional(own->second);
   }
 };
 
@@ -95,6 +103,9 @@ struct ShapeVerdict {
   std::optional<DistanceClaim> distance = {};   ///< of the bodies; then `shape` means nothing
   std::optional<double> bound = {};             ///< of the distance
   bool of_surface = false;                      ///< the distance: HeldDistance::of_surface
+  /// Name of the region that the distance is about; empty: it is about all of the bodies.
+  std::string region = {};
+  bool reached = true;  ///< else no body has a point in it
 };
 
 struct LinkVerdict {

@@ -3,7 +3,7 @@
 #include <kaboum/robot/link_meshes.h>
 #include <kaboum/robot/sphere_file.h>
 #include <kaboum/verify/ball_cover.h>
-#include <kaboum/verify/distance.h>
+#include <kaboum/verify/link_reach.h>
 
 #include <functional>
 #include <optional>
@@ -28,22 +28,22 @@ struct LinkSpheresVerdict {
   Inclusion inclusion;   ///< of the triangles, placed in the link's frame
   OutsideBalls outside;  ///< of these
   std::string open;      ///< why it is not known that shapes without triangles are held
-  std::optional<MissedPoint> missed;           ///< the deepest that is known, where refuted
-  Answer held = Answer::Undefined;             ///< `answer` without the distance
-  std::optional<DistanceClaim> distance = {};  ///< of the spheres from the shapes, where asked for
-  std::string sentence;                        ///< in words
-  geom::Mesh mesh;                             ///< the triangles
+  std::optional<MissedPoint> missed;  ///< the deepest that is known, where refuted
+  Answer held = Answer::Undefined;    ///< `answer` without the distance
+  LinkReach reach;                    ///< of the spheres beyond the shapes, as asked for
+  std::string sentence;               ///< in words
+  geom::Mesh mesh;                    ///< the triangles
   geom::ConvexSet balls;
 };
 
 /// Verdict on the spheres of a robot.
 struct SpheresVerdict {
   Answer answer = Answer::Verified;
-  std::vector<LinkSpheresVerdict> links;    ///< that have a shape, in the robot's order
-  std::size_t spheres = 0, held = 0;        ///< held: number of links
-  std::optional<double> epsilon = {};       ///< that was asked for [length]
-  std::size_t within = 0;                   ///< number of links whose spheres are within it
-  std::size_t bare = 0;                     ///< links without spheres
+  std::vector<LinkSpheresVerdict> links;  ///< that have a shape, in the robot's order
+  std::size_t spheres = 0, held = 0;      ///< held: number of links
+  std::optional<double> epsilon = {};     ///< that was asked for [length]
+  std::size_t within = 0;  ///< number of links whose spheres are within it, or what is their own
+  std::size_t bare = 0;    ///< links without spheres
   double share_lower = 0, share_upper = 0;  ///< of the area of all links, outside their own spheres
   double depth = 0;                         ///< the largest that is known and finite [length]
   std::vector<std::string> notes;           ///< what a user should know
@@ -62,10 +62,12 @@ void require_spheres_of(const robot::RobotFile& robot, const robot::SphereFile& 
 /// @param judged   called with each verdict as soon as it is there; may be empty
 /// @param epsilon  decides as well that no point of a sphere is farther than this from its link's
 ///   shapes (measured_link) [length]
+/// @param bounds   the same of single links, and of regions: what counts there
 /// @throws as require_spheres_of; Error{InvalidInput} where there are no shapes; as reading meshes
 SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::SphereFile& spheres,
                               const std::string& file, const robot::ShapeChoice& shapes,
                               const std::function<void(const LinkSpheresVerdict&)>& judged = {},
-                              std::optional<double> epsilon = {});
+                              std::optional<double> epsilon = {},
+                              const robot::LinkBounds& bounds = {});
 
 }  // namespace kaboum::verify

@@ -1,0 +1,158 @@
+# Bodies of a robot that are nearer in regions fixed in frames of its links: made, decided, and refuted where they are not.
+. "$(dirname "$0")/common.sh"
+B=$BIN/bcd-decompose
+V=$BIN/bound-verify
+
+# A hand that is a bar with a notch at each end, turned in its link, with a finger and a frame that nothing is drawn in.
+python3 - <<'P' || fail "no mesh"
+outline = [(0, 0), (10, 0), (10, 1), (9.5, 1), (9.5, 0.5), (8.5, 0.5), (8.5, 1), (1.5, 1), (1.5, 0.5), (0.5, 0.5), (0.5, 1), (0, 1)]
+n = len(outline)
+quads = [(0, 1, 5, 8), (0, 8, 9), (0, 9, 10, 11), (1, 2, 3, 4), (1, 4, 5), (5, 6, 7, 8)]
+faces = []
+for q in quads:
+    for i in range(1, len(q) - 1):
+        a, b, c = q[0], q[i], q[i + 1]
+        faces += [(a, c, b), (a + n, b + n, c + n)]
+for i in range(n):
+    j = (i + 1) % n
+    faces += [(i, j, j + n), (i, j + n, i + n)]
+with open("notched.off", "w") as out:
+    out.write(f"OFF\n{2 * n} {len(faces)} 0\n")
+    for z in (0, 1):
+        for x, y in outline:
+            out.write(f"{x} {y} {z}\n")
+    for f in faces:
+        out.write("3 %d %d %d\n" % f)
+P
+mesh() { echo "<collision>$1<geometry><mesh filename=\"notched.off\" scale=\"0.01 0.01 0.01\"/></geometry></collision>"; }
+cat >arm.urdf <<P
+<robot name="arm">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+  <link name="forearm">$(mesh '')</link>
+  <link name="flange"/>
+  <link name="hand">$(mesh '<origin xyz="0.02 -0.01 0.03" rpy="0.3 -0.8 1.1"/>')</link>
+  <link name="tcp"/>
+  <link name="finger">$(mesh '<origin xyz="0 0.05 0"/>')</link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="forearm"/><origin xyz="0 0 0.1" rpy="0.1 0.2 0.3"/>
+    <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="wrist" type="revolute"><parent link="forearm"/><child link="flange"/><origin xyz="0.1 0 0"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="fixed"><parent link="flange"/><child link="hand"/><origin xyz="0.03 0.01 0" rpy="0.5 0.4 -0.3"/></joint>
+  <joint name="point" type="fixed"><parent link="hand"/><child link="tcp"/><origin xyz="0.02 -0.01 0.03" rpy="0.3 -0.8 1.1"/></joint>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="finger"/><origin xyz="0.02 0 0"/>
+    <axis xyz="0 1 0"/><limit lower="0" upper="0.03" effort="1" velocity="1"/></joint>
+</robot>
+P
+# Round one notch of the hand, whose frame tcp has its mesh's axes.
+echo '{"regions": [{"name": "notch", "frame": "tcp", "epsilon": "0.5mm", "ball": {"center": [0.01, 0.008, 0.005], "radius": 0.012}}]}' >ball.json
+echo '{"regions": [{"name": "notch", "frame": "tcp", "epsilon": "0.5mm", "box": [[-0.01, -0.01, -0.01], [0.014, 0.02, 0.02]]}]}' >box.json
+echo '{"regions": [{"name": "notch", "frame": "tcp", "epsilon": "0.5mm", "half_space": {"normal": [2, 0, 0], "offset": 0.028}}]}' >half.json
+echo '{"regions": [{"name": "notch", "frame": "tcp", "radius": 0.016, "epsilon": "0.5%"}]}' >share.json
+
+# Polytopes: the hand has more bodies, the other links as many as without a map.
+expect 0 '' "$B" arm.urdf -o coarse --epsilon 6mm --effort fast --report coarse.json
+expect 0 '' "$B" arm.urdf -o fine --epsilon 0.5mm --effort fast --report fine.json
+count() { python3 -c "
+import json, sys
+r = json.load(open(sys.argv[1]))
+print(*(l['bodies'] for l in r['links'] if l['link'] == sys.argv[2]))" "$1" "$2"; }
+for map in ball box half share; do
+  expect 0 'distance in the region .notch.: verified: nowhere more than 0.0005' "$B" arm.urdf -o $map --epsilon 6mm --effort fast --epsilon-map $map.json --report $map.made.json
+  json $map.made.json "[(g['name'], g['links'], g['answer'], g['reached']) for g in r['regions']] == [(\"'notch'\", ['hand'], 'verified', True)]"
+  json $map.made.json "'--epsilon 0.006 --epsilon-map $map.json' in r['check']"
+  shows 0 '^verified' "$V" robot arm.urdf $map/arm.urdf --prepare --epsilon 6mm --epsilon-map $map.json --report $map.json.report
+  json $map.json.report "[s['region'] for l in r['links'] for s in l['shapes'] if 'region' in s and s['answer'] == 'verified' and s['reached']] == [\"'notch'\"]"
+  shows 1 'hand.: refuted: .*in the region .notch. at least' "$V" robot arm.urdf coarse/arm.urdf --prepare --epsilon 6mm --epsilon-map $map.json
+  for link in forearm finger; do
+    [ "$(count $map.made.json $link)" = "$(count coarse.json $link)" ] || fail "$map: a map of the hand changes $link"
+  done
+  [ "$(count $map.made.json hand)" -gt "$(count coarse.json hand)" ] || fail "$map: the hand has no more bodies than without"
+  [ "$(count $map.made.json hand)" -lt "$(count fine.json hand)" ] || fail "$map: the hand has as many bodies as if all were fine"
+done
+shows 0 '^verified' "$V" robot arm.urdf coarse/arm.urdf --prepare --epsilon 6mm
+# The other notch is not of the region; the same mesh elsewhere neither.
+sed -i 's/0.01 0.008/0.09 0.008/' ball.json
+shows 1 'in the region .notch. at least' "$V" robot arm.urdf ball/arm.urdf --prepare --epsilon-map ball.json
+sed -i 's/0.09 0.008/0.01 0.008/' ball.json
+# A body of the hand that comes out of the notch by more than its epsilon, yet by less than the coarse one.
+python3 - <<'P' || fail "no body is moved"
+import glob, re, struct, shutil
+shutil.copytree("ball", "out")
+text = open("out/arm.urdf").read()
+hand = text[text.index('<link name="hand"'):text.index('<link name="tcp"')]
+names = re.findall(r'filename="([^"]*)"', hand)
+def points(name):
+    data = bytearray(open("out/" + name, "rb").read())
+    n = struct.unpack_from("<I", data, 80)[0]
+    return data, [84 + 50 * i + 12 + 12 * k for i in range(n) for k in range(3)]
+# The one that ends below the notch's ground is moved up into it.
+best = None
+for name in names:
+    data, at = points(name)
+    xyz = [struct.unpack_from("<3f", data, a) for a in at]
+    if min(p[0] for p in xyz) < 1 < max(p[0] for p in xyz) and (best is None or max(p[1] for p in xyz) < best[0]):
+        best = (max(p[1] for p in xyz), name)
+data, at = points(best[1])
+for a in at:
+    x, y, z = struct.unpack_from("<3f", data, a)
+    if y == best[0]:
+        struct.pack_into("<f", data, a + 4, y + 0.2)
+open("out/" + best[1], "wb").write(data)
+P
+shows 1 'in the region .notch. at least 0.2' "$V" robot arm.urdf out/arm.urdf --prepare --epsilon 6mm --epsilon-map ball.json
+shows 0 '^verified' "$V" robot arm.urdf out/arm.urdf --prepare --epsilon 6mm
+
+# Bodies with radii, in one file; lengths only. Balls take many: the region is no finer than needed.
+sed 's/0.5mm/3mm/' ball.json >wide.json
+for kind in boxes capsules mixed spheres; do
+  map=ball.json
+  judge="--bodies $kind.urdf"
+  [ $kind = boxes ] || map=wide.json
+  [ $kind != spheres ] || judge="--spheres $kind.urdf"
+  expect 0 'distance in the region .notch.: verified' "$B" arm.urdf -o $kind.urdf --bodies $kind --links hand,finger --epsilon 6mm --effort fast --epsilon-map $map
+  shows 0 '^verified' "$V" robot arm.urdf $judge --links hand,finger --epsilon 6mm --epsilon-map $map --report $kind.json
+  json $kind.json "[(g['name'], g['answer'], g['reached']) for l in r['links'] for g in l['claims'].get('regions', [])] == [(\"'notch'\", 'verified', True)]"
+  expect 0 '' "$B" arm.urdf -o again.urdf --bodies $kind --links hand,finger --epsilon 6mm --effort fast --epsilon-map $map --no-cache --threads 1
+  sed "s/again/$kind/" again.urdf | cmp - $kind.urdf || fail "$kind: other bytes for one thread, or from the cache"
+  expect 0 '' "$B" arm.urdf -o plain.urdf --bodies $kind --links hand,finger --epsilon 6mm --effort fast
+  judge=$(echo "$judge" | sed "s/$kind.urdf/plain.urdf/")
+  shows 0 '^verified' "$V" robot arm.urdf $judge --links hand,finger --epsilon 6mm
+  shows 1 'hand.: refuted: .*in the region .notch. they reach' "$V" robot arm.urdf $judge --links hand,finger --epsilon 6mm --epsilon-map $map
+done
+expect 2 'percentage' "$V" robot arm.urdf --bodies boxes.urdf --links hand,finger --epsilon-map share.json
+
+# Whole links: the same as a line of --epsilons.
+echo '{"regions": [{"link": "finger", "epsilon": "0.5mm"}]}' >link.json
+echo 'finger: 0.5mm' >link.yaml
+expect 0 '' "$B" arm.urdf -o by_map --epsilon 6mm --effort fast --epsilon-map link.json --report by_map.json
+expect 0 '' "$B" arm.urdf -o by_line --epsilon 6mm --effort fast --epsilons link.yaml
+cmp by_map/links/finger.glb by_line/links/finger.glb || fail "a link of a map is not as a line of --epsilons"
+[ "$(count by_map.json finger)" -gt "$(count coarse.json finger)" ] || fail "the finger is not finer"
+shows 0 '^verified' "$V" robot arm.urdf by_map/arm.urdf --prepare --epsilon 6mm --epsilon-map link.json
+shows 1 'finger.: refuted' "$V" robot arm.urdf coarse/arm.urdf --prepare --epsilon 6mm --epsilon-map link.json
+expect 2 'epsilon-map .*epsilons' "$B" arm.urdf -o x --epsilon 6mm --epsilon-map link.json --epsilons link.yaml
+
+# What no body reaches is noted.
+sed 's/0.01, 0.008/3, 3/' ball.json >far.json
+expect 0 'no body reaches the region .notch.' "$B" arm.urdf -o far --epsilon 6mm --effort fast --epsilon-map far.json
+expect 0 'no body of a mesh reaches the region .notch.' "$V" robot arm.urdf far/arm.urdf --prepare --epsilon 6mm --epsilon-map far.json
+
+# What cannot be.
+for text in '{"frame": "tpc", "radius": 1, "epsilon": 1}' '{"frame": "tcp", "epsilon": 1}' '{"radius": 1, "epsilon": 1}' \
+    '{"frame": "tcp", "radius": 1}' '{"frame": "tcp", "radius": 1, "epsilon": 1, "epsilon": 2}' '{"link": "tcp", "epsilon": 1}' \
+    '{"link": "hand", "radius": 1, "epsilon": 1}' '{"frame": "tcp", "radius": 1, "epsilon": 1, "colour": 2}' \
+    '{"epsilon": 1, "box": [[0,0,0],[1,1,1]]}'; do
+  echo "{\"regions\": [$text]}" >bad.json
+  expect 3 'bad.json: region 1: ' "$B" arm.urdf -o x --epsilon 6mm --epsilon-map bad.json
+  expect 3 'bad.json: region 1: ' "$V" robot arm.urdf coarse/arm.urdf --epsilon-map bad.json
+  expect 3 'bad.json: region 1: ' "$V" robot arm.urdf --bodies boxes.urdf --epsilon-map bad.json
+done
+echo '{"regions": [{"frame": "hnad", "radius": 1, "epsilon": 1}]}' >bad.json
+expect 3 "no frame 'hnad'; did you mean 'hand'" "$B" arm.urdf -o x --epsilon 6mm --epsilon-map bad.json
+expect 3 "no shape that is meant is fixed to frame 'tcp'" "$B" arm.urdf -o x --links forearm --epsilon 6mm --epsilon-map ball.json
+expect 3 'a mesh has no frames' "$B" notched.off -o x.glb --epsilon 0.6 --epsilon-map ball.json
+for other in '--robot-bodies 9' '--robot-vertices 99' '--max-bodies 3' '--min-thickness 1mm' '--max-aspect 9'; do
+  expect 2 'epsilon-map' "$B" arm.urdf -o x $other --epsilon-map ball.json
+done
+expect 3 'none.json' "$V" robot arm.urdf ball/arm.urdf --epsilon-map none.json
+finish
