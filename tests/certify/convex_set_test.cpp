@@ -198,6 +198,47 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
       EXPECT_LE(query.nearest(p).lower, c.distance_upper);
 }
 
+// What a wrap takes is off the regions' epsilons; distances are to the triangles. By points.
+TEST(CertifySet, RegionsRoundAWrapAreAsNearToTheTriangles) {
+  geom::Mesh sheets;
+  sheets.vertices = {{0, 0, 0},      {1, 0, 0},     {1, 1, 0},     {0, 1, 0},
+                     {0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 1, 0.5}, {0.5, 1, -0.5}};
+  sheets.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  const geom::DistanceQuery query(sheets);
+  SetRequest request = fast_request(1);
+  request.epsilon = Length{0.3};
+  request.wrap.emplace();
+  geom::Region edge, away;
+  edge.center = {0.7, 1, 0.2};
+  edge.radius = 0.25;
+  away.center = {5, 5, 5};
+  away.radius = 0.5;
+  const auto farthest_in_edge = [&](const geom::ConvexSet& set) {
+    double out = 0;
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> along(-1, 1);
+    for (int i = 0; i < 20000; ++i) {
+      const geom::Vec3 p =
+          edge.center + edge.radius * geom::Vec3(along(random), along(random), along(random));
+      if (geom::holds(edge, p) && height_above(set, p) <= 0)
+        out = std::max(out, query.nearest(p).lower);
+    }
+    return out;
+  };
+  const auto coarse = certify_set(sheets, "", request);
+  // One that is never reached may be as fine as it likes.
+  request.regions = {{"edge", edge, Length{0.05}}, {"away", away, Length{1e-9}}};
+  const auto made = certify_set(sheets, "", request);
+  ASSERT_TRUE(coarse && made && made->certificate().wrap);
+  EXPECT_GT(farthest_in_edge(coarse->artefact()), 0.06);
+  EXPECT_GT(farthest_in_edge(made->artefact()), 0);
+  EXPECT_LE(farthest_in_edge(made->artefact()), 0.05);
+  const std::vector<SetCertificate::Region>& regions = made->certificate().regions;
+  ASSERT_EQ(regions.size(), 2U);
+  EXPECT_TRUE(regions[0].reached && regions[0].epsilon == 0.05);
+  EXPECT_FALSE(regions[1].reached);
+}
+
 TEST(CertifySet, DistancesOfAWrapAndOfItsCoverAddUp) {
   SetRequest request = fast_request(10);
   request.epsilon.reset();

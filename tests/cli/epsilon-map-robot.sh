@@ -166,4 +166,6 @@ for other in '--robot-bodies 9' '--robot-vertices 99' '--max-bodies 3' '--min-th
   expect 2 'epsilon-map' "$B" arm.urdf -o x $other --epsilon-map ball.json
 done
 expect 3 'none.json' "$V" robot arm.urdf ball/arm.urdf --epsilon-map none.json
+expect 2 'epsilon-map is empty' "$V" robot arm.urdf ball/arm.urdf --epsilon-map ''
+expect 2 'epsilon-map is empty' "$B" arm.urdf -o x --epsilon 6mm --epsilon-map ''
 finish

@@ -292,6 +292,25 @@ TEST(RobotVerdict, RegionsAreNearerInTheFrameOfTheLink) {
   EXPECT_FALSE(nothing.links.at(0).shapes.at(2).reached);
 }
 
+// The same mesh and bodies twice in a link: the region is at one of them, whichever comes first.
+TEST(RobotVerdict, RegionsAreElsewhereInOtherPoses) {
+  const geom::Mesh far = block_between({-0.01, -0.01, -0.01}, {1.01, 1.01, 1.1});
+  for (const bool first : {true, false}) {
+    RegionCase two({far});
+    for (robot::Robot* one : {&two.original, &two.result}) {
+      std::vector<Geometry>& shapes = one->links[0].collision;
+      Geometry other = shapes[0];
+      other.origin.translation += geom::Vec3(20, 0, 0);
+      shapes.insert(first ? shapes.end() : shapes.begin(), other);
+    }
+    const verify::RobotVerdict found = two.decide_it();
+    EXPECT_EQ(found.answer, Answer::Refuted);
+    ASSERT_EQ(found.links.at(0).shapes.size(), 6U);
+    EXPECT_EQ(found.links[0].shapes[first ? 2 : 5].answer, Answer::Refuted);
+    EXPECT_EQ(found.links[0].shapes[first ? 5 : 2].answer, Answer::Verified);
+  }
+}
+
 // Where the scale is uneven, what is certain is said, and nothing else.
 TEST(RobotVerdict, RegionsOfUnevenScales) {
   const geom::Vec3 uneven(1, 2, 4);

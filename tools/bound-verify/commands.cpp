@@ -136,6 +136,32 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
       ->type_name("FILE");
 }
 
+/// One of a result, spheres and bodies is judged.
+int decide_robot(const CLI::App& app, VerifyOptions& o) {
+  require_none(contradiction(o.robot.how));
+  const auto given =
+      std::ranges::count_if(std::array{&o.robot.result, &o.robot.spheres, &o.robot.bodies},
+                            [](const std::string* file) { return !file->empty(); });
+  if (given == 0)
+    throw Error(ErrorCode::InvalidArgument,
+                "robot: RESULT or --spheres FILE or --bodies FILE is needed");
+  if (given > 1)
+    throw Error(ErrorCode::InvalidArgument,
+                "robot: RESULT, --spheres and --bodies are results to be judged: state one");
+  // Files of spheres are known by their names.
+  if (robot::is_sphere_file(o.robot.result)) o.robot.spheres.swap(o.robot.result);
+  if (o.robot.spheres.empty() && !o.robot.page.empty())
+    throw Error(ErrorCode::InvalidArgument, "robot: --page shows spheres: state --spheres");
+  if (!o.robot.result.empty()) return verify_robot(o.robot, o.common);
+  std::vector<std::string> others{"--raw"};
+  for (const auto& option : verify::robot_verdict_options())
+    if (std::ranges::find(kOfSpheres, option.name) == kOfSpheres.end())
+      others.push_back("--" + std::string(option.name));
+  const bool spheres = !o.robot.spheres.empty();
+  require_absent(*app.get_subcommand("robot"), spheres ? "--spheres" : "--bodies", others);
+  return spheres ? verify_spheres(o.robot, o.common) : verify_bodies(o.robot, o.common);
+}
+
 void add_robot_command(CLI::App& app, VerifyOptions& o) {
   CLI::App* c = add_command(
       app, o, "robot",
@@ -150,30 +176,7 @@ void add_robot_command(CLI::App& app, VerifyOptions& o) {
       "these "
       "were given, "
       "and --prepare=wrap where that was; their --html-report has the command.",
-      [&o, &app] {
-        require_none(contradiction(o.robot.how));
-        const auto given =
-            std::ranges::count_if(std::array{&o.robot.result, &o.robot.spheres, &o.robot.bodies},
-                                  [](const std::string* file) { return !file->empty(); });
-        if (given == 0)
-          throw Error(ErrorCode::InvalidArgument,
-                      "robot: RESULT or --spheres FILE or --bodies FILE is needed");
-        if (given > 1)
-          throw Error(ErrorCode::InvalidArgument,
-                      "robot: RESULT, --spheres and --bodies are results to be judged: state one");
-        // Files of spheres are known by their names.
-        if (robot::is_sphere_file(o.robot.result)) o.robot.spheres.swap(o.robot.result);
-        if (o.robot.spheres.empty() && !o.robot.page.empty())
-          throw Error(ErrorCode::InvalidArgument, "robot: --page shows spheres: state --spheres");
-        if (!o.robot.result.empty()) return verify_robot(o.robot, o.common);
-        std::vector<std::string> others{"--raw"};
-        for (const auto& option : verify::robot_verdict_options())
-          if (std::ranges::find(kOfSpheres, option.name) == kOfSpheres.end())
-            others.push_back("--" + std::string(option.name));
-        const bool spheres = !o.robot.spheres.empty();
-        require_absent(*app.get_subcommand("robot"), spheres ? "--spheres" : "--bodies", others);
-        return spheres ? verify_spheres(o.robot, o.common) : verify_bodies(o.robot, o.common);
-      });
+      [&o, &app] { return decide_robot(app, o); });
   add_file(*c, "ORIGINAL", o.robot.original, "A robot (URDF)");
   c->add_option("RESULT", o.robot.result,
                 "The robot whose shapes hold those of the first (URDF); or a file of spheres "

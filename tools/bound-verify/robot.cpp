@@ -240,7 +240,7 @@ class RobotVerifier {
       if (question.is_asked(link)) of_result.links.push_back(link.name);
     if (!of_result.links.empty()) robot::require_meshes(result_, of_result);
     std::size_t shapes = 0;
-    std::vector<std::string> inputs{o_.original, o_.result};
+    std::vector<std::string> inputs{o_.original, o_.result, o_.epsilon_map.value_or("")};
     const auto read_all = [&](const std::vector<Geometry>& of, const robot::RobotFile& robot,
                               bool may_lack) {
       for (const Geometry& g : of)
