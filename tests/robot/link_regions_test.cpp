@@ -164,22 +164,38 @@ TEST(LinkRegions, StandForWhatIsAskedForInFramesOfMeshes) {
         ASSERT_TRUE(round && within);
         EXPECT_EQ(round->epsilon.value, 0.01 / scale.cwiseAbs().maxCoeff());
         EXPECT_EQ(within->epsilon.value, 0.01 / scale.cwiseAbs().minCoeff());
-        int held = 0;
+        const auto asked_at = [&](const Vec3& local) {  // in the link's directions
+          return depth(region, g.origin.translation + local);
+        };
+        const auto in_mesh = [&](const Vec3& local) {
+          return Vec3((g.origin.linear.transpose() * local).cwiseQuotient(scale));
+        };
+        std::vector<Vec3> inside, outside;
+        const double slack = 1e-15 * (1 + 4 * far);  // what rounding of this test takes
         for (int i = 0; i < 2000; ++i) {
-          const Vec3 local = random_point(random, 1);  // in the link's directions
-          const Vec3 in_mesh = (g.origin.linear.transpose() * local).cwiseQuotient(scale);
-          // What rounding of this test takes.
-          const double slack = 1e-15 * (1 + 4 * far);
-          const double asked_depth = depth(region, g.origin.translation + local);
-          EXPECT_TRUE(!(asked_depth > slack) || depth(round->region, in_mesh) >= 0);
-          EXPECT_TRUE(!(asked_depth < -slack) || depth(within->region, in_mesh) <= 0);
-          held += asked_depth > 0 ? 1 : 0;
+          const Vec3 local = random_point(random, 1);
+          const double asked_depth = asked_at(local);
+          (asked_depth > slack ? inside : outside).push_back(local);
+          const double of_round = depth(round->region, in_mesh(local)),
+                       of_within = depth(within->region, in_mesh(local));
+          EXPECT_TRUE(!(asked_depth > slack) || of_round >= 0);
+          EXPECT_TRUE(!(asked_depth < -slack) || of_within <= 0);
           if (!is_even) continue;
           const double size = std::abs(scale.x());
-          EXPECT_NEAR(size * depth(round->region, in_mesh), asked_depth, 1e-12 * (1 + far));
-          EXPECT_NEAR(size * depth(within->region, in_mesh), asked_depth, 1e-12 * (1 + far));
+          EXPECT_NEAR(size * of_round, asked_depth, 1e-12 * (1 + far));
+          EXPECT_NEAR(size * of_within, asked_depth, 1e-12 * (1 + far));
         }
-        EXPECT_GT(held, 20);
+        ASSERT_GT(inside.size(), 20U);
+        // On the boundary, as far as it is known: one is certainly beyond it, the other is not.
+        for (std::size_t i = 0; i < 20; ++i) {
+          Vec3 in = inside[i], out = outside[i];
+          for (int step = 0; step < 60; ++step) {
+            const Vec3 middle = 0.5 * (in + out);
+            (asked_at(middle) > 0 ? in : out) = middle;
+          }
+          EXPECT_GT(depth(round->region, in_mesh(in)), 0);
+          EXPECT_LT(depth(within->region, in_mesh(in)), 0);
+        }
       }
     }
 }
