@@ -12,9 +12,11 @@
 #include <kaboum/io/convex_io.h>
 #include <kaboum/verify/cover.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <string_view>
 #include <type_traits>
@@ -198,44 +200,48 @@ TEST(CertifySet, WrapsHoldWhatIsWithinTheClearanceOfTriangles) {
       EXPECT_LE(query.nearest(p).lower, c.distance_upper);
 }
 
-// What a wrap takes is off the regions' epsilons; distances are to the triangles. By points.
+// What a wrap takes is off the regions' epsilons: points of bodies are as near to the triangles.
 TEST(CertifySet, RegionsRoundAWrapAreAsNearToTheTriangles) {
-  geom::Mesh sheets;
-  sheets.vertices = {{0, 0, 0},      {1, 0, 0},     {1, 1, 0},     {0, 1, 0},
-                     {0.5, 0, -0.5}, {0.5, 0, 0.5}, {0.5, 1, 0.5}, {0.5, 1, -0.5}};
-  sheets.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-  const geom::DistanceQuery query(sheets);
+  geom::Mesh arc;  // half a tube, open
+  for (std::uint32_t i = 0; i <= 24; ++i) {
+    const double angle = std::numbers::pi * i / 24;
+    for (const double z : {0.0, 1.0})
+      arc.vertices.emplace_back(std::cos(angle), std::sin(angle), z);
+    if (i == 24) break;
+    arc.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+    arc.triangles.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+  }
+  const geom::DistanceQuery query(arc);
   SetRequest request = fast_request(1);
-  request.epsilon = Length{0.3};
+  request.epsilon = Length{0.5};
   request.wrap.emplace();
-  geom::Region edge, away;
-  edge.center = {0.7, 1, 0.2};
-  edge.radius = 0.25;
-  away.center = {5, 5, 5};
+  request.wrap->offset = Length{0.02};
+  geom::Region near, away;
+  near.radius = 10;
+  away.center = {50, 50, 50};
   away.radius = 0.5;
-  const auto farthest_in_edge = [&](const geom::ConvexSet& set) {
-    double out = 0;
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> along(-1, 1);
-    for (int i = 0; i < 20000; ++i) {
-      const geom::Vec3 p =
-          edge.center + edge.radius * geom::Vec3(along(random), along(random), along(random));
-      if (geom::holds(edge, p) && height_above(set, p) <= 0)
-        out = std::max(out, query.nearest(p).lower);
-    }
-    return out;
-  };
-  const auto coarse = certify_set(sheets, "", request);
   // One that is never reached may be as fine as it likes.
-  request.regions = {{"edge", edge, Length{0.05}}, {"away", away, Length{1e-9}}};
-  const auto made = certify_set(sheets, "", request);
-  ASSERT_TRUE(coarse && made && made->certificate().wrap);
-  EXPECT_GT(farthest_in_edge(coarse->artefact()), 0.06);
-  EXPECT_GT(farthest_in_edge(made->artefact()), 0);
-  EXPECT_LE(farthest_in_edge(made->artefact()), 0.05);
+  request.regions = {{"near", near, Length{0.1}}, {"away", away, Length{1e-9}}};
+  const auto made = certify_set(arc, "", request);
+  ASSERT_TRUE(made && made->certificate().wrap);
+  EXPECT_GT(made->certificate().wrap->farthest_upper, 0.015);
+  EXPECT_GT(made->artefact().bodies.size(), 4U);  // which are within 0.1 of the wrap
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (const geom::ConvexBody& body : made->artefact().bodies)
+    for (int i = 0; i < 3000; ++i) {
+      geom::Vec3 sum = geom::Vec3::Zero();
+      double weight = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double w = std::pow(share(random), 2);
+        sum += w * body.core.vertices[random() % body.core.vertices.size()];
+        weight += w;
+      }
+      ASSERT_LE(query.nearest(sum / weight).lower, 0.1);
+    }
   const std::vector<SetCertificate::Region>& regions = made->certificate().regions;
   ASSERT_EQ(regions.size(), 2U);
-  EXPECT_TRUE(regions[0].reached && regions[0].epsilon == 0.05);
+  EXPECT_TRUE(regions[0].reached && regions[0].epsilon == 0.1);
   EXPECT_FALSE(regions[1].reached);
 }
 
