@@ -3,8 +3,10 @@
 // look.
 #include "closest_triangle.h"
 
-#include <algorithm>
-#include <limits>
+#include <kaboum/base/error.h>
+
+#include <array>
+#include <bit>
 
 namespace kaboum::bmesh {
 
@@ -27,8 +29,9 @@ std::uint32_t ClosestTriangle::add(std::uint32_t index) {
   const auto nodes = bvh_->nodes();
   if (nodes[index].leaf()) {
     const geom::Bvh::Node& from = nodes[index];
-    Leaf leaf{{}, from.first, from.count};
-    for (std::uint32_t i = 0; i < std::min(from.count, 4U); ++i)
+    ensure(from.count <= 4, "a leaf of more than four triangles");
+    Leaf leaf{{}, from.first, (1U << from.count) - 1};
+    for (std::uint32_t i = 0; i < from.count; ++i)
       leaf.triangles.put(static_cast<int>(i), corners(from.first + i), frame_);
     leaves_.push_back(leaf);
     return kLeaf | static_cast<std::uint32_t>(leaves_.size() - 1);
@@ -71,7 +74,6 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
   std::array<Entry, 3 * geom::Bvh::kMaxDepth + 1> stack;
   std::size_t size = 0;
   stack[size++] = {0, root_};
-  std::array<float, 4> bound;
   std::uint64_t visited = 1;
   while (size > 0 && best > enough) {
     const Entry entry = stack[--size];
@@ -79,9 +81,10 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
     ++visited;
     if ((entry.node & kLeaf) != 0) {
       const Leaf& leaf = leaves_[entry.node & ~kLeaf];
-      leaf.triangles.at_least(x, bound);
-      for (std::uint32_t i = 0; i < leaf.count; ++i) {
-        if (i < 4 && !(bound[i] < cutoff)) continue;
+      const Float4 bound = leaf.triangles.at_least(x);
+      for (unsigned near = bits_below(bound, cutoff) & leaf.all; near != 0; near &= near - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(near));
+        if (!(bound[i] < cutoff)) continue;
         const double d = squared_distance(p, corners(leaf.first + i));
         if (d >= best) continue;
         best = d;
@@ -91,16 +94,15 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
       continue;
     }
     const Node& node = nodes_[entry.node];
-    for (int i = 0; i < 4; ++i) {
-      const float dx = std::max(std::max(node.low[0][i] - x[0], x[0] - node.high[0][i]), 0.0F);
-      const float dy = std::max(std::max(node.low[1][i] - x[1], x[1] - node.high[1][i]), 0.0F);
-      const float dz = std::max(std::max(node.low[2][i] - x[2], x[2] - node.high[2][i]), 0.0F);
-      bound[i] = dx * dx + dy * dy + dz * dz;
-    }
+    const auto away = [&](int k) {
+      return larger(larger(node.low[k] - x[k], x[k] - node.high[k]), Float4{});
+    };
+    const Float4 dx = away(0), dy = away(1), dz = away(2);
+    const Float4 bound = dx * dx + dy * dy + dz * dz;
     // The nearest comes last.
     const std::size_t first = size;
-    for (int i = 0; i < 4; ++i) {
-      if (!(bound[i] < cutoff)) continue;
+    for (unsigned near = bits_below(bound, cutoff); near != 0; near &= near - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(near));
       std::size_t at = size++;
       for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {bound[i], node.child[i]};

@@ -49,15 +49,15 @@ class ClosestTriangle {
   /// Boxes of four nodes; those that are not there are nowhere.
   struct Node {
     static constexpr float kFar = std::numeric_limits<float>::infinity();
-    std::array<std::array<float, 4>, 3> low{
-        {{kFar, kFar, kFar, kFar}, {kFar, kFar, kFar, kFar}, {kFar, kFar, kFar, kFar}}};
-    std::array<std::array<float, 4>, 3> high{
-        {{-kFar, -kFar, -kFar, -kFar}, {-kFar, -kFar, -kFar, -kFar}, {-kFar, -kFar, -kFar, -kFar}}};
+    static constexpr Float4 kAllFar{kFar, kFar, kFar, kFar};
+    std::array<Float4, 3> low{kAllFar, kAllFar, kAllFar};
+    std::array<Float4, 3> high{-kAllFar, -kAllFar, -kAllFar};
     std::array<std::uint32_t, 4> child{};
   };
   struct Leaf {
     FourTriangles triangles;
-    std::uint32_t first, count;  // places
+    std::uint32_t first;  // place
+    unsigned all;         // a bit for each triangle
   };
   std::uint32_t add(std::uint32_t index);
 

@@ -102,7 +102,7 @@ void ErrorBoundCertificate::put(const geom::ConvexPolygon& piece, std::uint32_t 
 }
 
 bool ErrorBoundCertificate::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                                  std::span<const NewTriangle> added, const NearestOf& nearest_of,
+                                  std::span<const NewTriangle> added, NearestOf& nearest_of,
                                   int cuts_left) {
   const auto is_carried_by = [&](std::size_t k) {
     if (!carries(added[k], piece)) return false;
@@ -147,7 +147,7 @@ bool ErrorBoundCertificate::admits(std::span<const std::uint32_t> removed,
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
   if (added.empty() || !(epsilon_ > 0)) return false;
-  const NearestOf nearest(added);
+  NearestOf nearest(added);
   steps_ = 0;
   const auto is_placed = [&](std::uint32_t t) {
     for (std::size_t i = 0; i < added.size(); ++i)

@@ -59,8 +59,7 @@ class ErrorBoundCertificate {
   };
 
   [[nodiscard]] bool place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                           std::span<const NewTriangle> added, const NearestOf& nearest,
-                           int cuts_left);
+                           std::span<const NewTriangle> added, NearestOf& nearest, int cuts_left);
   void put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier);
   [[nodiscard]] bool carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const;
   std::uint32_t allocate();

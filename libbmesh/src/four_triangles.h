@@ -2,13 +2,29 @@
 
 #include <kaboum/geom/mesh.h>
 
-#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace kaboum::bmesh {
 
 using geom::Vec3;
+
+/// Four numbers that are computed with at once. Operations round as those of single numbers do.
+using Float4 = float __attribute__((vector_size(16)));
+
+/// The larger ones. @pre none is NaN
+inline Float4 larger(const Float4& a, const Float4& b) { return a < b ? b : a; }
+
+/// Bit i: whether the i-th is below the limit.
+inline unsigned bits_below(const Float4& x, float limit) {
+  const auto below = std::bit_cast<std::array<std::uint64_t, 2>>(x < limit);
+  constexpr auto pair = [](std::uint64_t two) {
+    return static_cast<unsigned>((two & 1U) | (two >> 62U & 2U));
+  };
+  return pair(below[0]) | pair(below[1]) << 2U;
+}
 
 /// Where the numbers of FourTriangles are measured from, and in what: single precision then has
 /// coordinates of about 1.
@@ -65,22 +81,18 @@ class FourTriangles {
   }
 
   /// Squares, in the frame's units.
-  void at_least(const Eigen::Vector3f& p, std::array<float, 4>& squared) const {
-    float height[4][4];
-    for (int k = 0; k < 4; ++k)
-      for (int t = 0; t < 4; ++t)
-        height[k][t] = x_[k][t] * p.x() + y_[k][t] * p.y() + z_[k][t] * p.z() - offset_[k][t];
-    for (int t = 0; t < 4; ++t) {
-      float beside = std::max(height[1][t], height[2][t]);
-      beside = std::max(beside, height[3][t]);
-      beside = std::max(beside, 0.0F);
-      squared[t] = height[0][t] * height[0][t] + beside * beside;
-    }
+  [[nodiscard]] Float4 at_least(const Eigen::Vector3f& p) const {
+    const auto height = [&](int k) {
+      return x_[k] * p.x() + y_[k] * p.y() + z_[k] * p.z() - offset_[k];
+    };
+    const Float4 above = height(0);
+    const Float4 beside = larger(larger(larger(height(1), height(2)), height(3)), Float4{});
+    return above * above + beside * beside;
   }
 
  private:
   // Of the planes, by triangle: its own first.
-  float x_[4][4] = {}, y_[4][4] = {}, z_[4][4] = {}, offset_[4][4] = {};
+  std::array<Float4, 4> x_{}, y_{}, z_{}, offset_{};
 };
 
 }  // namespace kaboum::bmesh

@@ -158,8 +158,9 @@ bool MeasuredPolicy::measure(BucketQueue::Entry& e) {
   const std::optional<double>& epsilon = state_.epsilon;
   double limit = kMeasureTo * std::max(state_.contraction.queue().lowest_key(), c.cost);
   if (epsilon) limit = std::min(limit, std::max(*epsilon, c.cost));
-  const double squared =
-      state_.sampled->largest(removed_, added_, points_, hint_[e.a], limit * limit);
+  // The key is a cost already: what is nearer adds nothing.
+  const double squared = state_.sampled->largest(removed_, added_, points_, hint_[e.a],
+                                                 {c.cost * c.cost, limit * limit});
   c.cost = std::max(c.cost, std::sqrt(squared));
   if (epsilon && c.cost > *epsilon) return reject_by_epsilon(c.cost);
   if (c.cost > limit) {
@@ -185,9 +186,10 @@ bool MeasuredPolicy::measure_densely(BucketQueue::Entry& e) {
     for (int k = 0; k < 3; ++k) points_.push_back({0.5 * t.corner[k] + (v + p + q) / 6, 0});
   }
   const double limit = kDenselyTo * state_.contraction.queue().lowest_key();
-  const double d = std::sqrt(state_.sampled->largest({}, {}, points_, hint_[e.a], limit * limit));
-  if (d <= limit) return true;
-  candidate().cost = std::max(candidate().cost, d);
+  const double squared =
+      state_.sampled->largest({}, {}, points_, hint_[e.a], {limit * limit, limit * limit});
+  if (!(squared > 0)) return true;
+  candidate().cost = std::max(candidate().cost, std::sqrt(squared));
   e.measured = kUnmeasured;
   return state_.contraction.postpone(e);
 }
@@ -208,10 +210,10 @@ void MeasuredPolicy::describe_points() {
 bool MeasuredPolicy::spikes() {
   const double least = kSpike * state_.context.diagonal;
   std::uint32_t& hint = hint_[candidate().a];
-  const double out = state_.sampled->largest({}, added_, points_, hint, kNever);  // squared
+  const double out = state_.sampled->largest({}, added_, points_, hint, {0, kNever});  // squared
   return out > least * least &&
          out > kSpikeRatio * kSpikeRatio *
-                   state_.sampled->largest(removed_, added_, {}, hint, kNever);
+                   state_.sampled->largest(removed_, added_, {}, hint, {0, kNever});
 }
 
 Quadric MeasuredPolicy::merged() { return state_.contraction.merged(candidate().a, candidate().b); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <limits>
 #include <span>
 #include <vector>
@@ -14,32 +15,26 @@ namespace kaboum::bmesh {
 class NearestOf {
  public:
   /// The triangles must outlive this object.
-  explicit NearestOf(std::span<const NewTriangle> triangles) : triangles_(triangles) {
-    geom::Box3 box;
-    for (const NewTriangle& t : triangles)
-      for (const Vec3& p : t.corner) box.extend(p);
-    frame_ = Frame(box);
-    fours_.resize((triangles.size() + 3) / 4);
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-      fours_[i / 4].put(static_cast<int>(i % 4), triangles[i].corner, frame_);
-  }
+  explicit NearestOf(std::span<const NewTriangle> triangles) : triangles_(triangles) {}
 
   /// Squared distance of p from the nearest triangle, or from one that is within √enough; infinite
   /// where there are none.
   /// @param which  where it is looked for first; receives where that is.
-  double squared(const Vec3& p, std::size_t& which, double enough = 0) const {
+  double squared(const Vec3& p, std::size_t& which, double enough = 0) {
     if (triangles_.empty()) return std::numeric_limits<double>::infinity();
     const std::size_t first = which;
     double best = squared_distance(p, triangles_[first].corner);
+    if (!(best > enough) || triangles_.size() == 1) return best;
+    prepare();
     float cutoff = frame_.cutoff(best);
     const Eigen::Vector3f x = frame_(p);
-    std::array<float, 4> bound;
     std::size_t f = first / 4;
     for (std::size_t i = 0; i < fours_.size() && best > enough; ++i, ++f) {
       if (f == fours_.size()) f = 0;
-      fours_[f].at_least(x, bound);
-      const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
-      for (std::size_t k = 4 * f; k < end; ++k) {
+      const Float4 bound = fours_[f].at_least(x);
+      for (unsigned near = bits_below(bound, cutoff); near != 0; near &= near - 1) {
+        const std::size_t k = 4 * f + static_cast<std::size_t>(std::countr_zero(near));
+        if (k >= triangles_.size()) break;
         if (!(bound[k % 4] < cutoff) || k == first) continue;
         const double d = squared_distance(p, triangles_[k].corner);
         if (d >= best) continue;
@@ -53,12 +48,12 @@ class NearestOf {
 
   /// Sets keep[i] to whether triangle i may be within √enough of p: those that are, are kept, but
   /// for rounding. Those that keep[i] rules out already are not looked at.
-  void within(const Vec3& p, double enough, std::span<char> keep) const {
+  void within(const Vec3& p, double enough, std::span<char> keep) {
+    prepare();
     const float cutoff = frame_.cutoff(enough);
     const Eigen::Vector3f x = frame_(p);
-    std::array<float, 4> bound;
     for (std::size_t f = 0; f < fours_.size(); ++f) {
-      fours_[f].at_least(x, bound);
+      const Float4 bound = fours_[f].at_least(x);
       const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
       for (std::size_t k = 4 * f; k < end; ++k)
         keep[k] = static_cast<char>(keep[k] & static_cast<char>(bound[k % 4] <= cutoff));
@@ -66,9 +61,22 @@ class NearestOf {
   }
 
   /// About the nanoseconds that one of the calls above takes.
-  [[nodiscard]] std::uint64_t steps() const { return 15 + 10 * fours_.size(); }
+  [[nodiscard]] std::uint64_t steps() const { return 15 + 10 * ((triangles_.size() + 3) / 4); }
 
  private:
+  /// Bounds of the triangles, when they are first asked for: where the first triangle looked at
+  /// will do, they are not needed.
+  void prepare() {
+    if (!fours_.empty()) return;
+    geom::Box3 box;
+    for (const NewTriangle& t : triangles_)
+      for (const Vec3& p : t.corner) box.extend(p);
+    frame_ = Frame(box);
+    fours_.resize((triangles_.size() + 3) / 4);
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+      fours_[i / 4].put(static_cast<int>(i % 4), triangles_[i].corner, frame_);
+  }
+
   std::span<const NewTriangle> triangles_;
   Frame frame_;
   std::vector<FourTriangles> fours_;

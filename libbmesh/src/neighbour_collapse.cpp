@@ -176,17 +176,18 @@ void NeighbourCollapse::relax_vertex(std::size_t i, double scale, double penalty
   m_.update_normals_around(v);
 }
 
-/// Largest deviation of the star of v, or something above the limit.
+/// Largest deviation of the star of v where that is above the limit, or something above it; else 0.
 double NeighbourCollapse::star_largest(std::uint32_t v, double limit) {
   if (!step_.gather(v)) return kNoLimit;
   step_.place_star(m_.position[v]);
-  return std::sqrt(
-      sampled_.largest(step_.removed, step_.added, step_.points, notes_.hint[v], limit * limit));
+  return std::sqrt(sampled_.largest(step_.removed, step_.added, step_.points, notes_.hint[v],
+                                    {limit * limit, limit * limit}));
 }
 
-/// The same for the triangles of the snapshot as they are now; leaves them in
+/// Largest deviation of the triangles of the snapshot as they are now, where that
+/// is between the bounds, or something above them; else 0. Leaves the triangles in
 /// step_.added.
-double NeighbourCollapse::region_largest(double limit) {
+double NeighbourCollapse::region_largest(double least, double most) {
   alive_.clear();
   step_.added.clear();
   step_.points.clear();
@@ -210,7 +211,8 @@ double NeighbourCollapse::region_largest(double limit) {
   for (const std::uint32_t v : before_.vertices())
     if (m_.mesh.used(v)) step_.points.push_back({m_.position[v], 0});
   std::uint32_t& hint = notes_.hint[before_.vertices().front()];
-  return std::sqrt(sampled_.largest(alive_, step_.added, step_.points, hint, limit * limit));
+  return std::sqrt(
+      sampled_.largest(alive_, step_.added, step_.points, hint, {least * least, most * most}));
 }
 
 /// Tries the contraction without a certificate: fills target_ with where the
@@ -245,7 +247,8 @@ double NeighbourCollapse::trial_collapse(std::uint32_t a, std::uint32_t b, doubl
       relax_vertex(k, scale, penalty, kRelaxed, i % 2 == 0);
     if (i == kLookAfter) hopeful = hopes(least.meanwhile);
   }
-  if (hopeful) deviation = region_largest(least.finally * limit) / least.finally;
+  const double last = least.finally * limit;
+  if (hopeful) deviation = region_largest(last, last) / least.finally;
   target_.clear();
   for (const std::uint32_t v : around_) target_.push_back(m_.position[v]);
   before_.restore();
@@ -321,7 +324,7 @@ double NeighbourCollapse::collapse(std::uint32_t a, std::uint32_t b, double limi
   for (int k = 0; k < kSweeps; ++k)
     for (std::size_t i = 0; i < around_.size(); ++i)
       optimiser_.move_towards(around_[i], target_[i], false);
-  deviation = region_largest(kNearLimit * limit);
+  deviation = region_largest(limit, kNearLimit * limit);
   if (deviation > limit && deviation <= kNearLimit * limit) {
     for (int k = 0; k < kPulls; ++k) {
       for (const std::uint32_t v : around_) {
@@ -330,7 +333,7 @@ double NeighbourCollapse::collapse(std::uint32_t a, std::uint32_t b, double limi
       }
     }
   }
-  if (region_largest(limit) > limit) {
+  if (region_largest(limit, limit) > limit) {
     give_up(statistics_.rejected_distance);
     return deviation;
   }

@@ -34,7 +34,7 @@ class NeighbourCollapse : private OptimiserContext {
   void relax_vertex(std::size_t i, double scale, double penalty, double share, bool hand_over);
   void follow(SampledError::Point& point, Trail& trail, double close, std::uint32_t& hint);
   double star_largest(std::uint32_t v, double limit);
-  double region_largest(double limit);
+  double region_largest(double least, double most);
   std::optional<Vec3> find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish);
   double trial_collapse(std::uint32_t a, std::uint32_t b, double limit);
   bool satisfies_link_condition(std::uint32_t a, std::uint32_t b);

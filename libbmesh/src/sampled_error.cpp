@@ -263,8 +263,9 @@ std::size_t SampledError::place_of(std::uint32_t t, std::span<const NewTriangle>
 
 double SampledError::largest(std::span<const std::uint32_t> removed,
                              std::span<const NewTriangle> added, std::span<const Point> points,
-                             std::uint32_t& hint, double limit) const {
-  double worst = 0;
+                             std::uint32_t& hint, const Range& range) const {
+  const double limit = range.most;
+  double worst = range.least;
   std::uint64_t steps = 0;
   for (const Point& p : points) {
     worst = std::max(worst, original_.squared(p.position, hint, worst, &steps));
@@ -272,7 +273,7 @@ double SampledError::largest(std::span<const std::uint32_t> removed,
   }
   count(work_, steps);
   if (worst > limit) return worst;
-  const NearestOf nearest(removed.empty() ? added.first(0) : added);
+  NearestOf nearest(removed.empty() ? added.first(0) : added);
   std::uint64_t looked = 0;
   std::size_t from = 0;
   for (std::size_t i = 0; i < removed.size() && !(worst > limit); ++i) {
@@ -283,7 +284,7 @@ double SampledError::largest(std::span<const std::uint32_t> removed,
     }
   }
   count(work_, looked * nearest.steps());
-  return worst;
+  return worst > range.least ? worst : 0;
 }
 
 SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed,
@@ -302,7 +303,7 @@ SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed
   for (std::size_t i = 0; i < points.size() && within; ++i)
     within = add(locate(points[i], hint, steps), points[i].weight);
   if (within) {
-    const NearestOf nearest(added);
+    NearestOf nearest(added);
     std::size_t from = 0;
     for (std::size_t i = 0; i < removed.size() && within; ++i) {
       std::size_t last = place_of(removed[i], added, from);
@@ -331,7 +332,7 @@ void SampledError::commit(std::span<const std::uint32_t> removed,
     }
   }
   if (all == kNone) return;
-  const NearestOf nearest(added);
+  NearestOf nearest(added);
   std::size_t last = 0;
   std::uint64_t moved = 0;
   while (all != kNone) {

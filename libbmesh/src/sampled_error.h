@@ -50,11 +50,18 @@ class SampledError {
   /// Gives every sample to the current triangle nearest to it.
   void assign(std::span<const Vec3> position, const Connectivity& mesh);
 
+  /// Bounds of a largest distance, squared: between them it has to be known. [length²]
+  struct Range {
+    double least = 0;  ///< what is no more than that counts as 0
+    double most;       ///< measuring stops beyond that
+  };
+
   /// Largest squared distance after the change: from `points` to the original, and from the samples
-  /// of the triangles `removed` to the triangles `added`. Stops when it exceeds `limit` (squared)
-  /// and returns what it has by then.
+  /// of the triangles `removed` to the triangles `added`. Stops when it exceeds `range.most` and
+  /// returns what it has by then. Where some triangle is within `range.least`, no nearer one is
+  /// looked for.
   double largest(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
-                 std::span<const Point> points, std::uint32_t& hint, double limit) const;
+                 std::span<const Point> points, std::uint32_t& hint, const Range& range) const;
 
   /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`; the points up
   /// to there are located.
@@ -93,7 +100,7 @@ class SampledError {
   template <class Visit>
   void for_each_assignment(std::span<const std::uint32_t> removed,
                            std::span<const NewTriangle> added, Visit&& visit) const {
-    const NearestOf nearest(added);
+    NearestOf nearest(added);
     std::uint64_t found = 0;
     std::size_t from = 0;
     for (const std::uint32_t t : removed) {

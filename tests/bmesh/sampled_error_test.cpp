@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "nearest_of.h"
 #include "support/shapes.h"
@@ -70,7 +72,7 @@ TEST(SampledError, TheNearestTriangleIsFound) {
       mesh.vertices.insert(mesh.vertices.end(), t.corner.begin(), t.corner.end());
       mesh.triangles.push_back({n, n + 1, n + 2});
     }
-    const NearestOf nearest(triangles);
+    NearestOf nearest(triangles);
     const ClosestTriangle proximity(mesh);
     std::uniform_real_distribution<double> at(-1.5 * size, 1.5 * size);
     std::size_t which = 0;
@@ -84,6 +86,53 @@ TEST(SampledError, TheNearestTriangleIsFound) {
       EXPECT_LE(std::sqrt(proximity.squared(p, hint)), std::sqrt(least) + 1e-5 * size);
     }
   }
+}
+
+// Measuring that stops early knows what it is asked for: whether the largest distance is beyond the
+// upper end, and what it is between the ends.
+TEST(SampledError, RangesDoNotChangeTheLargestDistance) {
+  const auto sphere = kaboum::test::icosphere(2);
+  const SampledError deviation(sphere);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> at(-1, 1), radius(0.8, 1.2);
+  int zero = 0, between = 0, beyond = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<SampledError::Point> points;
+    double largest = 0;
+    for (int k = 0; k < 5; ++k) {
+      points.push_back({radius(random) * Vec3(at(random), at(random), at(random)).normalized(), 0});
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const auto& t : sphere.triangles)
+        nearest = std::min(
+            nearest, kaboum::bmesh::squared_distance(
+                         points.back().position,
+                         {sphere.vertices[t[0]], sphere.vertices[t[1]], sphere.vertices[t[2]]}));
+      largest = std::max(largest, nearest);
+    }
+    std::uint32_t hint = 0;
+    const double least = 0.11 * 0.11, most = 0.17 * 0.17;
+    const double found = deviation.largest({}, {}, points, hint, {least, most});
+    if (largest <= least) {
+      ++zero;
+      EXPECT_EQ(found, 0);
+    } else if (largest <= most) {
+      ++between;
+      EXPECT_NEAR(found, largest, 1e-12);
+    } else {
+      ++beyond;
+      EXPECT_GT(found, most);
+      EXPECT_LE(found, largest * (1 + 1e-12));
+    }
+  }
+  EXPECT_GT(std::min({zero, between, beyond}), 5);
+}
+
+TEST(FourTriangles, BitsAreOfThoseBelow) {
+  const kaboum::bmesh::Float4 x{1, -2, 3, 2};
+  EXPECT_EQ(kaboum::bmesh::bits_below(x, 2), 0b0011U);
+  EXPECT_EQ(kaboum::bmesh::bits_below(x, 2.5), 0b1011U);
+  EXPECT_EQ(kaboum::bmesh::bits_below(x, -5), 0U);
+  EXPECT_EQ(kaboum::bmesh::bits_below(x, 5), 0b1111U);
 }
 
 }  // namespace
