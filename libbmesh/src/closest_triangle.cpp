@@ -4,9 +4,11 @@
 #include "closest_triangle.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/geom/topology.h>
 
 #include <array>
 #include <bit>
+#include <limits>
 
 namespace kaboum::bmesh {
 
@@ -22,6 +24,41 @@ ClosestTriangle::ClosestTriangle(const geom::Mesh& mesh)
   for (const std::uint32_t i : bvh_->order()) triangles_.push_back(mesh.triangles[i]);
   frame_ = Frame(bvh_->nodes().front().box);
   root_ = add(0);
+  find_neighbours();
+}
+
+/// Places of the triangles across edges that two have.
+void ClosestTriangle::find_neighbours() {
+  std::vector<std::uint32_t> place(triangles_.size());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[triangle(i)] = i;
+  across_.resize(triangles_.size());
+  for (std::uint32_t i = 0; i < place.size(); ++i) across_[i].fill(i);
+  const std::vector<geom::EdgeUse> uses = geom::edge_uses(mesh_);
+  geom::for_each_edge(uses, [&](std::span<const geom::EdgeUse> e) {
+    if (e.size() != 2) return;
+    across_[place[e[0].triangle]][e[0].corner] = place[e[1].triangle];
+    across_[place[e[1].triangle]][e[1].corner] = place[e[0].triangle];
+  });
+}
+
+ClosestTriangle::Found ClosestTriangle::walk(const Vec3& p, std::uint32_t place, double enough,
+                                             double& squared) const {
+  constexpr int kMostSteps = 12;
+  Found best{place, std::numeric_limits<double>::infinity()};
+  for (std::uint32_t at = place, from = place, i = 0; i <= kMostSteps; ++i) {
+    const auto [a, b, c] = corners(at);
+    const geom::ClosestPoint closest = geom::closest_and_beyond(p, a, b, c);
+    const double d = (p - closest.point).squaredNorm();
+    if (i == 0) squared = d;
+    if (d > best.squared) break;
+    best = {at, d};
+    if (closest.beyond < 0 || !(d > enough)) break;
+    const std::uint32_t next = across_[at][static_cast<std::size_t>(closest.beyond)];
+    if (next == at || next == from) break;
+    from = at;
+    at = next;
+  }
+  return best;
 }
 
 /// Makes a node of the tree's node: of up to four nodes below it, or a leaf. @return its place
@@ -64,8 +101,15 @@ std::uint32_t ClosestTriangle::add(std::uint32_t index) {
 double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enough,
                                 std::uint64_t* steps) const {
   if (hint >= triangles_.size()) hint = 0;
-  double best = squared_distance(p, corners(hint));
-  float cutoff = frame_.cutoff(best);
+  double best = 0;
+  Found near = walk(p, hint, enough, best);
+  if (enough > 0 && !(near.squared > enough)) {
+    hint = near.place;
+    return near.squared;
+  }
+  // The walk only says how near the nearest is at most: which of several that are equally near is
+  // found does not depend on it.
+  float cutoff = frame_.cutoff(near.squared);
   const Eigen::Vector3f x = frame_(p);
   struct Entry {
     float squared;
@@ -82,14 +126,16 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
     if ((entry.node & kLeaf) != 0) {
       const Leaf& leaf = leaves_[entry.node & ~kLeaf];
       const Float4 bound = leaf.triangles.at_least(x);
-      for (unsigned near = bits_below(bound, cutoff) & leaf.all; near != 0; near &= near - 1) {
-        const auto i = static_cast<unsigned>(std::countr_zero(near));
+      for (unsigned bits = bits_below(bound, cutoff) & leaf.all; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(bits));
         if (!(bound[i] < cutoff)) continue;
         const double d = squared_distance(p, corners(leaf.first + i));
         if (d >= best) continue;
         best = d;
-        cutoff = frame_.cutoff(best);
         hint = leaf.first + i;
+        if (!(d < near.squared)) continue;
+        near = {hint, d};
+        cutoff = frame_.cutoff(d);
       }
       continue;
     }
@@ -101,8 +147,8 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
     const Float4 bound = dx * dx + dy * dy + dz * dz;
     // The nearest comes last.
     const std::size_t first = size;
-    for (unsigned near = bits_below(bound, cutoff); near != 0; near &= near - 1) {
-      const auto i = static_cast<unsigned>(std::countr_zero(near));
+    for (unsigned bits = bits_below(bound, cutoff); bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(bits));
       std::size_t at = size++;
       for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {bound[i], node.child[i]};
@@ -110,6 +156,10 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
   }
   constexpr std::uint64_t kNode = 30;
   if (steps != nullptr) *steps += kNode * visited;
+  if (near.squared < best) {  // far from all, single precision may have passed it over
+    hint = near.place;
+    best = near.squared;
+  }
   return best;
 }
 

@@ -60,10 +60,21 @@ class ClosestTriangle {
     unsigned all;         // a bit for each triangle
   };
   std::uint32_t add(std::uint32_t index);
+  void find_neighbours();
+  /// A triangle by its place, and its squared distance from a point.
+  struct Found {
+    std::uint32_t place;
+    double squared;
+  };
+  /// Goes from a triangle across the edges beyond which p is, as long as that does not lead away.
+  /// @param squared  receives the distance of the first one.
+  [[nodiscard]] Found walk(const Vec3& p, std::uint32_t place, double enough,
+                           double& squared) const;
 
   const geom::Mesh& mesh_;
   std::shared_ptr<const geom::Bvh> bvh_;
-  std::vector<geom::Triangle> triangles_;  // in the tree's order
+  std::vector<geom::Triangle> triangles_;             // in the tree's order
+  std::vector<std::array<std::uint32_t, 3>> across_;  // their edges; itself where there is none
   Frame frame_;
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
