@@ -23,8 +23,8 @@ ClosestTriangle::ClosestTriangle(const geom::Mesh& mesh)
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t i : bvh_->order()) triangles_.push_back(mesh.triangles[i]);
   frame_ = Frame(bvh_->nodes().front().box);
+  find_neighbours();  // first, for it takes room for a while
   root_ = add(0);
-  find_neighbours();
 }
 
 /// Places of the triangles across edges that two have.

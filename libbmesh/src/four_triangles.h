@@ -7,6 +7,10 @@
 #include <cmath>
 #include <cstdint>
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 namespace kaboum::bmesh {
 
 using geom::Vec3;
@@ -15,15 +19,25 @@ using geom::Vec3;
 using Float4 = float __attribute__((vector_size(16)));
 
 /// The larger ones. @pre none is NaN
-inline Float4 larger(const Float4& a, const Float4& b) { return a < b ? b : a; }
+inline Float4 larger(const Float4& a, const Float4& b) {
+#ifdef __SSE__
+  return _mm_max_ps(b, a);
+#else
+  return a < b ? b : a;
+#endif
+}
 
 /// Bit i: whether the i-th is below the limit.
 inline unsigned bits_below(const Float4& x, float limit) {
+#ifdef __SSE__
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmplt_ps(x, _mm_set1_ps(limit))));
+#else
   const auto below = std::bit_cast<std::array<std::uint64_t, 2>>(x < limit);
   constexpr auto pair = [](std::uint64_t two) {
     return static_cast<unsigned>((two & 1U) | (two >> 62U & 2U));
   };
   return pair(below[0]) | pair(below[1]) << 2U;
+#endif
 }
 
 /// Where the numbers of FourTriangles are measured from, and in what: single precision then has

@@ -441,7 +441,10 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   SetRequest asked = request;
   std::vector<geom::RequestedRegion> apart;
   // A flat sheet that is closed by its own fill has no volume.
-  const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : geom::prepare;
+  const Prepare plain = [](const geom::Mesh& mesh, const geom::PrepareOptions& options) {
+    return geom::prepare(mesh, options);
+  };
+  const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : plain;
   if (asked.wrap) asked.wrap->input_triangles = mesh.triangles.size();
   const GivenSolid given = give_solid(
       mesh, prepare, asked.preparation, asked.wrap,

@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/predicates.h>
+#include <kaboum/verify/loose_triangles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,7 @@ void require_extent(const geom::Prepared& original) {
 }
 
 geom::Prepared prepare_mesh(const geom::Mesh& mesh, const geom::PrepareOptions& options) {
-  geom::Prepared prepared = geom::prepare(mesh, options);
+  geom::Prepared prepared = geom::prepare(mesh, options, verify::find_loose_triangles);
   require_extent(prepared);
   return prepared;
 }

@@ -33,7 +33,8 @@ ClaimedSurface::ClaimedSurface(const geom::Prepared& original) : original_(origi
 const std::vector<std::uint32_t>& ClaimedSurface::loose() {
   if (looked_) return loose_;
   looked_ = true;
-  loose_ = verify::find_loose_triangles(original_.solid.mesh());
+  loose_ = original_.report.loose ? *original_.report.loose
+                                  : verify::find_loose_triangles(original_.solid.mesh());
   const auto walls = static_cast<std::uint32_t>(original_.solid.mesh().triangles.size());
   for (std::uint32_t i = 0; i < original_.report.left_out.size(); ++i) loose_.push_back(walls + i);
   return loose_;

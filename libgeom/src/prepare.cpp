@@ -47,7 +47,8 @@ namespace {
 /// The steps of preparation, and what each of them notes.
 class Preparation {
  public:
-  Preparation(const Mesh& input, const PrepareOptions& options) : options_(options) {
+  Preparation(const Mesh& input, const PrepareOptions& options, const LooseTriangles& loose)
+      : options_(options), loose_(loose) {
     require_valid(input);
     require_moderate(input);
     mesh_ = weld(input);
@@ -385,6 +386,12 @@ class Preparation {
     if (guesses.ambiguous)
       guess("the part with input triangle " + std::to_string(*guesses.ambiguous) +
             " was open, and its triangles were turned to agree: which solid it bounds is a guess");
+    // Whose inner sides all have w ≥ 1, and on which no other triangle lies, have w ≥ 0 on their
+    // outer sides: w is less than 0 nowhere, and all is one part.
+    if (loose_ && report_.components == 1) {
+      report_.loose = loose_(mesh_);
+      if (report_.loose->empty()) return;
+    }
     const WindingNumber winding(mesh_);
     if (const auto found =
             geom::find_inverted(mesh_, winding, some_of(guesses.agreed, part_), part_))
@@ -469,6 +476,7 @@ class Preparation {
   }
 
   PrepareOptions options_;
+  const LooseTriangles& loose_;
   Mesh mesh_;
   std::vector<char> border_;  // per vertex, in the end
   bool closed_ = true;
@@ -485,8 +493,8 @@ class Preparation {
 
 }  // namespace
 
-Prepared prepare(const Mesh& input, const PrepareOptions& options) {
-  return Preparation(input, options).run();
+Prepared prepare(const Mesh& input, const PrepareOptions& options, const LooseTriangles& loose) {
+  return Preparation(input, options, loose).run();
 }
 
 }  // namespace kaboum::geom

@@ -43,6 +43,13 @@ TEST(ClosestTriangle, FindsTheNearestOfAll) {
       // One that is near enough will do.
       const double enough = 4 * expected + 1e-6;
       EXPECT_LE(search.squared(p, hint, enough), std::max(enough, 1.001 * expected));
+      // Also from anywhere, and where none is.
+      for (const double share : {0.5, 1.5}) {
+        auto far = static_cast<std::uint32_t>(random() % f.mesh.triangles.size());
+        const double some = search.squared(p, far, share * expected);
+        EXPECT_LE(some, std::max(share, 1.001) * expected + 1e-12);
+        EXPECT_NEAR(squared_distance(p, search.corners(far)), some, 1e-12 * (1 + some));
+      }
     }
   }
 }

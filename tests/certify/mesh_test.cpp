@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/certify/mesh.h>
+#include <kaboum/verify/loose_triangles.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <vector>
 
 #include "mesh_certifier.h"
+#include "support/families.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
@@ -374,6 +377,38 @@ TEST(CertifyMesh, RefusesRequestsThatContradictThemselves) {
     r.numbers = MeshRequest::Numbers::Double;
     r.format = io::Format::Stl;
   }));
+}
+
+/// A sphere of which one vertex is far beyond the other side: the tip that comes out is inside out.
+geom::Mesh pierced_sphere() {
+  geom::Mesh mesh = test::icosphere(2);
+  mesh.vertices[40] *= -8;
+  return mesh;
+}
+
+// Where no triangle is loose no place inside out is looked for; what is said is the same.
+TEST(PrepareMesh, SaysWhatLookingBesideTrianglesSays) {
+  std::vector<test::Family> families = test::closed_families();
+  families.push_back({"a pierced sphere", pierced_sphere(), true, true, false});
+  int spared = 0, looked = 0, hollow = 0;
+  for (const test::Family& family : families) {
+    if (!family.solid) continue;
+    SCOPED_TRACE(family.name);
+    const geom::PrepareOptions options{.drop_sheets = true};
+    const geom::Prepared exact = prepare_mesh(family.mesh, options),
+                         beside = geom::prepare(family.mesh, options);
+    EXPECT_EQ(exact.report.notes, beside.report.notes);
+    EXPECT_EQ(exact.report.hollow, beside.report.hollow);
+    EXPECT_EQ(exact.solid.mesh().triangles, beside.solid.mesh().triangles);
+    EXPECT_FALSE(beside.report.loose);
+    if (!exact.report.loose) continue;  // of several parts
+    (exact.report.loose->empty() ? spared : looked) += 1;
+    hollow += exact.report.hollow ? 1 : 0;
+    EXPECT_EQ(*exact.report.loose, verify::find_loose_triangles(exact.solid.mesh()));
+  }
+  EXPECT_GT(spared, 5);
+  EXPECT_GT(looked, 0);
+  EXPECT_GT(hollow, 0);
 }
 
 TEST(CertifyMesh, ProgressMayCancel) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,8 @@ struct PreparationReport {
   /// True if it is a guess which solid is meant: a hole's rim runs along a wall, or triangles of a
   /// part that was open were turned to agree. Noted.
   bool guessed = false;
+  /// What a search for loose triangles has found of the prepared mesh, if it was made: ascending.
+  std::optional<std::vector<std::uint32_t>> loose;
   std::vector<std::string> notes;  ///< the same in words, for who made the file
 };
 
@@ -81,6 +84,11 @@ struct Prepared {
   SolidMesh solid;
   PreparationReport report;
 };
+
+/// Finds triangles of a closed mesh. No other triangle cuts those that are not among them, nor lies
+/// along their edges but for common ones, and the winding number on their inner side is 1 at least
+/// (verify::find_loose_triangles).
+using LooseTriangles = std::function<std::vector<std::uint32_t>(const Mesh&)>;
 
 /// Gives the input a solid, or says why it has none. docs/algorithms/preparation.md states which
 /// solid is meant, and proves that nothing of it is lost.
@@ -102,11 +110,14 @@ struct Prepared {
 ///
 /// Claims about a result are claims about this mesh; the counts say how it differs from the input.
 ///
+/// @param loose  asked, if there is one, of closed meshes in one piece: where no triangle is loose,
+///   no place is inside out, and none is looked for. The result is the same.
 /// @throws Error{InvalidInput} when no solid can be given: no triangles, a one-sided surface,
 ///   sheets (opposite coincident faces that lie in no solid, unless dropped on request), nothing
 ///   left, open with Holes::Refuse. Also when shells share a wall and cannot be told apart, or have
 ///   a hole in one of them when they had to be turned to agree. Also for coordinates beyond 1e60 or
 ///   an extent below 1e-60 (their products would overflow or vanish).
-Prepared prepare(const Mesh& input, const PrepareOptions& options = {});
+Prepared prepare(const Mesh& input, const PrepareOptions& options = {},
+                 const LooseTriangles& loose = {});
 
 }  // namespace kaboum::geom

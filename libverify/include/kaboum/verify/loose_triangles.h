@@ -9,9 +9,9 @@ namespace kaboum::verify {
 
 /// Triangles of a closed mesh that are not known to lie in its solid, ascending.
 ///
-/// Every triangle that is not among them lies in closure{w ≥ 1}, exactly. Those of folds, of parts
-/// that are inside out and of sheets are among them, and so are all that others cut or lie along:
-/// verify_inclusion decides these. docs/algorithms/exact-inclusion.md, "Loose triangles".
+/// Every triangle that is not among them lies in closure{w ≥ 1}, exactly: w ≥ 1 on its inner side.
+/// Those of folds, of parts that are inside out and of sheets are among them, and so are all that
+/// others cut or lie along: verify_inclusion decides these. docs/algorithms/exact-inclusion.md, "Loose triangles".
 ///
 /// The result does not depend on the number of threads.
 ///
