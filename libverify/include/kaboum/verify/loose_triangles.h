@@ -11,7 +11,8 @@ namespace kaboum::verify {
 ///
 /// Every triangle that is not among them lies in closure{w ≥ 1}, exactly: w ≥ 1 on its inner side.
 /// Those of folds, of parts that are inside out and of sheets are among them, and so are all that
-/// others cut or lie along: verify_inclusion decides these. docs/algorithms/exact-inclusion.md, "Loose triangles".
+/// others cut or lie along: verify_inclusion decides these. docs/algorithms/exact-inclusion.md,
+/// "Loose triangles".
 ///
 /// The result does not depend on the number of threads.
 ///
