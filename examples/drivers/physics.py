@@ -5,7 +5,7 @@
 
 A robot is the MJCF that `bcd-decompose ROBOT.urdf --robot-format mjcf` writes; things of the scene are the convex bodies of their
 sets. What has grasps in the scene can move; the rest stands still. What is taken is held by a suction cup, which takes nothing
-farther than --reach metres and pulls it to where the plan holds it: a weld, not friction. A part that is let go where it touches
+farther than --reach metres, pulls it to where the plan holds it (a weld, not friction), and sets it down before it lets go. A part that is let go where it touches
 one that another robot holds sits on that. --report FILE.json has what went otherwise
 than planned: how far joints were from where they were told to be, contacts that the plan does not know, how far things end from where the
 plan has them. --log FILE.jsonl has samples of all joints and poses, --film DIRECTORY pictures.
@@ -30,6 +30,7 @@ STIFF = 100.0       # of the control of joints: it corrects with this frequency,
 ROTOR = 0.5         # inertia of motors behind their gears [kg m², or kg]
 SETTLE = 0.5        # things come to rest before it begins, and after each release [s]
 TRACKED = 2e-3      # a motion has ended when all joints are so near [rad or m]
+DOWN = 0.03         # how fast things are set down [m/s]
 FIT = 2e-3          # a part that is let go so near to one that another robot holds sits on it, as in a press fit [m]
 DEEP = 5e-4         # contacts deeper than that are told [m]
 GRAVITY = 9.81
@@ -353,12 +354,25 @@ class World:
         # Handed over: another robot has taken it.
         if self.held[thing][0] != robot:
             return
+        self._set_down(robot)
         self._let_go(thing)
         for other, (holder, weld) in list(self.held.items()):
             if holder != robot and self.gap(other, thing, FIT) < FIT:
                 self._weld(thing, holder, self.model.body(self.model.eq_obj1id[weld]).name)
                 break
         self.run(SETTLE)
+
+    def _set_down(self, robot):
+        """The cup's spring lowers what a robot holds until it stands on something, as far as --reach."""
+        held = {thing: weld for thing, (by, weld) in self.held.items() if by == robot}
+        geoms = {g for g in range(self.model.ngeom) if self.owner[g] in held}
+        for _ in range(round(self.options.reach / (DOWN * STEP))):
+            if any((a in geoms) != (b in geoms) and c.dist < 0 for c in self.data.contact[:self.data.ncon] for a, b in [c.geom]):
+                break
+            for weld in held.values():
+                link = self.model.eq_obj1id[weld]
+                self.model.eq_data[weld, 3:6] -= DOWN * STEP * self.data.xmat[link].reshape(3, 3)[2]
+            self.step()
 
     def weight(self, thing):
         """What a held thing weighs, by the force at the link that holds it, at rest [kg]."""
