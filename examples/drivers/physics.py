@@ -15,11 +15,15 @@ docs/planning/drivers.md says what the lines are. Needs the Python packages mujo
 import argparse
 import json
 import math
+import os
 import pathlib
 import re
 import struct
 import sys
 import zlib
+
+if "DISPLAY" not in os.environ:
+    os.environ.setdefault("MUJOCO_GL", "egl")  # pictures without a screen
 
 import mujoco
 import numpy as np
