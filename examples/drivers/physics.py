@@ -294,12 +294,13 @@ class World:
             self.step()
         end = rows["positions"][-1]
         self.target[robot] = (end, 0.0, 0.0)
-        for _ in range(round(1 / STEP)):
+        for k in range(round(1 / STEP)):
+            if k % SAMPLED == 0:
+                executed.append([times[-1] + k * STEP, *map(float, self.data.qpos[self.places[robot]])])
             if np.max(np.abs(end - self.data.qpos[self.places[robot]]), initial=0) < TRACKED and \
                     np.max(np.abs(self.data.qvel[self.dofs[robot]]), initial=0) < 0.05:
                 break
             self.step()
-        executed.append([times[-1], *map(float, self.data.qpos[self.places[robot]])])
         self.plan.qpos[self.places[robot]] = end
         self._carry_in_plan()
         return executed
@@ -325,7 +326,7 @@ class World:
         if thing not in self.things:
             raise Failure(f"'{thing}' has no grasps in the scene, so it stands fast here")
         gap = self.gap(robot, thing)
-        if gap > self.options.reach and thing not in self.held:
+        if gap > self.options.reach:
             raise Failure(f"'{thing}' is {1000 * gap:.0f} mm from '{robot}': nothing is held")
         self._let_go(thing)
         self._weld(thing, robot, name)

@@ -133,6 +133,8 @@ def options(name, n, least, most, more=lambda parser: None):
     more(parser)
     o = parser.parse_args()
     parts.detail, parts.gaps = o.detail, o.gaps
+    if o.physics < 0 or (o.film and o.physics == 0):
+        parser.error("--physics takes a number of runs from 1 on, and --film needs it")
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
     return o

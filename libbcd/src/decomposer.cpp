@@ -13,8 +13,13 @@ namespace {
 /// Appends the bodies to the result, and what is known of them all.
 void append(std::vector<Finished> bodies, CoverCandidate& result) {
   for (Finished& f : bodies) {
-    result.excess_lower = std::max(result.excess_lower, f.excess.lower);
-    result.excess_upper = std::max(result.excess_upper, f.excess.upper);
+    // Distances, not times the weight of regions.
+    constexpr double kRounded = 1 + 0x1p-50;
+    const double weight = f.excess.weight;
+    result.excess_lower = std::max(
+        result.excess_lower, weight == 1 ? f.excess.lower : f.excess.lower / (weight * kRounded));
+    result.excess_upper = std::max(
+        result.excess_upper, weight == 1 ? f.excess.upper : f.excess.upper * kRounded / weight);
     result.statistics.vertices += f.hull.vertices.size();
     result.statistics.largest = std::max(result.statistics.largest, f.hull.vertices.size());
     result.statistics.thickened += f.thickened ? 1 : 0;

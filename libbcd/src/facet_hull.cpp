@@ -30,6 +30,9 @@ using geom::Vec3;
 
 /// Planes that the search begins with, for each facet that is allowed, and at least.
 constexpr std::size_t kPlanesPerFacet = 3, kFewestPlanes = 96;
+/// Most that are left out, and most facets whose planes are turned: more take long and gain nothing
+/// that matters.
+constexpr std::size_t kMostLeftOut = 128, kMostTurned = 64;
 /// Facets whose normals are nearer than this are one. [radians]
 constexpr double kSameNormal = 1e-6;
 /// A plane is turned by this share of the way from where it touches to its facet's middle, over the
@@ -143,7 +146,7 @@ class PlaneSearch {
     if (volume_ == kInfinity) return {};
     leave_out();
     if (volume_ == kInfinity) return {};
-    if (steps != PlaneSteps::Removal) turn();
+    if (steps != PlaneSteps::Removal && most_ <= kMostTurned) turn();
     if (steps == PlaneSteps::Exchange && most_ <= kMostExchanged) exchange();
     return planes_;
   }
@@ -179,7 +182,8 @@ class PlaneSearch {
     }
     std::ranges::stable_sort(facets,
                              [](const Facet& x, const Facet& y) { return x.area > y.area; });
-    const std::size_t enough = std::max(kFewestPlanes, kPlanesPerFacet * most_);
+    const std::size_t enough =
+        std::max(kFewestPlanes, std::min(kPlanesPerFacet * most_, most_ + kMostLeftOut));
     std::vector<TangentPlane> out;
     for (double angle = kSameNormal;; angle *= angle < 1e-3 ? 10 : 1.3) {
       out.clear();
@@ -340,7 +344,10 @@ Mesh prism_or_box(std::span<const Vec3> required, std::size_t most, double ulp) 
 
 }  // namespace
 
-Mesh facet_hull(std::span<const Vec3> required, std::size_t most, PlaneSteps steps) {
+Mesh facet_hull(std::span<const Vec3> required, std::size_t facets, std::size_t vertices,
+                PlaneSteps steps) {
+  // Of F facets a polytope has 2 F − 4 corners at most.
+  const std::size_t most = std::min(facets, (vertices + 4) / 2);
   double magnitude = 0;
   for (const Vec3& p : required) magnitude = std::max(magnitude, p.cwiseAbs().maxCoeff());
   if (!(magnitude < 1e38))
@@ -350,7 +357,7 @@ Mesh facet_hull(std::span<const Vec3> required, std::size_t most, PlaneSteps ste
   if (!builder.build(required)) return prism_or_box(required, most, ulp);
   Mesh hull = builder.mesh();
   const auto fits = [&](const Mesh& mesh) {
-    return mesh.vertices.size() <= 2 * most - 4 && geom::float32_facet_count(mesh) <= most;
+    return mesh.vertices.size() <= vertices && geom::float32_facet_count(mesh) <= facets;
   };
   if (fits(hull)) return hull;
   const std::vector<Vec3> own = hull.vertices;

@@ -17,9 +17,10 @@ enum class PlaneSteps {
 /// exactly. Its planes touch the hull of the points, up to rounding, and are chosen for a small
 /// volume (docs/algorithms/convex-decomposition.md, "Few facets").
 /// @param required  float32 points; at least one
-/// @param most      facets (geom::float32_facet_count), ≥ 6; so it has 2 most − 4 vertices at most
+/// @param most      facets (geom::float32_facet_count), ≥ 6
+/// @param vertices  most vertices, ≥ 8
 /// @throws Error{LimitReached} when coordinates exceed float32.
-geom::Mesh facet_hull(std::span<const geom::Vec3> required, std::size_t most,
+geom::Mesh facet_hull(std::span<const geom::Vec3> required, std::size_t most, std::size_t vertices,
                       PlaneSteps steps = PlaneSteps::Exchange);
 
 }  // namespace kaboum::bcd

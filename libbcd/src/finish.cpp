@@ -41,16 +41,6 @@ bool fits(const std::vector<Finished>& bodies, const CoverOptions& options) {
          vertices_of(bodies) <= options.max_total_vertices.value_or(kUnlimited);
 }
 
-namespace {
-
-/// Facets with which a body keeps the limit of its vertices as well: of F facets it has 2 F − 4 at
-/// most.
-std::size_t facets_allowed(const CoverOptions& options) {
-  return std::min(*options.max_facets, (options.max_vertices + 4) / 2);
-}
-
-}  // namespace
-
 Finisher::Finisher(SearchState& state) : state_(state) {
   double magnitude = 0;
   for (const Vec3& p : state.solid().mesh().vertices)
@@ -156,7 +146,7 @@ Finisher::Round Finisher::make_hulls(const std::vector<Finished>& bodies,
     Simplified& shape = shapes[open[i]];
     if (options.max_facets) {
       round.hulls[i] =
-          facet_hull(required_of(body), facets_allowed(options),
+          facet_hull(required_of(body), *options.max_facets, options.max_vertices,
                      options.effort == Effort::Fast ? PlaneSteps::Turning : PlaneSteps::Exchange);
     } else if (first) {
       if (!body.concavity.flat)

@@ -419,6 +419,9 @@ SetCertificate certificate_of(const SetRequest& r, const geom::Prepared& prepare
   c.min_thickness = least_thickness(r, diagonal);
   c.max_aspect = r.max_aspect.value_or(0);
   c.max_facets = r.max_facets.value_or(0);
+  if (r.max_facets)
+    for (const geom::ConvexBody& body : found.bodies)
+      c.most_facets = std::max(c.most_facets, geom::float32_facet_count(body.core));
   c.safety = safety;
   c.out_of_work = s.out_of_work;
   c.notes = prepared.report.notes;

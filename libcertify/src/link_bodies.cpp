@@ -301,13 +301,41 @@ std::string RobotRequest::parameters(const std::string& link) const {
   return own.parameters();
 }
 
+namespace {
+
+/// What a body with a radius reaches farther than its image under a scale that differs by axis: the
+/// image of its ball is an ellipsoid, and a ball round that is written. [length]
+double rounded_beyond(const geom::Vec3& scale, const geom::ConvexSet& set) {
+  double radius = 0;
+  for (const geom::ConvexBody& body : set.bodies) radius = std::max(radius, body.radius);
+  const geom::Vec3 sizes = scale.cwiseAbs();
+  return (1 + 0x1p-40) * (sizes.maxCoeff() - sizes.minCoeff()) * radius;
+}
+
+/// Why a mesh's bodies are farther than asked once they are scaled; empty: they are not.
+std::string flaw_of_scale(const CertifiedLinkMesh& mesh) {
+  if (!mesh.held) return {};
+  const SetCertificate& c = mesh.made.found.set.certificate();
+  const double most = mesh.mesh.scale.cwiseAbs().maxCoeff(),
+               beyond = rounded_beyond(mesh.mesh.scale, mesh.made.found.set.artefact());
+  if (!(beyond > 0) || (!mesh.epsilon && c.regions.empty())) return {};
+  const double reached = most * c.distance_upper + beyond;
+  if (c.regions.empty() && reached <= most * mesh.epsilon->of(c.diagonal)) return {};
+  return mesh.mesh.file.string() + ": its scale differs by axis, so round bodies are up to " +
+         number_text(beyond) +
+         " farther than within epsilon: allow a larger one, or take polytopes";
+}
+
+}  // namespace
+
 double distance_of(const robot::RobotFile& robot, const BodiesCertificate& bodies,
                    const robot::LinkShape& shape) {
   const Geometry& g = bodies.choice.shapes_of(robot.robot.links[shape.link])[shape.index];
   if (!shape.mesh) return robot::bounding_excess(g);
   if (!bodies.meshes[*shape.mesh].held) return 0;  // the shape stays
   const geom::ConvexSet& set = bodies.meshes[*shape.mesh].made.found.set.artefact();
-  return g.size.cwiseAbs().maxCoeff() * set.provenance.epsilon.value_or(0);
+  return g.size.cwiseAbs().maxCoeff() * set.provenance.epsilon.value_or(0) +
+         rounded_beyond(g.size, set);
 }
 
 double mean_distance(const CertifiedBodies& bodies) {
@@ -339,6 +367,7 @@ CertifiedBodies certify_bodies(const robot::RobotFile& robot, const RobotRequest
     own.set.improve_work = work[i];
     out.meshes.push_back(certify_somehow(found.meshes[i], found.epsilons[i], found.regions[i], own,
                                          cache, hooks, first));
+    if (out.meshes.back().flaw.empty()) out.meshes.back().flaw = flaw_of_scale(out.meshes.back());
     const CertifiedFile& made = out.meshes.back().made;
     if (found.meshes[i].missing.empty()) out.files.push_back(found.meshes[i].file);
     out.files.insert(out.files.end(), made.other_files.begin(), made.other_files.end());

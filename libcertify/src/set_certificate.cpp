@@ -55,7 +55,7 @@ Json record_of(const SetCertificate& c) {
   if (c.min_thickness > 0)
     j["min_thickness"] = {{"wished", c.min_thickness}, {"thickened", c.thickened}};
   if (c.max_aspect > 0) j["max_aspect"] = {{"wished", c.max_aspect}, {"thickened", c.thickened}};
-  if (c.max_facets > 0) j["max_facets"] = c.max_facets;
+  if (c.max_facets > 0) j["max_facets"] = {{"wished", c.max_facets}, {"most", c.most_facets}};
   if (!c.undecided.empty()) j["undecided"] = c.undecided;
   for (const SetCertificate::Region& one : c.regions)
     j["regions"].push_back({{"name", one.name}, {"bound", one.epsilon}, {"reached", one.reached}});
@@ -139,7 +139,10 @@ SetCertificate read_record(std::string_view text) {
       j.at("max_aspect").at("wished").get_to(c.max_aspect);
       c.thickened = count_at(j.at("max_aspect"), "thickened");
     }
-    if (j.contains("max_facets")) c.max_facets = count_at(j, "max_facets");
+    if (j.contains("max_facets")) {
+      c.max_facets = count_at(j.at("max_facets"), "wished");
+      c.most_facets = count_at(j.at("max_facets"), "most");
+    }
     if (j.contains("undecided")) j.at("undecided").get_to(c.undecided);
     if (j.contains("regions"))
       for (const Json& one : j.at("regions"))

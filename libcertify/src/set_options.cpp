@@ -102,7 +102,7 @@ void add_limits(std::vector<Option<R>>& out) {
                "eight spacings of that. {max-vertices-per-body} holds as well: a body of F facets "
                "has up to 2 F - 4 vertices",
        .low = 6,
-       .high = 1000,
+       .high = 256,
        .otherwise = "no limit"},
       [](auto& r) -> auto& { return r.request.max_facets; }));
 }

@@ -78,10 +78,14 @@ class Drive {
       again.unplanned = [](const plan::Unplanned&) {};
       plan::run(done.model, done.plan, again, [&](const plan::RunStep& step) {
         const auto executed = done.executed.find(step.node);
-        if (done.nodes.contains(step.node))
-          simulation.carry_out(step, executed != done.executed.end()
-                                         ? executed->second
-                                         : std::vector<ExecutedMotion>{});
+        const bool is_done = done.nodes.contains(step.node);
+        if (executed == done.executed.end()) {
+          if (is_done) simulation.carry_out(step);
+        } else if (is_done) {
+          simulation.carry_out(step, executed->second);
+        } else {  // where it stopped
+          simulation.begin(step, executed->second);
+        }
       });
       report_.run.simulation += simulation.report();
     }
@@ -131,8 +135,8 @@ class Drive {
       for (MotionPart& part :
            parts_of(call.payload, world_, "node " + std::to_string(node) + ", " + action))
         parts.push_back(std::move(part));
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      done_.back().executed[node].push_back(move(parts, i, action));
+    std::vector<ExecutedMotion>& executed = done_.back().executed[node];
+    for (std::size_t i = 0; i < parts.size(); ++i) move(parts, i, action, executed.emplace_back());
   }
 
   /// The robot that holds an object in a later motion of the node, if it is another one.
@@ -146,8 +150,8 @@ class Drive {
     return std::nullopt;
   }
 
-  ExecutedMotion move(const std::vector<MotionPart>& parts, std::size_t i,
-                      const std::string& action) {
+  void move(const std::vector<MotionPart>& parts, std::size_t i, const std::string& action,
+            ExecutedMotion& executed) {
     const MotionPart& part = parts[i];
     if (part.path.empty() || part.path.front() != q_[part.robot])
       throw DriverStop(Kind::Uncertified, action + ": a path of " + world_.robots[part.robot].name +
@@ -160,9 +164,8 @@ class Drive {
     for (const auto& [object, link] : part.holds) hold(object, Holder{part.robot, link});
     SimulationOptions options = request_.simulation;
     options.rate = rate_;
-    ExecutedMotion out = driver_.move(part.robot, trajectory_of(part, world_, options));
+    driver_.move(part.robot, trajectory_of(part, world_, options), executed);
     q_[part.robot] = part.path.back();
-    return out;
   }
 
   /// Takes and lets go what the state after a node says.

@@ -453,7 +453,9 @@ void RobotDriver::act(const std::string& action) {
   data_->ask_again({{"do", "act"}, {"action", action}}, data_->options.most_seconds, "done");
 }
 
-ExecutedMotion RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory) {
+void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
+                       ExecutedMotion& executed) {
+  executed.rate = trajectory.rate();
   const world::RobotModel& model = data_->world.robots[robot];
   json names = json::array(), points = json::array();
   for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
@@ -473,9 +475,11 @@ ExecutedMotion RobotDriver::move(std::size_t robot, const motion::Trajectory& tr
   for (std::size_t tried = 0;; ++tried) {
     const json answer =
         data_->ask(message, data_->options.most_seconds + kSlower * trajectory.duration());
+    for (ExecutedSample& sample : data_->executed(answer, to.size()))
+      executed.samples.push_back(std::move(sample));
     if (answer.contains("done")) {
       data_->require_near(answer, robot, to);
-      return {trajectory.rate(), data_->executed(answer, to.size())};
+      return;
     }
     if (!answer.contains("failed"))
       data_->stop(Kind::Nonsense, "a motion is 'done' or 'failed', not " + excerpt(data_->line));

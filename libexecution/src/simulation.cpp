@@ -38,6 +38,7 @@ SimulationReport& SimulationReport::operator+=(const SimulationReport& other) {
   executed.motions += other.executed.motions;
   executed.samples += other.executed.samples;
   executed.collisions += other.executed.collisions;
+  executed.longest_gap = std::max(executed.longest_gap, other.executed.longest_gap);
   executed.most_strayed = std::max(executed.most_strayed, other.executed.most_strayed);
   executed.margin = std::max(executed.margin, other.executed.margin);
   jumps += other.jumps;
@@ -69,6 +70,16 @@ void Simulation::say(const std::string& problem) {
 }
 
 void Simulation::carry_out(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed) {
+  look_at_node(step, executed, true);
+}
+
+void Simulation::begin(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed) {
+  look_at_node(step, executed, false);
+}
+
+/// @param is_done  else the last of the executed motions has not come to its end
+void Simulation::look_at_node(const plan::RunStep& step,
+                              const std::vector<ExecutedMotion>& executed, bool is_done) {
   const plan::Plan::Node& node = plan_.nodes[step.node];
   const auto before = state_of(world_, model_, step.before);
   const auto after = state_of(world_, model_, step.after);
@@ -92,8 +103,15 @@ void Simulation::carry_out(const plan::RunStep& step, const std::vector<Executed
   std::size_t next = 0;
   for (const plan::Plan::Call& call : node.calls)
     for (const MotionPart& part :
-         parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_))
-      follow(part, state, step, next < executed.size() ? &executed[next++] : nullptr);
+         parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_)) {
+      const ExecutedMotion* now = next < executed.size() ? &executed[next++] : nullptr;
+      if (!is_done && next == executed.size()) {
+        hold(part, state);
+        if (now != nullptr) look_at_executed(*now, part, state);
+        return;
+      }
+      follow(part, state, step, now);
+    }
   mounted_ = after->mounted;
   for (std::size_t o = 0; o < state.objects.size(); ++o)
     if (after->state.objects[o].away && before->state.objects[o].hold && !state.objects[o].hold &&
@@ -207,7 +225,11 @@ void Simulation::look_at_executed(const ExecutedMotion& executed, const MotionPa
   ++report.motions;
   judge::CellState told = state;
   bool met = false;
+  double last = 0;
   for (const ExecutedSample& sample : executed.samples) {
+    if (sample.time < last) last = 0;  // tried again
+    report.longest_gap = std::max(report.longest_gap, sample.time - last);
+    last = sample.time;
     ++report.samples;
     state.q[robot] = sample.q;
     told.q[robot] = trajectory.at(std::min(sample.time, trajectory.duration())).q;
@@ -222,6 +244,7 @@ void Simulation::look_at_executed(const ExecutedMotion& executed, const MotionPa
       met = true;
     }
   }
+  report.longest_gap = std::max(report.longest_gap, trajectory.duration() - last);
 }
 
 void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,

@@ -37,6 +37,15 @@ class RegionReader {
     return out;
   }
 
+  /// @pre the last of the regions may be this one
+  /// @throws Error{InvalidInput} where another one has its name: verdicts are told apart by it
+  template <class Regions>
+  void require_own_name(const Regions& regions) const {
+    for (std::size_t i = 0; i + 1 < regions.size(); ++i)
+      if (regions[i].name == regions.back().name)
+        fail("the name " + regions[i].name + " is another region's: give each a name of its own");
+  }
+
   /// A region of a robot, or a link.
   void read(geom::FrameRegions& all) const {
     geom::FrameRegions::Fixed out;
@@ -217,8 +226,10 @@ auto of_file(const std::string& file, const Parse& parse) {
 
 std::vector<geom::RequestedRegion> parse_regions(std::string_view text, const std::string& name) {
   std::vector<geom::RequestedRegion> out;
-  for_each_region(text, name, kMapForm,
-                  [&](const RegionReader& one) { out.push_back(one.read()); });
+  for_each_region(text, name, kMapForm, [&](const RegionReader& one) {
+    out.push_back(one.read());
+    one.require_own_name(out);
+  });
   return out;
 }
 
@@ -228,7 +239,10 @@ std::vector<geom::RequestedRegion> read_regions(const std::string& file) {
 
 geom::FrameRegions parse_frame_regions(std::string_view text, const std::string& name) {
   geom::FrameRegions out;
-  for_each_region(text, name, kFrameForm, [&](const RegionReader& one) { one.read(out); });
+  for_each_region(text, name, kFrameForm, [&](const RegionReader& one) {
+    one.read(out);
+    one.require_own_name(out.regions);
+  });
   return out;
 }
 

@@ -84,7 +84,7 @@ TEST(FacetHull, HoldsItsPointsWithNoMoreFacets) {
   for (const std::size_t facets : {6U, 7U, 9U, 18U, 40U})
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
       const std::vector<Vec3> points = ball(200, Vec3(1, 0.6, 0.1 + 0.2 * seed), seed);
-      expect_round(facet_hull(points, facets), points, facets);
+      expect_round(facet_hull(points, facets, 1000), points, facets);
     }
 }
 
@@ -92,7 +92,7 @@ TEST(FacetHull, IsTheHullWhereThatHasFewFacets) {
   const std::vector<Vec3> corners =
       rounded(kaboum::test::random_hull(9, kaboum::test::Cloud::Ball, 3).vertices);
   const geom::Mesh hull = *geom::convex_hull(corners);
-  EXPECT_DOUBLE_EQ(volume_of(facet_hull(corners, 40)), volume_of(hull));
+  EXPECT_DOUBLE_EQ(volume_of(facet_hull(corners, 40, 1000)), volume_of(hull));
 }
 
 TEST(FacetHull, OfThinFlatAndFarSets) {
@@ -106,15 +106,15 @@ TEST(FacetHull, OfThinFlatAndFarSets) {
         points.emplace_back(away + x, y, 0.3 * x - 0.2 * y + thickness * unit(random));
       }
       points = rounded(points);
-      const geom::Mesh body = facet_hull(points, 10);
+      const geom::Mesh body = facet_hull(points, 10, 16);
       expect_round(body, points, 10);
       // Not thicker than rounding makes it.
       EXPECT_LT(volume_of(body), 7 * (thickness + (away > 0 ? 1e-3 : 1e-6)));
     }
   for (const std::vector<Vec3>& points :
        {std::vector<Vec3>{{1, 2, 3}}, std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}})
-    expect_round(facet_hull(points, 6), points, 6);
-  EXPECT_THROW((void)facet_hull(std::vector<Vec3>{{1e39, 0, 0}}, 6), Error);
+    expect_round(facet_hull(points, 6, 1000), points, 6);
+  EXPECT_THROW((void)facet_hull(std::vector<Vec3>{{1e39, 0, 0}}, 6, 1000), Error);
 }
 
 /// The least polytopes of 6 and 12 facets round a ball are regular.
@@ -122,17 +122,17 @@ TEST(FacetHull, OfABallIsNearlyRegular) {
   const std::vector<Vec3> points = ball(4000, Vec3(1, 1, 1), 7);
   // About the unit ball: a cube, a dodecahedron.
   const double cube = 8, dodecahedron = 10 * std::sqrt(130 - 58 * std::sqrt(5.0));
-  EXPECT_LT(volume_of(facet_hull(points, 6)), 1.02 * cube);
-  EXPECT_LT(volume_of(facet_hull(points, 12)), 1.02 * dodecahedron);
+  EXPECT_LT(volume_of(facet_hull(points, 6, 1000)), 1.02 * cube);
+  EXPECT_LT(volume_of(facet_hull(points, 12, 1000)), 1.02 * dodecahedron);
 }
 
 TEST(FacetHull, EachStepMakesItSmaller) {
   double removal = 0, turning = 0, exchange = 0;
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const std::vector<Vec3> points = ball(400, Vec3(1, 0.7, 0.5), seed);
-    removal += volume_of(facet_hull(points, 8, PlaneSteps::Removal));
-    turning += volume_of(facet_hull(points, 8, PlaneSteps::Turning));
-    exchange += volume_of(facet_hull(points, 8, PlaneSteps::Exchange));
+    removal += volume_of(facet_hull(points, 8, 1000, PlaneSteps::Removal));
+    turning += volume_of(facet_hull(points, 8, 1000, PlaneSteps::Turning));
+    exchange += volume_of(facet_hull(points, 8, 1000, PlaneSteps::Exchange));
   }
   EXPECT_LT(turning, 0.98 * removal);
   EXPECT_LT(exchange, 0.995 * turning);
@@ -152,6 +152,14 @@ TEST(FacetHull, BodiesOfACoverKeepTheLimit) {
   options.max_vertices = 10;  // 7 facets
   for (const geom::ConvexBody& body : find_cover(geom::prepare(mesh).solid, options).bodies)
     EXPECT_LE(body.core.vertices.size(), 10);
+  // A limit that does not bind changes nothing.
+  const geom::Mesh convex = *geom::convex_hull(
+      rounded(kaboum::test::random_hull(42, kaboum::test::Cloud::Ball, 1).vertices));
+  CoverOptions loose = test::quick(convex, 0.5);
+  loose.max_facets = 200;
+  const CoverCandidate whole = find_cover(geom::prepare(convex).solid, loose);
+  ASSERT_EQ(whole.bodies.size(), 1U);
+  EXPECT_EQ(whole.bodies[0].core.vertices.size(), convex.vertices.size());
   options.max_facets = 5;
   EXPECT_THROW(find_cover(geom::prepare(mesh).solid, options), Error);
   options.max_facets = 9;

@@ -125,6 +125,16 @@ def main():
             # An arm of six joints that is about one metre long.
             if not float(stray) <= executed["margin"] + 1e-9 <= 12 * float(stray) + 1e-6:
                 fail(f"executed {stray} beside: {executed}")
+        # Where it ends elsewhere, or fails, is looked at, too.
+        for what, end in (('"q": [x + 0.5 for x in self.q[message["robot"]]]', "elsewhere"), ('"failed": "pushed"', "failed")):
+            liar = folder / "liar.py"
+            liar.write_text((ROOT / "examples/drivers/driver.py").read_text().replace(
+                "        return reply\n\n    def take", "        del reply['done']\n        return {" + ("'done': True, " if end == "elsewhere" else "") +
+                "**reply, " + what + "}\n\n    def take"))
+            done, report = run(scenario, f"{sys.executable} {liar} --stray 0.9", "--robot-retries", "0")
+            executed = report["driver"]["executed"]
+            if done.returncode != 1 or report["driver"]["end"] != end or executed["motions"] != 1 or executed["most_strayed"] < 0.89:
+                fail(f"{end}: exit code {done.returncode}: {report['driver']}")
         for rows in ("[[0, 1]]", "7", "[[1] + 6 * [0], 7 * [0]]", "[6 * [0] + ['x']]"):
             liar = folder / "liar.py"
             liar.write_text((ROOT / "examples/drivers/driver.py").read_text().replace(

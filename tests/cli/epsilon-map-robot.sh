@@ -132,6 +132,33 @@ for kind in boxes capsules mixed spheres; do
 done
 expect 2 'percentage' "$V" robot arm.urdf --bodies boxes.urdf --links hand,finger --epsilon-map share.json
 
+# A body on a link of the region's group that has no shape is near none.
+for at in tcp flange; do
+  rm -rf out
+  cp -r ball out
+  sed "s,<link name=\"$at\" */>,<link name=\"$at\"><collision><geometry><box size=\"0.5 0.5 0.5\"/></geometry></collision></link>," ball/arm.urdf >out/arm.urdf
+  grep -q '0.5 0.5 0.5' out/arm.urdf || fail "no body at $at"
+  shows 7 'undecided' "$V" robot arm.urdf out/arm.urdf --prepare --epsilon-map ball.json
+  sed "s,<link name=\"$at\" */>,<link name=\"$at\"><collision><geometry><box size=\"0.5 0.5 0.5\"/></geometry></collision></link>," boxes.urdf >out.urdf
+  grep -q '0.5 0.5 0.5' out.urdf || fail "no body at $at"
+  shows 7 "link '$at': undecided: it has no shape" "$V" robot arm.urdf --bodies out.urdf --links hand,finger,$at --epsilon-map ball.json
+  shows 7 "link '$at': undecided: it has no shape" "$V" robot arm.urdf --bodies out.urdf --links hand,finger,$at --epsilon 6mm
+done
+python3 - <<'P' || fail "no sphere at tcp"
+import re
+text = open("spheres.yaml").read()
+text = text.replace('collision_link_names: [', 'collision_link_names: ["tcp", ', 1)
+own = re.search(r'^  "hand":\n(    - center.*\n      radius.*\n)', text, re.M)
+open("out.yaml", "w").write(text[:own.start()] + '  "tcp":\n' + own.group(1) + text[own.start():])
+P
+shows 7 "link 'tcp': undecided: it has no shape" "$V" robot arm.urdf --spheres out.yaml --links hand,finger,tcp --epsilon 6mm
+
+# A scale that differs by axis makes ellipsoids of balls: the balls that are written reach farther, which is said.
+sed 's/0.01 0.01 0.01/0.01 0.015 0.007/' arm.urdf >uneven.urdf
+expect 1 'its scale differs by axis' "$B" uneven.urdf -o uneven.yaml --bodies spheres --links hand --epsilon 6mm --effort fast
+expect 1 'in the region .notch.: NOT verified' "$B" uneven.urdf -o uneven.yaml --bodies spheres --links hand --epsilon 6mm --effort fast --epsilon-map wide.json
+expect 0 '' "$B" uneven.urdf -o uneven.urdf.d --links hand --epsilon 6mm --effort fast --epsilon-map wide.json
+
 # Whole links: the same as a line of --epsilons.
 echo '{"regions": [{"link": "finger", "epsilon": "0.5mm"}]}' >link.json
 echo 'finger: 0.5mm' >link.yaml

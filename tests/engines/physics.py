@@ -69,7 +69,7 @@ def main():
         done, _, report = carry_out(folder, "force-sensing", "--reach 0.0001")
         check(done.returncode == 1 and report["driver"]["end"] == "failed" and "nothing is held" in report["driver"]["reason"], f"reach: {report['driver']}")
         done, said, _ = carry_out(folder, "stacked", "--disturb 0.06 --seed 2")
-        check(done.returncode == 1 or said["most"]["beside"] > 0.005 or said["contacts"], f"elsewhere: {said['most']}")
+        check(done.returncode == 1 or said["most"]["beside"] > 0.005, f"elsewhere: {said['most']}")
         done, _, report = carry_out(folder, "stacked", "--push 400")
         check(done.returncode == 1 and report["driver"]["end"] == "elsewhere" or report["driver"]["executed"]["most_strayed"] > 0.003,
               f"pushed: {report['driver']}")

@@ -42,6 +42,15 @@ TEST(Regions, AreRead) {
   EXPECT_FALSE(geom::holds(regions[2].region, {0, 0, -2.1}));
 }
 
+TEST(Regions, TwoOfOneNameAreRefused) {
+  const std::string one = R"({"name": "a", "epsilon": 1, "box": [[0,0,0],[1,1,1]]})",
+                    of_robot = R"({"name": "a", "frame": "f", "radius": 1, "epsilon": 1})";
+  EXPECT_EQ(message("{\"regions\": [" + one + ", " + one + "]}"),
+            "map.json: region 2: the name 'a' is another region's: give each a name of its own");
+  EXPECT_THROW(parse_frame_regions("{\"regions\": [" + of_robot + ", " + of_robot + "]}", "m"),
+               Error);
+}
+
 TEST(Regions, RefusalsNameTextAndRegion) {
   EXPECT_EQ(message("{"), "map.json: the JSON is cut short: it ends at line 1, column 1");
   for (const char* text : {"{}", "[]", R"({"regions": []})", R"({"regions": 1})"})

@@ -455,13 +455,17 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   if (const std::optional<Length>& epsilon = run.request.set.epsilon;
       format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
     reached = reached && distance <= epsilon->value;
+  const std::optional<Length> asked = run.request.set.wanted_epsilon();
+  const std::string how_near = reached && asked && !asked->percent && run.request.epsilons.empty()
+                                   ? " --epsilon " + asked->text()
+                                   : std::string();
   log(o.common.quiet,
       o.output + ": " +
           (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
                    : counted(bodies.artefact().size(), "body", "bodies")) +
           ", no point farther from its link's shapes than " + number_up(distance) +
           ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
-          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output +
+          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output + how_near +
           (o.epsilon_map ? " --epsilon-map " + *o.epsilon_map : "") + " decides it");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())

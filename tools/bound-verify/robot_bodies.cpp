@@ -354,10 +354,20 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
       (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
           .push_back(g);
     const geom::Mesh mesh = robot::exact_shapes(flat, files);
-    if (mesh.triangles.empty() && round.empty()) continue;
     const auto index = bodies.robot.find_link(link.name);
     const robot::Link none{link.name, {}, {}};
     const robot::Link& own = index ? bodies.robot.links[*index] : none;
+    if (mesh.triangles.empty() && round.empty()) {
+      if (own.collision.empty() || !verify::asks_how_far(link.name, epsilon, of_links)) continue;
+      all = verify::worse(all, Answer::Undecided);
+      links.push_back({{"link", link.name},
+                       {"answer", name_of(Answer::Undecided)},
+                       {"sentence", verify::text_of_bare_link(link.name)},
+                       {"shapes", own.collision.size()},
+                       {"triangles", 0}});
+      if (!common.quiet) out << verify::text_of_bare_link(link.name) << std::endl;
+      continue;
+    }
     const Bounds bounds = bounds_of(own, o.bodies);
     LinkAnswer now = judge(link.name, mesh, round, bounds, own.collision);
     now.held = now.answer;

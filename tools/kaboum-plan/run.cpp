@@ -81,15 +81,17 @@ Json report_json(const execution::SimulationReport& r, const plan::RunSummary& s
 
 Json driver_json(const execution::DriveReport& r) {
   const execution::ExecutedReport& e = r.run.simulation.executed;
+  const bool at_end = r.run.plans.complete();
   return {{"executed",
            {{"motions", e.motions},
             {"samples", e.samples},
             {"collisions", e.collisions},
+            {"longest_gap", e.longest_gap},
             {"most_strayed", e.most_strayed},
             {"margin", e.margin}}},
-          {"end", r.stopped  ? execution::name_of(*r.stopped)
-                  : r.good() ? "goal"
-                             : "no plan"},
+          {"end", r.stopped ? execution::name_of(*r.stopped)
+                  : at_end  ? "goal"
+                            : "no plan"},
           {"reason", r.reason},
           {"actions", r.actions},
           {"messages", r.messages},
@@ -208,9 +210,9 @@ int run_plan(const PlanOptions& o) {
               << '\n';
   if (const execution::ExecutedReport& e = r.executed; e.samples > 0 && (!o.common.quiet || !good))
     std::cout << "as executed: " << e.motions << " motions, " << e.samples << " samples, "
-              << e.collisions << " collisions, joints within " << e.most_strayed
-              << " of the trajectories, points within " << e.margin
-              << ": margins as large would have held\n";
+              << e.collisions << " collisions; in these samples, at most " << e.longest_gap
+              << " s apart, joints are within " << e.most_strayed
+              << " of the trajectories, and points within " << e.margin << '\n';
   const int missing = say_missing(replans);
   if (!r.good() || drive.stopped) return kNo;
   return good || missing != kDone ? missing : kNo;

@@ -109,6 +109,7 @@ LinkBounds bounds_of_links(const RobotFile& file, const ShapeChoice& choice,
       if (places[l].top != places[frame].top) continue;
       const Link& link = robot.links[l];
       group.push_back(link.name);
+      out.groups.insert(link.name);
       if (!is_meant(link)) continue;
       any = true;
       out.regions[link.name].push_back(l == frame ? LinkRegion{one}

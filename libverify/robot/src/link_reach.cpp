@@ -173,6 +173,16 @@ std::string LinkReach::sentence() const {
   return out;
 }
 
+bool asks_how_far(const std::string& link, std::optional<double> epsilon,
+                  const robot::LinkBounds& bounds) {
+  return epsilon || bounds.epsilons.contains(link) || bounds.groups.contains(link);
+}
+
+std::string text_of_bare_link(const std::string& link) {
+  return "link '" + link +
+         "': undecided: it has no shape that bodies could be near to, and has bodies";
+}
+
 LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
                             const std::string& link, const std::vector<Geometry>& shapes,
                             robot::MeshFiles& files, std::optional<double> epsilon,

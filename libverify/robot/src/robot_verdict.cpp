@@ -498,7 +498,7 @@ class RobotJudge {
   void look_for_strangers() {
     for (const robot::Link& link : q_.result.links) {
       if (!q_.is_asked(link) ||
-          (!q_.epsilon_of(link.name) && !q_.bounds.regions.contains(link.name)))
+          (!q_.epsilon_of(link.name) && !q_.bounds.groups.contains(link.name)))
         continue;
       const auto index = q_.original.find_link(link.name);
       const std::vector<Geometry> known =

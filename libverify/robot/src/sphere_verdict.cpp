@@ -287,9 +287,14 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     one.link = link.name;
     one.index = index;
     one.mesh = robot::exact_shapes(flat, files);
-    if (one.mesh.triangles.empty() && round.empty()) continue;
     for (const robot::LinkSpheres& given : spheres.links)
       if (given.link == link.name) one.balls = given.balls;
+    if (one.mesh.triangles.empty() && round.empty()) {
+      if (one.balls.bodies.empty() || !asks_how_far(link.name, epsilon, bounds)) continue;
+      out.answer = worse(out.answer, Answer::Undecided);
+      out.notes.push_back(text_of_bare_link(link.name));
+      continue;
+    }
     judge(round, one);
     one.reach = decide_link_reach(one.balls, one.balls, link.name, shapes.shapes_of(link), files,
                                   epsilon, bounds);

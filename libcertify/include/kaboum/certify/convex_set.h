@@ -95,7 +95,8 @@ struct SetCertificate {
   std::size_t filled_triangles = 0, pieces = 0, pre_step_triangles = 0, thickened = 0;
   double min_thickness = 0;        ///< asked for [length]
   double max_aspect = 0;           ///< asked for; 0: none
-  std::size_t max_facets = 0;      ///< of each body, asked for and kept; 0: no limit
+  std::size_t max_facets = 0;      ///< of each body, asked for; 0: no limit
+  std::size_t most_facets = 0;     ///< that a body has (geom::float32_facet_count), with that limit
   double safety = 1;               ///< allowance for rounding with which the exact check passed
   bool out_of_work = false;        ///< with more work the search might do better
   std::vector<std::string> notes;  ///< of preparation: what a user should know of the input

@@ -70,8 +70,9 @@ class RobotDriver {
   void act(const std::string& action);
   /// @pre the trajectory begins where the robot is. A motion that has failed is told again if the
   ///   driver says that the robot is where it began.
-  /// @return what the driver says it has done: empty where it does not say
-  ExecutedMotion move(std::size_t robot, const motion::Trajectory& trajectory);
+  /// @param executed  gets what the driver says that it has done, tries that failed included, also
+  ///   where the motion stops all
+  void move(std::size_t robot, const motion::Trajectory& trajectory, ExecutedMotion& executed);
   void take(std::size_t object, std::size_t robot, std::uint32_t link);
   void release(std::size_t object, std::size_t robot);
   /// @return one of the values, or whatever else was sensed

@@ -36,9 +36,10 @@ struct ExecutedMotion {
 struct ExecutedReport {
   std::uint64_t motions = 0, samples = 0;
   std::uint64_t collisions = 0;  ///< samples at which meshes meet
+  double longest_gap = 0;        ///< between samples of a motion, and from its ends to them [s]
   double most_strayed = 0;       ///< of a joint from the trajectory at that time [rad, length]
-  /// No point of a robot, or of what it held, was farther from where the trajectory has it at that
-  /// time: a plan with margins as large would have been free for what was done. [length]
+  /// No point of the robot that moved, or of what it held, was farther in a sample from where the
+  /// trajectory has it at that time. [length]
   double margin = 0;
 };
 
@@ -84,9 +85,15 @@ class Simulation {
   /// @param executed  of the node's motions, in their order, where it is known
   void carry_out(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed = {});
 
+  /// A node that was begun and not ended: its motions that were executed, of the last one only what
+  /// is known to have been executed. @param executed  not empty
+  void begin(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed);
+
   [[nodiscard]] const SimulationReport& report() const { return report_; }
 
  private:
+  void look_at_node(const plan::RunStep& step, const std::vector<ExecutedMotion>& executed,
+                    bool is_done);
   void follow(const MotionPart& part, judge::CellState& state, const plan::RunStep& step,
               const ExecutedMotion* executed);
   void look_at_executed(const ExecutedMotion& executed, const MotionPart& part,

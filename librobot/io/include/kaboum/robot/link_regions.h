@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ using LinkRegions = std::map<std::string, std::vector<LinkRegion>>;
 struct LinkBounds {
   std::map<std::string, Length> epsilons;
   LinkRegions regions;
+  /// All links that are fixed to the frame of a region, those without shapes as well: a body there
+  /// is near no shape.
+  std::set<std::string> groups = {};
 };
 
 /// Moves regions into the frames of all links with shapes that are fixed to the regions' frames:

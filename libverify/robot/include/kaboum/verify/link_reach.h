@@ -52,6 +52,13 @@ struct LinkReach {
   [[nodiscard]] std::string sentence() const;
 };
 
+/// Whether it is asked how far bodies of a link are from its shapes: of all, of it, or in a region
+/// that is fixed to it.
+bool asks_how_far(const std::string& link, std::optional<double> epsilon,
+                  const robot::LinkBounds& bounds);
+/// What is said of bodies of a link without shapes, where it is asked how far they are from them.
+std::string text_of_bare_link(const std::string& link);
+
 /// Decides how far a link's bodies reach beyond its shapes. Regions are known up to rounding: one
 /// that holds what is meant verifies, one that lies in it refutes.
 /// @param inside, round  as of verify_link_reach
