@@ -151,7 +151,7 @@ text = text.replace('collision_link_names: [', 'collision_link_names: ["tcp", ',
 own = re.search(r'^  "hand":\n(    - center.*\n      radius.*\n)', text, re.M)
 open("out.yaml", "w").write(text[:own.start()] + '  "tcp":\n' + own.group(1) + text[own.start():])
 P
-shows 7 "link 'tcp': undecided: it has no shape" "$V" robot arm.urdf --spheres out.yaml --links hand,finger,tcp --epsilon 6mm
+expect 7 "link 'tcp': undecided: it has no shape" "$V" robot arm.urdf --spheres out.yaml --links hand,finger,tcp --epsilon 6mm
 
 # A scale that differs by axis makes ellipsoids of balls: the balls that are written reach farther, which is said.
 sed 's/0.01 0.01 0.01/0.01 0.015 0.007/' arm.urdf >uneven.urdf
