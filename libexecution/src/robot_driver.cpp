@@ -519,7 +519,7 @@ void RobotDriver::finish(const judge::CellState* end) {
   data_->doing = "at the end";
   json told = {{"do", "finish"}};
   if (end != nullptr) told["objects"] = objects_of(data_->world, *end);
-  data_->ask_again(std::move(told), data_->options.most_seconds, "done");
+  data_->ask_again(told, data_->options.most_seconds, "done");
   data_->require_silence();
   data_->finished = data_->over = true;
   data_->note({{"finished", true}});

@@ -307,7 +307,7 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     throw Error(ErrorCode::InvalidInput,
                 robot.path.string() + ": no link has a shape" +
                     (shapes.visual ? std::string() : "; try «geometry=visual»"));
-  out.notes = spheres.notes;
+  out.notes.insert(out.notes.begin(), spheres.notes.begin(), spheres.notes.end());
   if (!spheres.robot_name.empty() && spheres.robot_name != robot.robot.name)
     out.notes.push_back("the file says that it is of robot '" + spheres.robot_name +
                         "'; this one is '" + robot.robot.name + "'");
