@@ -408,6 +408,17 @@ std::vector<std::string> parts_of(const DecomposeOptions& o, const robot::RobotF
   return out;
 }
 
+/// The command that decides it from the file alone: epsilon as well, where it is one length for all
+/// links and kept.
+std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reached) {
+  std::string out = "bound-verify robot " + run.o.input +
+                    (format.spheres ? " --spheres " : " --bodies ") + run.o.output;
+  const std::optional<Length> epsilon = run.request.set.wanted_epsilon();
+  if (reached && epsilon && !epsilon->percent && run.request.epsilons.empty())
+    out += " --epsilon " + epsilon->text();
+  return out + (run.o.epsilon_map ? " --epsilon-map " + *run.o.epsilon_map : std::string());
+}
+
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
 int decompose_into_shapes(const DecomposeOptions& o) {
   const BodyFormat format = format_of_shapes(o);
@@ -455,18 +466,12 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   if (const std::optional<Length>& epsilon = run.request.set.epsilon;
       format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
     reached = reached && distance <= epsilon->value;
-  const std::optional<Length> asked = run.request.set.wanted_epsilon();
-  const std::string how_near = reached && asked && !asked->percent && run.request.epsilons.empty()
-                                   ? " --epsilon " + asked->text()
-                                   : std::string();
-  log(o.common.quiet,
-      o.output + ": " +
-          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
-                   : counted(bodies.artefact().size(), "body", "bodies")) +
-          ", no point farther from its link's shapes than " + number_up(distance) +
-          ", on the mean of links " + number_up(mean_distance(bodies)) + "; bound-verify robot " +
-          o.input + (format.spheres ? " --spheres " : " --bodies ") + o.output + how_near +
-          (o.epsilon_map ? " --epsilon-map " + *o.epsilon_map : "") + " decides it");
+  log(o.common.quiet, o.output + ": " +
+                          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
+                                   : counted(bodies.artefact().size(), "body", "bodies")) +
+                          ", no point farther from its link's shapes than " + number_up(distance) +
+                          ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
+                          check_of_shapes(run, format, reached) + " decides it");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",

@@ -332,6 +332,32 @@ void add_reach(const verify::LinkReach& reach, Json& claims) {
   }
 }
 
+namespace {
+
+Json json_of(const LinkAnswer& link) {
+  Json out = {{"link", link.name},
+              {"answer", name_of(link.answer)},
+              {"sentence", link.sentence},
+              {"shapes", link.shapes},
+              {"triangles", link.triangles},
+              {"claims",
+               {{"surface", json_of_claim(link.inclusion.surface)},
+                {"solid", json_of_claim(link.inclusion.solid)}}}};
+  add_reach(link.reach, out["claims"]);
+  return out;
+}
+
+/// Of a link of the file whose link in the robot has no shape.
+Json json_of_bare(const robot::Link& link) {
+  return {{"link", link.name},
+          {"answer", name_of(Answer::Undecided)},
+          {"sentence", verify::text_of_bare_link(link.name)},
+          {"shapes", link.collision.size()},
+          {"triangles", 0}};
+}
+
+}  // namespace
+
 int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const ThreadLimit threads(common.threads);
   require_apart({{"--report", common.report}}, {o.original, o.bodies, o.epsilon_map.value_or("")});
@@ -360,11 +386,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     if (mesh.triangles.empty() && round.empty()) {
       if (own.collision.empty() || !verify::asks_how_far(link.name, epsilon, of_links)) continue;
       all = verify::worse(all, Answer::Undecided);
-      links.push_back({{"link", link.name},
-                       {"answer", name_of(Answer::Undecided)},
-                       {"sentence", verify::text_of_bare_link(link.name)},
-                       {"shapes", own.collision.size()},
-                       {"triangles", 0}});
+      links.push_back(json_of_bare(own));
       if (!common.quiet) out << verify::text_of_bare_link(link.name) << std::endl;
       continue;
     }
@@ -380,15 +402,7 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     ++judged;
     held += now.held == Answer::Verified ? 1 : 0;
     count += now.shapes;
-    links.push_back({{"link", now.name},
-                     {"answer", name_of(now.answer)},
-                     {"sentence", now.sentence},
-                     {"shapes", now.shapes},
-                     {"triangles", now.triangles},
-                     {"claims",
-                      {{"surface", json_of_claim(now.inclusion.surface)},
-                       {"solid", json_of_claim(now.inclusion.solid)}}}});
-    add_reach(now.reach, links.back()["claims"]);
+    links.push_back(json_of(now));
     if (!common.quiet)
       out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
           << std::endl;
