@@ -25,7 +25,8 @@ mkdir -p other
 for kind in spheres capsules boxes mixed; do
   for file in arm-$kind.xml other/arm-$kind.sdf; do
     make arm.urdf "$file" $kind
-    grep -q "bound-verify robot arm.urdf --bodies $file decides it" err.txt || fail "$file: no command that decides it"
+    printed=$(sed -n "s,.*; \(bound-verify robot arm.urdf --bodies $file --epsilon .*\) decides it,\1,p" err.txt)
+    PATH=$BIN:$PATH sh -c "${printed:-false}" >/dev/null || fail "$file: the command that is to decide it: $printed"
     shows 0 '^verified: .* hold 3 of 3 links; of 3 links none is farther than 0.4001$' "$V" robot arm.urdf --bodies "$file" --epsilon 0.4001 --report judged.json
     json judged.json "r['epsilon'] == 0.4001 and r['joints']['answer'] == 'verified' and all(l['claims']['distance']['answer'] == 'verified' for l in r['links'])"
   done
