@@ -26,7 +26,7 @@ using geom::Mesh;
 using geom::Triangle;
 using geom::Vec3;
 
-// What is tried; exact orientation tests decide what is good.
+// Constants of the search. No claim rests on them: exact orientation tests decide the result.
 
 /// Planes that the search begins with, for each facet that is allowed, and at least.
 constexpr std::size_t kPlanesPerFacet = 3, kFewestPlanes = 96;
@@ -213,12 +213,12 @@ class PlaneSearch {
           without = planes_;
           without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
           cost[i] = other_.volume_of(without) - volume_;
-          // Of a plane that has no facet rounding is all there is.
+          // A plane without a facet costs nothing, up to rounding.
           cost[i] = std::max(cost[i], 0.0);
         }
         if (cost[i] < cost[cheapest]) cheapest = i;
       }
-      // What is beside it costs more from now on.
+      // Its neighbours cost more without it.
       for (const std::uint32_t i : now_.neighbours(static_cast<std::uint32_t>(cheapest)))
         cost[i] = -1;
       planes_.erase(planes_.begin() + static_cast<std::ptrdiff_t>(cheapest));
@@ -322,8 +322,8 @@ bool holds(const std::vector<Vec3>& corners, const std::vector<Triangle>& facets
   return true;
 }
 
-/// What is too thin or too flat for planes of its own: a prism or a box round the points, along
-/// axes of their own if possible.
+/// A prism or a box round points that are too thin or too flat for planes, along axes of their own
+/// if possible.
 Mesh prism_or_box(std::span<const Vec3> required, std::size_t most, double ulp) {
   for (const std::size_t corners : {2 * (most - 2), std::size_t{8}}) {
     std::optional<Mesh> prism = prism_round(required, corners);

@@ -6,7 +6,7 @@
 
 namespace kaboum::bcd {
 
-/// What is done to the planes of a facet_hull, each after the one before.
+/// Steps of the search for the planes of a facet_hull: each includes those before it.
 enum class PlaneSteps {
   Removal,   ///< those that cost the least volume are left out
   Turning,   ///< those that stay are turned about the points where they touch

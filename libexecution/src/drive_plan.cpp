@@ -66,7 +66,7 @@ class Drive {
 
   /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
   void close() {
-    for (const Done& done : done_) {
+    for (Done& done : done_) {
       Simulation simulation(world_, cell_, done.model, done.plan, request_.simulation);
       std::size_t next = 0;
       plan::RunOptions again;
@@ -77,15 +77,11 @@ class Drive {
       };
       again.unplanned = [](const plan::Unplanned&) {};
       plan::run(done.model, done.plan, again, [&](const plan::RunStep& step) {
-        const auto executed = done.executed.find(step.node);
-        const bool is_done = done.nodes.contains(step.node);
-        if (executed == done.executed.end()) {
-          if (is_done) simulation.carry_out(step);
-        } else if (is_done) {
-          simulation.carry_out(step, executed->second);
-        } else {  // where it stopped
-          simulation.begin(step, executed->second);
-        }
+        const std::vector<ExecutedMotion>& executed = done.executed[step.node];
+        if (done.nodes.contains(step.node))
+          simulation.carry_out(step, executed);
+        else if (!executed.empty())  // where it stopped
+          simulation.begin(step, executed);
       });
       report_.run.simulation += simulation.report();
     }

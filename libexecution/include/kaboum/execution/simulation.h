@@ -27,6 +27,7 @@ struct ExecutedSample {
   double time = 0;  ///< [s]
   std::vector<double> q;
 };
+/// A motion as it was executed.
 struct ExecutedMotion {
   double rate = 0;  ///< of the trajectory that was told: see SimulationOptions [1/s]
   std::vector<ExecutedSample> samples = {};
