@@ -48,10 +48,25 @@ Ball BallRelaxation::ball_at(const Vec3& c) {
   return {c, room.radius};
 }
 
+/// Whether a ball other than `ball`, of those in near_, holds a point. The one that held it before
+/// is tried first: most often it still does.
+bool BallRelaxation::is_held_by_other(std::uint32_t point, std::size_t ball) {
+  const Vec3& at = points_[point];
+  const std::uint32_t before = holder_[point];
+  if (before < balls_.size() && before != ball && holds(balls_[before], at)) return true;
+  for (const std::uint32_t b : near_)
+    if (holds(balls_[b], at)) {
+      holder_[point] = b;
+      return true;
+    }
+  return false;
+}
+
 /// Points within `reach` of a place that balls other than this one leave.
 void BallRelaxation::ask(std::size_t ball, const Vec3& about, double reach) {
   asked_.clear();
   near_.clear();
+  holder_.resize(points_.size(), 0);
   work_ += kPairWork * static_cast<double>(points_.size());
   for (std::uint32_t b = 0; b < balls_.size(); ++b)
     if (b != ball && is_near(balls_[b], about, reach)) near_.push_back(b);
@@ -59,12 +74,10 @@ void BallRelaxation::ask(std::size_t ball, const Vec3& about, double reach) {
   for (std::uint32_t p = 0; p < points_.size(); ++p) {
     const Vec3& at = points_[p];
     if ((at - about).squaredNorm() > square) continue;
-    double other = kFar;
     work_ += kPairWork * static_cast<double>(near_.size());
-    for (const std::uint32_t b : near_) {
-      other = std::min(other, gap(balls_[b], at));
-      if (!(other > 0)) break;
-    }
+    if (is_held_by_other(p, ball)) continue;
+    double other = kFar;
+    for (const std::uint32_t b : near_) other = std::min(other, gap(balls_[b], at));
     if (other > 0) asked_.push_back({p, other});
   }
 }
@@ -251,9 +264,16 @@ bool BallRelaxation::leave_out(std::size_t count) {
 void BallRelaxation::find_free() {
   free_.clear();
   work_ += 0.5 * kPairWork * static_cast<double>(points_.size() * balls_.size());
-  for (std::uint32_t p = 0; p < points_.size(); ++p)
-    if (std::ranges::none_of(balls_, [&](const Ball& b) { return gap(b, points_[p]) <= 0; }))
+  holder_.resize(points_.size(), 0);
+  for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    const Vec3& at = points_[p];
+    if (holder_[p] < balls_.size() && holds(balls_[holder_[p]], at)) continue;
+    const auto holder = std::ranges::find_if(balls_, [&](const Ball& b) { return holds(b, at); });
+    if (holder == balls_.end())
       free_.push_back(p);
+    else
+      holder_[p] = static_cast<std::uint32_t>(holder - balls_.begin());
+  }
 }
 
 /// Puts the ball that is needed least where a free point is.

@@ -43,7 +43,7 @@ class BallRelaxation {
 
   /// After which balls move no more. [s]
   void limit_work(double limit) { limit_ = limit; }
-  /// About the time that all calls took on one core of a machine of 2020, by counting. [s]
+  /// No less than the time that all calls took on one core of a machine of 2020, by counting. [s]
   [[nodiscard]] double work() const { return 1e-9 * work_; }
 
  private:
@@ -57,6 +57,11 @@ class BallRelaxation {
   [[nodiscard]] double gap(const Ball& ball, const geom::Vec3& p) const {
     return (p - ball.center).norm() - ball.radius * (1 - spare_);
   }
+  [[nodiscard]] bool holds(const Ball& ball, const geom::Vec3& p) const {
+    const double radius = ball.radius * (1 - spare_);
+    return radius > 0 && (p - ball.center).squaredNorm() <= radius * radius;
+  }
+  [[nodiscard]] bool is_held_by_other(std::uint32_t point, std::size_t ball);
   /// True if a ball may hold a point within `reach` of a place, or be as near to one as that.
   [[nodiscard]] static bool is_near(const Ball& ball, const geom::Vec3& about, double reach) {
     return (ball.center - about).norm() < ball.radius + 2 * reach;
@@ -82,6 +87,7 @@ class BallRelaxation {
   std::vector<std::vector<geom::Vec3>> limits_;  ///< of each ball, those found near it
   std::optional<geom::Vec3> limit_found_;        ///< by the last call of ball_at
   std::vector<double> weight_;                   ///< of each point
+  std::vector<std::uint32_t> holder_;            ///< of each point, a ball that held it last
   std::vector<std::uint32_t> free_;              ///< points that no ball holds
   std::vector<Asked> asked_;                     ///< of one ball
   std::vector<std::uint32_t> near_;              ///< balls near it

@@ -14,12 +14,20 @@ constexpr double kFitRounding = 1e-11;
 constexpr int kCircleSteps = 40;   ///< towards the centre of a smallest circle
 constexpr int kSectionSteps = 24;  ///< of a golden section: leaves 1e-5 of the length
 
-double distance_from_segment(const Vec3& from, const Vec3& to, const Vec3& p) {
-  const Vec3 along = to - from;
-  const double square = along.squaredNorm();
-  const double share = square > 0 ? std::clamp((p - from).dot(along) / square, 0.0, 1.0) : 0.0;
-  return (from + share * along - p).norm();
-}
+/// A segment, and what is asked for often.
+struct Segment {
+  Segment(const Vec3& a, const Vec3& b)
+      : from(a), along(b - a), inverse(along.squaredNorm() > 0 ? 1 / along.squaredNorm() : 0) {}
+
+  [[nodiscard]] double distance(const Vec3& p) const {
+    const Vec3 to = p - from;
+    const double share = std::clamp(to.dot(along) * inverse, 0.0, 1.0);
+    return (to - share * along).norm();
+  }
+
+  Vec3 from, along;
+  double inverse;  ///< of the square of its length; 0 of a point
+};
 
 /// Distance of c from a convex set that holds the cap, a convex function of c.
 double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& c) {
@@ -59,34 +67,6 @@ double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& fro
   return std::min(at_a, at_b) - (high - low) * length;
 }
 
-struct Circle {
-  Vec3 center;
-  double radius;
-};
-
-/// A circle round the points' projections along a direction that is little larger than the smallest
-/// one: M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
-Circle circle_round(std::span<const Vec3> points, const Vec3& direction) {
-  const auto flat = [&](const Vec3& p) -> Vec3 { return p - direction.dot(p) * direction; };
-  Vec3 center = flat(points[0]);
-  Circle best{center, std::numeric_limits<double>::infinity()};
-  for (int step = 1; step <= kCircleSteps; ++step) {
-    double most = -1;
-    Vec3 farthest = center;
-    for (const Vec3& p : points) {
-      const Vec3 q = flat(p);
-      if (const double away = (q - center).squaredNorm(); away > most) {
-        most = away;
-        farthest = q;
-      }
-    }
-    if (most < best.radius) best = {center, most};
-    center += (farthest - center) / (step + 1);
-  }
-  best.radius = std::sqrt(best.radius) * (1 + kFitRounding);
-  return best;
-}
-
 }  // namespace
 
 std::vector<Vec3> AxesBox::corners() const {
@@ -104,7 +84,7 @@ double AxesBox::beyond(const Vec3& p) const {
   return std::max((low - q).maxCoeff(), (q - high).maxCoeff());
 }
 
-double Capsule::beyond(const Vec3& p) const { return distance_from_segment(from, to, p) - radius; }
+double Capsule::beyond(const Vec3& p) const { return Segment(from, to).distance(p) - radius; }
 
 double room(const ParallelBody& body, const AxesBox& box, int k, bool high, double most) {
   const double h = body.cap_reach();
@@ -219,17 +199,17 @@ double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, dou
   const double half = 0.5 * (to - from).norm();
   const double rounding = kFitRounding * (middle.cwiseAbs().maxCoeff() + half + h);
   double best = std::numeric_limits<double>::infinity();
+  const Segment segment(from, to);
   const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
   const auto bound = [&](const geom::Box3& node) {
     if (best < least) return std::numeric_limits<double>::infinity();
     // From the segment to the ball round the box, and from its box to the box.
-    const double to_ball =
-        distance_from_segment(from, to, node.center()) - 0.5 * (node.max - node.min).norm();
+    const double to_ball = segment.distance(node.center()) - 0.5 * (node.max - node.min).norm();
     const double to_box = (low - node.max).cwiseMax(node.min - high).cwiseMax(0.0).norm();
     return std::max(to_ball, to_box) - h - rounding;
   };
   body.visit_caps(best, bound, [&](const ParallelBody::Cap& cap) {
-    if (distance_from_segment(from, to, cap.center) - h >= best) return;
+    if (segment.distance(cap.center) - h >= best) return;
     best = std::min(best, distance_from_cap(cap, h, from, to) - rounding);
   });
   return best < least || !std::isfinite(best) ? 0.0 : std::max(best, 0.0);
@@ -262,25 +242,58 @@ AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, dou
   return out;
 }
 
-double radius_along(std::span<const Vec3> points, const Vec3& direction) {
-  return circle_round(points, direction).radius;
+// M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
+Cylinder cylinder_round(std::span<const Vec3> points, const Vec3& direction) {
+  int least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  const Vec3 u = direction.cross(Vec3::Unit(least)).normalized(), v = direction.cross(u);
+  const std::size_t n = points.size();
+  std::vector<double> x(n), y(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = u.dot(points[i]);
+    y[i] = v.dot(points[i]);
+  }
+  double at_x = x[0], at_y = y[0], best_x = at_x, best_y = at_y;
+  double best = std::numeric_limits<double>::infinity();
+  for (int step = 1; step <= kCircleSteps; ++step) {
+    double most = -1;
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double dx = x[i] - at_x, dy = y[i] - at_y;
+      if (const double away = dx * dx + dy * dy; away > most) {
+        most = away;
+        farthest = i;
+      }
+    }
+    if (most < best) {
+      best = most;
+      best_x = at_x;
+      best_y = at_y;
+    }
+    at_x += (x[farthest] - at_x) / (step + 1);
+    at_y += (y[farthest] - at_y) / (step + 1);
+  }
+  Cylinder out{direction, best_x * u + best_y * v, 0};
+  // As the points are along the direction, not as they are along u and v.
+  for (const Vec3& p : points) out.radius = std::max(out.radius, out.distance_from_axis(p));
+  out.radius *= 1 + kFitRounding;
+  return out;
 }
 
-std::optional<Capsule> capsule_round(std::span<const Vec3> points, const Vec3& direction,
+std::optional<Capsule> capsule_round(std::span<const Vec3> points, const Cylinder& cylinder,
                                      double radius, double spare) {
-  const Circle circle = circle_round(points, direction);
   const double held = radius - spare;
-  if (!(held > circle.radius)) return std::nullopt;
+  if (!(held > cylinder.radius)) return std::nullopt;
   double from = std::numeric_limits<double>::infinity(), to = -from;
   for (const Vec3& p : points) {
-    const double at = direction.dot(p);
-    const double away = (p - at * direction - circle.center).norm();
+    const double at = cylinder.direction.dot(p), away = cylinder.distance_from_axis(p);
     const double reach = std::sqrt(std::max(0.0, held * held - away * away));
     from = std::min(from, at + reach);
     to = std::max(to, at - reach);
   }
   if (from > to) from = to = 0.5 * (from + to);
-  return Capsule{circle.center + from * direction, circle.center + to * direction, radius};
+  return Capsule{cylinder.center + from * cylinder.direction,
+                 cylinder.center + to * cylinder.direction, radius};
 }
 
 }  // namespace kaboum::bcd

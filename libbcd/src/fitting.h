@@ -52,12 +52,25 @@ double clearance(const RegionalBody& body, const Vec3& from, const Vec3& to, dou
 /// The box along the axes round points, enlarged by `spare` on all sides.
 AxesBox box_round(std::span<const Vec3> points, const Eigen::Matrix3d& axes, double spare);
 
-/// The shortest capsule of a radius along a direction about the axis of the smallest cylinder round
-/// the points; nullopt where that has a larger radius.
-std::optional<Capsule> capsule_round(std::span<const Vec3> points, const Vec3& direction,
-                                     double radius, double spare);
+/// A round cylinder without ends.
+struct Cylinder {
+  Vec3 direction = Vec3::UnitZ();  ///< of length 1
+  Vec3 center = Vec3::Zero();      ///< of the axis, square to the direction as seen from the origin
+  double radius = 0;
 
-/// The radius of the smallest cylinder along a direction round points, a little more. [length]
-double radius_along(std::span<const Vec3> points, const Vec3& direction);
+  [[nodiscard]] double distance_from_axis(const Vec3& p) const {
+    return (p - direction.dot(p) * direction - center).norm();
+  }
+};
+
+/// A cylinder along a direction round points that is little larger than the smallest one.
+/// @pre there is a point
+Cylinder cylinder_round(std::span<const Vec3> points, const Vec3& direction);
+
+/// The shortest capsule of a radius about a cylinder's axis that holds the points with `spare` to
+/// spare; nullopt where the cylinder's radius is larger.
+/// @param cylinder  round the points
+std::optional<Capsule> capsule_round(std::span<const Vec3> points, const Cylinder& cylinder,
+                                     double radius, double spare);
 
 }  // namespace kaboum::bcd

@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <unordered_set>
 #include <utility>
 
 #include "cover_points.h"
@@ -43,6 +45,39 @@ struct SimpleBody {
   [[nodiscard]] double beyond(const Vec3& p) const {
     return kind == Kind::Box ? box.beyond(p) : capsule.beyond(p);
   }
+};
+
+/// A number that differs for different sequences of numbers, but with a probability of 2^-64 each.
+class Digest {
+ public:
+  void add(std::uint64_t x) {
+    // The finaliser of SplitMix64: every bit of the sum changes half of the digest's.
+    state_ += x + 0x9e3779b97f4a7c15U;
+    state_ = (state_ ^ (state_ >> 30U)) * 0xbf58476d1ce4e5b9U;
+    state_ = (state_ ^ (state_ >> 27U)) * 0x94d049bb133111ebU;
+    state_ ^= state_ >> 31U;
+  }
+  template <class Matrix>
+  void add(const Eigen::MatrixBase<Matrix>& numbers) {
+    for (Eigen::Index j = 0; j < numbers.cols(); ++j)
+      for (Eigen::Index i = 0; i < numbers.rows(); ++i)
+        add(std::bit_cast<std::uint64_t>(numbers(i, j)));
+  }
+  void add(const SimpleBody& one) {
+    add(static_cast<std::uint64_t>(one.kind));
+    if (one.kind == SimpleBody::Kind::Box) {
+      for (const Vec3* p : {&one.box.center, &one.box.low, &one.box.high}) add(*p);
+      add(one.box.axes);
+      return;
+    }
+    add(one.capsule.from);
+    add(one.capsule.to);
+    add(std::bit_cast<std::uint64_t>(one.capsule.radius));
+  }
+  [[nodiscard]] std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0;
 };
 
 /// What a query of a body costs beside that of a ball: measured (the table in
@@ -202,6 +237,7 @@ class SimpleBodySearch {
 
   void set_distance(double epsilon) {
     epsilon_ = epsilon;
+    failed_.clear();
     body_ = std::make_unique<RegionalBody>(query_, winding_, epsilon * (1 - kLeft), kCaps,
                                            options_.regions, epsilon);
     finest_ = options_.regions.empty() ? epsilon : std::min(epsilon, *finest_epsilon(options_));
@@ -366,10 +402,11 @@ class SimpleBodySearch {
   [[nodiscard]] std::optional<SimpleBody> capsule_for(const std::vector<Vec3>& points,
                                                       const std::vector<Vec3>& directions) const {
     for (const Vec3& d : directions) {
-      const double least = radius_along(points, d) + spare_;
+      const Cylinder cylinder = cylinder_round(points, d);
+      const double least = cylinder.radius + spare_;
       for (const double share : {0.9, 0.6, 0.3, 0.02}) {
         const double radius = least + share * epsilon_;
-        const auto found = capsule_round(points, d, radius, spare_);
+        const auto found = capsule_round(points, cylinder, radius, spare_);
         if (!found) continue;
         // What is far outside does not fit.
         const Vec3 middle = 0.5 * (found->from + found->to);
@@ -481,6 +518,15 @@ class SimpleBodySearch {
     }
   }
 
+  static std::uint64_t key_of(const std::vector<Vec3>& points, const SimpleBody& a,
+                              const SimpleBody& b) {
+    Digest digest;
+    digest.add(a);
+    digest.add(b);
+    for (const Vec3& p : points) digest.add(p);
+    return digest.value();
+  }
+
   /// One body in place of two, while that succeeds. The nearest pairs come first.
   void merge(std::vector<SimpleBody>& bodies, std::size_t& tries) {
     leave_out_unneeded(bodies);
@@ -505,11 +551,17 @@ class SimpleBodySearch {
       for (const auto& [size, pair] : pairs) {
         const auto [a, b] = pair;
         if (changed[a] != 0 || changed[b] != 0) continue;
+        const std::vector<Vec3> points = only_of(holders, {a, b});
+        const std::uint64_t key = key_of(points, bodies[a], bodies[b]);
+        if (failed_.contains(key)) continue;
         if (tries == 0) break;
         --tries;
-        const auto one = body_for(only_of(holders, {a, b}), {bodies[a], bodies[b]},
+        const auto one = body_for(points, {bodies[a], bodies[b]},
                                   cost_of(bodies[a].kind) + cost_of(bodies[b].kind));
-        if (!one) continue;
+        if (!one) {
+          failed_.insert(key);
+          continue;
+        }
         next[a] = *one;
         changed[a] = 1;
         changed[b] = 2;
@@ -874,6 +926,7 @@ class SimpleBodySearch {
   std::vector<Eigen::Matrix3d> frames_;
   std::vector<Vec3> directions_;  ///< the axes of all frames
   std::vector<SimpleBody> candidates_;
+  std::unordered_set<std::uint64_t> failed_;  ///< what no body was found for (key_of)
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <kaboum/base/number_text.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/robot/exact_shapes.h>
+#include <kaboum/verify/cover.h>
 #include <kaboum/verify/sphere_verdict.h>
 
 #include <algorithm>
@@ -78,7 +79,7 @@ std::vector<Geometry> held_shapes(const std::vector<Geometry>& shapes,
 std::vector<bool> within_epsilon(const std::vector<bcd::Ball>& balls, const geom::Mesh& solid,
                                  double epsilon) {
   const auto fits = [&](const std::vector<bcd::Ball>& some) {
-    return verify::verify_ball_excess(set_of(some), solid, epsilon).answer ==
+    return verify::verify_excess(set_of(some), solid, epsilon, true).answer ==
            verify::Answer::Verified;
   };
   if (balls.empty() || fits(balls)) return std::vector<bool>(balls.size(), true);
@@ -156,7 +157,7 @@ RepairedLink counted(const RepairedBalls& made, const robot::RobotFile& robot) {
 void require_within(const RepairedBalls& made, const geom::ConvexSet& read,
                     const std::string& name) {
   const verify::DistanceClaim found =
-      verify::verify_ball_excess(read, made.solid.mesh(), made.epsilon);
+      verify::verify_excess(read, made.solid.mesh(), made.epsilon, true);
   if (found.answer != verify::Answer::Verified)
     throw Error(ErrorCode::LimitReached, "link '" + name +
                                              "': it is not known that its spheres "

@@ -19,6 +19,7 @@
 #include "margin.h"
 #include "mesh_pair.h"
 #include "nearest.h"
+#include "rounded_box_excess.h"
 #include "uncovered_region.h"
 
 namespace kaboum::verify {
@@ -207,7 +208,11 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
 
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits) {
-  if (to_solid && is_set_of_balls(set)) return verify_ball_excess(set, original, epsilon);
+  if (to_solid && are_rounded_boxes(set)) {
+    DistanceClaim claim = verify_rounded_box_excess(set, original, epsilon);
+    // Polytopes round balls know no more of them.
+    if (claim.answer != Answer::Undecided || is_set_of_balls(set)) return claim;
+  }
   const std::optional<double> one_radius = geom::margin_of(set);
   if (!one_radius) {
     // To the triangles alone it is the bodies' surfaces that count, which are within the gap of

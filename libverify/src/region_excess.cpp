@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "body_bounds.h"
+#include "rounded_box_excess.h"
 
 namespace kaboum::verify {
 namespace {
@@ -123,6 +124,11 @@ DistanceClaim verify_region_excess(const ConvexSet& set, const geom::Mesh& origi
   const double rounding = rounding_of(set, region.region);
   const ConvexSet bodies = bodies_near(set, region.region, rounding);
   if (bodies.bodies.empty()) return answered(Answer::Verified, "");
+  if (to_solid && are_rounded_boxes(bodies)) {
+    DistanceClaim claim =
+        verify_rounded_box_excess(bodies, original, region.epsilon, &region.region, rounding);
+    if (claim.answer != Answer::Undecided) return claim;
+  }
   if (!(geom::margin_of(bodies).value_or(0) >= region.epsilon)) {
     DistanceClaim all = verify_excess(bodies, original, region.epsilon, to_solid, limits);
     if (all.answer == Answer::Verified) return all;

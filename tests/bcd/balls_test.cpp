@@ -5,6 +5,7 @@
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/verify/ball_cover.h>
+#include <kaboum/verify/cover.h>
 #include <tbb/global_control.h>
 
 #include "support/shapes.h"
@@ -32,7 +33,7 @@ void expect_held(const Mesh& mesh, const CoverCandidate& found) {
   const verify::Inclusion held = verify::verify_ball_cover(mesh, set);
   EXPECT_EQ(held.surface.answer, Answer::Verified) << held.surface.reason;
   EXPECT_EQ(held.solid.answer, Answer::Verified) << held.solid.reason;
-  EXPECT_EQ(verify::verify_ball_excess(set, mesh, found.excess_upper * (1 + 1e-6)).answer,
+  EXPECT_EQ(verify::verify_excess(set, mesh, found.excess_upper * (1 + 1e-6), true).answer,
             Answer::Verified);
   for (const geom::ConvexBody& body : found.bodies) {
     EXPECT_TRUE(geom::is_float32(body.core.vertices[0]));
@@ -151,7 +152,7 @@ TEST(Balls, RepairedOnesKeepWhatHolds) {
     }
     const geom::ConvexSet set{found.bodies, {}};
     EXPECT_EQ(verify::verify_ball_cover(bar, set).solid.answer, Answer::Verified);
-    EXPECT_EQ(verify::verify_ball_excess(set, bar, 0.42).answer, Answer::Verified);
+    EXPECT_EQ(verify::verify_excess(set, bar, 0.42, true).answer, Answer::Verified);
     return out;
   };
   const auto unchanged = [](const std::vector<Ball>& was, const std::vector<Ball>& is) {

@@ -264,7 +264,7 @@ TEST(BallCover, ExcessIsThatOfTheFarthestPoint) {
   add_ball(set, {0, 0, 0}, 1.5);        // 0.5 beyond each face
   add_ball(set, {0.9, 0.9, 0.9}, 0.4);  // (0.9 + 0.4) − 1 beyond faces, at the corner less
   const auto answer = [&](double epsilon) {
-    return verify_ball_excess(set, original, epsilon).answer;
+    return verify_excess(set, original, epsilon, true).answer;
   };
   EXPECT_EQ(answer(0.5 * (1 + 1e-9)), Answer::Verified);
   EXPECT_EQ(answer(0.5 * (1 - 1e-6)), Answer::Refuted);
@@ -273,8 +273,8 @@ TEST(BallCover, ExcessIsThatOfTheFarthestPoint) {
   add(walls, box_of({1, -3, -3}, {3, 3, 3}), false);
   set.bodies.clear();
   add_ball(set, {0, 0, 0}, 1.5);  // centre 1 from both: 1 is the most, not 1 + 1.5
-  EXPECT_EQ(verify_ball_excess(set, walls, 1.02).answer, Answer::Verified);
-  const DistanceClaim less = verify_ball_excess(set, walls, 0.98);
+  EXPECT_EQ(verify_excess(set, walls, 1.02, true).answer, Answer::Verified);
+  const DistanceClaim less = verify_excess(set, walls, 0.98, true);
   EXPECT_EQ(less.answer, Answer::Refuted);
   EXPECT_GT(less.largest, 0.98);
   EXPECT_LE(less.largest, 1);
@@ -288,7 +288,7 @@ TEST(BallCover, ExcessIsDecidedWhereWallsAreInside) {
   add_ball(set, {1.5, 0.5, 0.5}, 0.6);
   add_ball(set, {0.9, 0.5, 0.5}, 0.6);  // its nearest triangle is a wall inside
   const auto answer = [&](const Mesh& solid, double epsilon) {
-    return verify_ball_excess(set, solid, epsilon).answer;
+    return verify_excess(set, solid, epsilon, true).answer;
   };
   EXPECT_EQ(answer(beam, 0.1 * (1 + 1e-5)), Answer::Verified);
   EXPECT_NE(answer(beam, 0.1 * (1 - 1e-9)), Answer::Verified);
@@ -338,8 +338,9 @@ TEST(BallCover, ExcessAgreesWithPoints) {
         most = std::max(most, distance(c + radius * (1 - 1e-12) * d.normalized()));
     }
     if (most < 0.05) continue;
-    EXPECT_NE(verify_ball_excess(set, solid, most * (1 - 1e-9)).answer, Answer::Verified) << turn;
-    EXPECT_EQ(verify_ball_excess(set, solid, most * 1.02 + 0.002).answer, Answer::Verified) << turn;
+    EXPECT_NE(verify_excess(set, solid, most * (1 - 1e-9), true).answer, Answer::Verified) << turn;
+    EXPECT_EQ(verify_excess(set, solid, most * 1.02 + 0.002, true).answer, Answer::Verified)
+        << turn;
   }
 }
 

@@ -684,6 +684,13 @@ TEST(Cover, ReachWithAMargin) {
   EXPECT_EQ(between.answer, Answer::Verified);
   set = set_of({whole_block({0, 0, 0}, {1.125, 1, 1})});
   set_margin(set, 0.125);
+  EXPECT_EQ(verify::verify_excess(set, two, 0.178, true).answer, Answer::Verified);
+  EXPECT_EQ(verify::verify_excess(set, two, 0.176, true).answer, Answer::Refuted);
+  // Of what is no box, no more is known than that its core is nearer than epsilon less the margin.
+  std::vector<Vec3> corners = set.bodies[0].core.vertices;
+  corners.emplace_back(0.5, 0.5, 1.01);
+  set = set_of({*geom::convex_hull(corners)});
+  set_margin(set, 0.125);
   EXPECT_EQ(verify::verify_excess(set, two, 0.2, true).answer, Answer::Undecided);
 }
 

@@ -1,6 +1,7 @@
 // Balls inside solids: radii one ulp round the largest, against rational numbers; voids, walls
 // inside and tips of the outside; depths that are known.
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/polygon2.h>
 #include <kaboum/geom/triangle_search.h>

@@ -35,7 +35,7 @@ struct RepairedSpheres {
 /// Spheres of somebody's changed as little as was found to suffice (bcd::repair_balls), so that
 /// each link's hold its triangles and the solid that is meant by them, and reach no farther than
 /// epsilon from that solid. The text of the file is read back. verify::decide_spheres and
-/// verify::verify_ball_excess decide what is claimed.
+/// verify::verify_excess decide what is claimed.
 ///
 /// Shapes without triangles are held by way of polytopes round them; what these are farther is
 /// taken off epsilon. Spheres of links without shapes stay as they are.

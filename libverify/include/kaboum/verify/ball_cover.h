@@ -1,7 +1,6 @@
 #pragma once
 
 #include <kaboum/geom/convex_set.h>
-#include <kaboum/verify/distance.h>
 #include <kaboum/verify/inclusion.h>
 
 namespace kaboum::verify {
@@ -23,15 +22,6 @@ bool is_set_of_balls(const geom::ConvexSet& set);
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
 Inclusion verify_ball_cover(const geom::Mesh& original, const geom::ConvexSet& set,
                             const InclusionOptions& options = {});
-
-/// Decides whether every point of a union of balls is within `epsilon` of a solid or its triangles.
-/// A part of a ball, itself a ball about b of radius h, is if s(b) + h ≤ ε, s the signed distance
-/// to the solid's surface, negative inside.
-/// @pre is_set_of_balls(set); epsilon > 0; the original is a closed chain with a triangle of some
-///   area
-/// @throws as verify_ball_cover
-DistanceClaim verify_ball_excess(const geom::ConvexSet& set, const geom::Mesh& original,
-                                 double epsilon);
 
 /// How much of the triangles of a mesh lies outside a union of balls.
 struct OutsideBalls {
