@@ -17,7 +17,9 @@ constexpr int kSectionSteps = 24;  ///< of a golden section: leaves 1e-5 of the 
 /// A segment, and what is asked for often.
 struct Segment {
   Segment(const Vec3& a, const Vec3& b)
-      : from(a), along(b - a), inverse(along.squaredNorm() > 0 ? 1 / along.squaredNorm() : 0) {}
+      : from(a),
+        along(b - a),
+        inverse(along.squaredNorm() > 1e-300 ? 1 / along.squaredNorm() : 0) {}
 
   [[nodiscard]] double distance(const Vec3& p) const {
     const Vec3 to = p - from;
@@ -26,7 +28,7 @@ struct Segment {
   }
 
   Vec3 from, along;
-  double inverse;  ///< of the square of its length; 0 of a point
+  double inverse;  ///< of the square of its length; 0 of about a point
 };
 
 /// Distance of c from a convex set that holds the cap, a convex function of c.

@@ -15,11 +15,11 @@
 #include <sstream>
 
 #include "body_bounds.h"
+#include "body_excess.h"
 #include "cell_sample.h"
 #include "margin.h"
 #include "mesh_pair.h"
 #include "nearest.h"
-#include "rounded_box_excess.h"
 #include "uncovered_region.h"
 
 namespace kaboum::verify {
@@ -115,6 +115,13 @@ std::vector<std::uint32_t> not_within(const geom::Mesh& mesh, const Inclusion& i
   return out;
 }
 
+/// The triangle of a mesh that is nearest to a point, or 0.
+std::uint32_t triangle_near(const geom::Mesh& mesh, const Vec3& p) {
+  const MeshPair meshes(geom::Mesh{}, mesh);
+  const std::uint32_t face = NearestTriangle(meshes, kOutside).nearest(p * meshes.scale()).face;
+  return face == NearestTriangle::kNone ? 0 : meshes.face(face).source;
+}
+
 constexpr const char* kNoBounds =
     "the bodies are not convex, or too many, to be bounded by polytopes";
 
@@ -126,6 +133,17 @@ Inclusion open_inclusion(const Claim& convex) {
     claim->reason = convex.answer == Answer::Verified ? kNoBounds : "not all bodies are convex";
   }
   return out;
+}
+
+/// Where many bodies meet there may be too many pieces; body by body, room between them decides.
+void decide_open_claims(const geom::Mesh& original, const geom::ConvexSet& set,
+                        const InclusionOptions& options, Inclusion& inclusion) {
+  const auto is_open = [](const Claim& claim) { return claim.answer == Answer::Undecided; };
+  if (set.bodies.size() < 2 || (!is_open(inclusion.solid) && !is_open(inclusion.surface))) return;
+  Inclusion other = verify_body_cover(original, set, options);
+  if (is_open(inclusion.solid) && !is_open(other.solid)) inclusion.solid = std::move(other.solid);
+  if (is_open(inclusion.surface) && !is_open(other.surface))
+    inclusion.surface = std::move(other.surface);
 }
 
 }  // namespace
@@ -185,6 +203,8 @@ Cover verify_cover(const geom::Mesh& original, const geom::ConvexSet& set,
   }
   const geom::Mesh sum = sum_of(set);
   cover.inclusion = verify_inclusion(original, sum, options);
+  if (*margin == 0 && cover.convexity.convex.answer == Answer::Verified)
+    decide_open_claims(original, set, options, cover.inclusion);
   if (*margin > 0)
     allow_margin(original, sum, set, cover.convexity.convex.answer == Answer::Verified,
                  options.max_cells, cover.inclusion);
@@ -208,12 +228,13 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
 
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits) {
-  if (to_solid && are_rounded_boxes(set)) {
-    DistanceClaim claim = verify_rounded_box_excess(set, original, epsilon);
-    // Polytopes round balls know no more of them.
-    if (claim.answer != Answer::Undecided || is_set_of_balls(set)) return claim;
-  }
   const std::optional<double> one_radius = geom::margin_of(set);
+  if (to_solid && have_cells(set)) {
+    DistanceClaim claim = verify_body_excess(set, original, epsilon);
+    if (claim.answer == Answer::Refuted) claim.triangle = triangle_near(sum_of(set), claim.at);
+    // Of bodies with one radius more can be said where there is no slack.
+    if (claim.answer != Answer::Undecided || !(one_radius && epsilon > *one_radius)) return claim;
+  }
   if (!one_radius) {
     // To the triangles alone it is the bodies' surfaces that count, which are within the gap of
     // those of both polytopes; to the solid, all points do, and what is inside is no farther.
@@ -232,6 +253,12 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
         [&](const BodyBounds& bounds) { return of(bounds.inside, bounds.gap); });
   }
   const double margin = *one_radius;
+  if (!(epsilon > margin)) {
+    DistanceClaim open;
+    open.answer = Answer::Undecided;
+    open.reason = "epsilon is no larger than the margin";
+    return open;
+  }
   DistanceClaimOptions options;
   options.to_solid = to_solid;
   const geom::Mesh sum = sum_of(set);

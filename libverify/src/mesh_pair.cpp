@@ -74,7 +74,13 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
   }
   points_.reserve(inside.vertices.size() + outside.vertices.size());
   for (const geom::Mesh* mesh : meshes) {
-    for (const Vec3& p : mesh->vertices) points_.push_back(p + Vec3::Zero());  // −0 becomes +0
+    // Points of no triangle count for nothing, least of all for the scale.
+    std::vector<char> used(mesh->vertices.size(), 0);
+    for (const geom::Triangle& t : mesh->triangles)
+      for (const std::uint32_t v : t) used[v] = 1;
+    for (std::size_t v = 0; v < used.size(); ++v)
+      points_.push_back(used[v] != 0 ? Vec3(mesh->vertices[v] + Vec3::Zero())  // −0 becomes +0
+                                     : Vec3(Vec3::Zero()));
   }
   rescale();
   const std::vector<std::uint32_t> same = merge_equal(points_);

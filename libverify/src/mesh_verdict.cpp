@@ -238,6 +238,7 @@ geom::Mesh offending_triangles(const MeshQuestion& q, const MeshVerdict& verdict
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
     for (const std::uint32_t t : triangles) {
+      if (t >= from.triangles.size()) continue;
       const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
       for (const std::uint32_t v : from.triangles[t]) mesh.vertices.push_back(from.vertices[v]);
       mesh.triangles.push_back({first, first + 1, first + 2});

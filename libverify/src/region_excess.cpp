@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "body_bounds.h"
-#include "rounded_box_excess.h"
+#include "body_excess.h"
 
 namespace kaboum::verify {
 namespace {
@@ -124,12 +124,13 @@ DistanceClaim verify_region_excess(const ConvexSet& set, const geom::Mesh& origi
   const double rounding = rounding_of(set, region.region);
   const ConvexSet bodies = bodies_near(set, region.region, rounding);
   if (bodies.bodies.empty()) return answered(Answer::Verified, "");
-  if (to_solid && are_rounded_boxes(bodies)) {
+  const bool by_cells = to_solid && have_cells(bodies);
+  if (by_cells) {
     DistanceClaim claim =
-        verify_rounded_box_excess(bodies, original, region.epsilon, &region.region, rounding);
+        verify_body_excess(bodies, original, region.epsilon, &region.region, rounding);
     if (claim.answer != Answer::Undecided) return claim;
   }
-  if (!(geom::margin_of(bodies).value_or(0) >= region.epsilon)) {
+  if (!by_cells || geom::margin_of(bodies)) {
     DistanceClaim all = verify_excess(bodies, original, region.epsilon, to_solid, limits);
     if (all.answer == Answer::Verified) return all;
   }

@@ -52,15 +52,19 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
                         const InclusionOptions& options = {});
 
 /// Decides whether every point of the union, its radii included, is within `epsilon` of the
-/// original's triangles or, with `to_solid`, of these or its solid. That is verify_distance from
-/// the bodies' triangles with what ε leaves beside the margin. For the solid, it is also a search
-/// of what the bodies hold of its outside (to the triangles alone, the inside of bodies is not
-/// looked at). Where that fails, only a point of the union that is farther away than ε refutes,
-/// since what the margin adds may be near another part of the original. Sets without one margin are
-/// bounded by polytopes as in verify_cover.
+/// original's triangles or, with `to_solid`, of these or its solid.
 ///
-/// @pre epsilon > margin_of(set), where there is one; with `to_solid` the original is a closed
-/// chain
+/// To the solid of a set of polytopes, balls, capsules and rounded boxes: by cutting bodies into
+/// cells (docs/algorithms/rounded-bodies.md, "Cells"). Of sets with one radius, where that does not
+/// decide, it is verify_distance from the bodies' triangles with what ε leaves beside the margin,
+/// and a search of what the bodies hold of the solid's outside (to the triangles alone, the inside
+/// of bodies is not looked at). Where that fails, only a point of the union that is farther away
+/// than ε refutes, since what the margin adds may be near another part of the original; undecided
+/// where ε is no larger than the margin. Others are bounded by polytopes as in verify_cover.
+///
+/// `triangle` is that of sum_of(set) that is nearest to the point that refutes.
+///
+/// @pre epsilon > 0; with `to_solid` the original is a closed chain
 /// @throws as verify_distance
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits = {});

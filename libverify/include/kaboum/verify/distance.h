@@ -11,7 +11,7 @@ struct DistanceClaim {
   double largest = 0;  ///< a distance that is certainly reached somewhere, at `at` [length]
   geom::Vec3 at = geom::Vec3::Zero();
   std::uint32_t triangle = 0;  ///< of `from`, the one that `at` lies on
-  std::size_t pieces = 0;      ///< parts of triangles looked at
+  std::size_t pieces = 0;      ///< parts of triangles, or of bodies, looked at
 };
 
 struct DistanceClaimOptions {

@@ -6,9 +6,10 @@
 
 namespace kaboum::verify {
 
-/// True if each body is a ball, a capsule, or nearly a box, rounded by its radius or not: boxes
-/// that hold them reach no farther beyond them than rounding of their coordinates to float32.
-bool are_rounded_boxes(const geom::ConvexSet& set);
+/// True if each body is a convex polytope without a radius, a ball, a capsule, or nearly a box,
+/// rounded by its radius or not: boxes that hold them reach no farther beyond them than rounding of
+/// their coordinates to float32.
+bool have_cells(const geom::ConvexSet& set);
 
 /// Decides whether every point of a union of rounded boxes, or of what a region holds of it, is
 /// within `epsilon` of a solid or its triangles. The bodies are cut into cells until each is
@@ -20,11 +21,11 @@ bool are_rounded_boxes(const geom::ConvexSet& set);
 /// @param region  nullptr: all of space
 /// @param region_rounding  what is no farther than that from the region's border counts as outside
 ///   where it would refute, as inside where it would verify [length]
-/// @pre are_rounded_boxes(set); epsilon > 0; the original is a closed chain with a triangle of some
+/// @pre have_cells(set); epsilon > 0; the original is a closed chain with a triangle of some
 ///   area
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
-DistanceClaim verify_rounded_box_excess(const geom::ConvexSet& set, const geom::Mesh& original,
-                                        double epsilon, const geom::Region* region = nullptr,
-                                        double region_rounding = 0);
+DistanceClaim verify_body_excess(const geom::ConvexSet& set, const geom::Mesh& original,
+                                 double epsilon, const geom::Region* region = nullptr,
+                                 double region_rounding = 0);
 
 }  // namespace kaboum::verify
