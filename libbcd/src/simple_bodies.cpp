@@ -14,6 +14,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -238,6 +239,7 @@ class SimpleBodySearch {
   void set_distance(double epsilon) {
     epsilon_ = epsilon;
     failed_.clear();
+    held_.clear();
     body_ = std::make_unique<RegionalBody>(query_, winding_, epsilon * (1 - kLeft), kCaps,
                                            options_.regions, epsilon);
     finest_ = options_.regions.empty() ? epsilon : std::min(epsilon, *finest_epsilon(options_));
@@ -472,20 +474,42 @@ class SimpleBodySearch {
 
   // --- fewer ---
 
+  /// The points that a body holds, of the first so many.
+  struct Held {
+    std::size_t known = 0;
+    std::vector<std::uint32_t> points;
+  };
+
   /// Which bodies hold each point.
   struct Holders {
-    std::vector<std::vector<std::uint32_t>> of_body;
+    std::vector<const Held*> of_body;
     std::vector<std::uint32_t> times;
   };
 
-  [[nodiscard]] Holders holders_of(const std::vector<SimpleBody>& bodies) const {
+  /// Most bodies were there before: only of others, and of points that were added, it is asked.
+  [[nodiscard]] Holders holders_of(const std::vector<SimpleBody>& bodies) {
     Holders out;
-    out.of_body.resize(bodies.size());
     out.times.assign(points_.size(), 0);
-    kaboum::parallel_for(std::size_t{0}, bodies.size(),
-                         [&](std::size_t b) { out.of_body[b] = held_by(bodies[b], points_); });
-    for (const auto& held : out.of_body)
-      for (const std::uint32_t p : held) ++out.times[p];
+    std::vector<std::pair<Held*, const SimpleBody*>> incomplete;
+    for (const SimpleBody& body : bodies) {
+      Digest digest;
+      digest.add(body);
+      Held& held = held_[digest.value()];
+      out.of_body.push_back(&held);
+      if (held.known < points_.size()) incomplete.emplace_back(&held, &body);
+    }
+    std::ranges::sort(incomplete);
+    const auto same = std::ranges::unique(
+        incomplete, [](const auto& a, const auto& b) { return a.first == b.first; });
+    incomplete.erase(same.begin(), same.end());
+    kaboum::parallel_for(std::size_t{0}, incomplete.size(), [&](std::size_t i) {
+      const auto& [held, body] = incomplete[i];
+      for (auto p = static_cast<std::uint32_t>(held->known); p < points_.size(); ++p)
+        if (body->beyond(points_[p]) <= -spare_) held->points.push_back(p);
+      held->known = points_.size();
+    });
+    for (const Held* held : out.of_body)
+      for (const std::uint32_t p : held->points) ++out.times[p];
     return out;
   }
 
@@ -494,7 +518,7 @@ class SimpleBodySearch {
                                           std::initializer_list<std::size_t> of) const {
     std::vector<std::uint32_t> all;
     for (const std::size_t b : of)
-      all.insert(all.end(), holders.of_body[b].begin(), holders.of_body[b].end());
+      all.insert(all.end(), holders.of_body[b]->points.begin(), holders.of_body[b]->points.end());
     std::ranges::sort(all);
     std::vector<Vec3> out;
     for (std::size_t i = 0; i < all.size();) {
@@ -506,7 +530,7 @@ class SimpleBodySearch {
     return out;
   }
 
-  void leave_out_unneeded(std::vector<SimpleBody>& bodies) const {
+  void leave_out_unneeded(std::vector<SimpleBody>& bodies) {
     for (std::size_t i = 0; i < bodies.size();) {
       const Holders holders = holders_of(bodies);
       for (; i < bodies.size(); ++i)
@@ -579,7 +603,7 @@ class SimpleBodySearch {
 
   /// Leaves bodies out whose points others can hold beside their own, those with fewest such points
   /// first.
-  void leave_out_replaceable(std::vector<SimpleBody>& bodies, std::size_t& tries) const {
+  void leave_out_replaceable(std::vector<SimpleBody>& bodies, std::size_t& tries) {
     bool fewer = true;
     while (fewer && bodies.size() > 1) {
       fewer = false;
@@ -602,7 +626,7 @@ class SimpleBodySearch {
   }
 
   /// Bodies of cheaper kinds where these hold what only the dear ones do.
-  void make_cheaper(std::vector<SimpleBody>& bodies) const {
+  void make_cheaper(std::vector<SimpleBody>& bodies) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const Holders holders = holders_of(bodies);
       if (const auto one = body_for(only_of(holders, {b}), {bodies[b]}, cost_of(bodies[b].kind)))
@@ -744,7 +768,7 @@ class SimpleBodySearch {
   /// Gives points that no body holds to bodies that can hold them beside what only they hold.
   /// @return those that are left
   [[nodiscard]] std::vector<Vec3> given_to(std::vector<SimpleBody>& bodies,
-                                           std::vector<Vec3> free) const {
+                                           std::vector<Vec3> free) {
     constexpr std::size_t kNear = 3;
     std::size_t failed = 0;
     for (std::size_t turn = 0; turn < 2 * bodies.size() + 4 && failed < 3 && !free.empty();
@@ -926,7 +950,8 @@ class SimpleBodySearch {
   std::vector<Eigen::Matrix3d> frames_;
   std::vector<Vec3> directions_;  ///< the axes of all frames
   std::vector<SimpleBody> candidates_;
-  std::unordered_set<std::uint64_t> failed_;  ///< what no body was found for (key_of)
+  std::unordered_set<std::uint64_t> failed_;      ///< what no body was found for (key_of)
+  std::unordered_map<std::uint64_t, Held> held_;  ///< by bodies' digests
 };
 
 }  // namespace
