@@ -7,6 +7,7 @@
 #include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -19,7 +20,8 @@
 
 /// Times of queries by kind of body: pairs of balls, capsules, boxes and polytopes near contact,
 /// and robots in scenes at equal epsilon, whose links are held by polytopes, capsules, boxes or
-/// whichever is cheapest.
+/// whichever is cheapest. Of scenes there are two kinds: crowded ones, in which most poses are in
+/// collision, and open ones, in which most are free.
 ///
 ///   kinds-benchmark                        the table of pairs
 ///   kinds-benchmark EPSILON ROBOT...       robots (URDF) among boxes; epsilon in metres or percent
@@ -129,12 +131,22 @@ std::vector<Link> links_of(const certify::CertifiedBodies& bodies, std::size_t c
   return out;
 }
 
-/// Boxes about the robot, as an outer set.
-BoundingSet scene(double reach, std::mt19937_64& random) {
-  constexpr int kBoxes = 40;
-  std::uniform_real_distribution<double> size(0.02, 0.12), away(0.3, 1.0);
+/// Boxes about the robot, in shares of its reach.
+struct SceneKind {
+  const char* name;
+  int boxes;
+  double smallest, largest;  ///< half of their edges
+  double nearest, farthest;
+};
+constexpr SceneKind kCrowded{"crowded", 40, 0.02, 0.12, 0.3, 1.0},
+    kOpen{"open", 40, 0.01, 0.06, 0.9, 1.4};
+
+/// As an outer set.
+BoundingSet scene(const SceneKind& kind, double reach, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> size(kind.smallest, kind.largest),
+      away(kind.nearest, kind.farthest);
   std::vector<geom::ConvexBody> bodies;
-  for (int i = 0; i < kBoxes; ++i) {
+  for (int i = 0; i < kind.boxes; ++i) {
     const geom::Transform pose{turned(random).linear, away(random) * reach * direction(random)};
     const Vec3 half = reach * Vec3(size(random), size(random), size(random));
     std::vector<Vec3> corners;
@@ -147,35 +159,25 @@ BoundingSet scene(double reach, std::mt19937_64& random) {
   return {std::move(bodies), collide::Direction::Outer, 0};
 }
 
-void robot_in_scene(const std::string& file, const Length& epsilon) {
-  const robot::RobotFile robot = robot::read_robot(file);
-  std::printf("%s within %s\n%10s %8s %9s %9s %7s %9s\n", file.c_str(), epsilon.text().c_str(),
-              "kind", "bodies", "vertices", "us/query", "ratio", "alarms");
-  using Kind = certify::SetRequest::BodyKind;
-  double reference = 0;
-  for (const auto& [name, kind] :
-       {std::pair{"polytopes", Kind::Polytopes}, std::pair{"capsules", Kind::Capsules},
-        std::pair{"boxes", Kind::Boxes}, std::pair{"mixed", Kind::Mixed}}) {
-    certify::RobotRequest request;
-    request.set.epsilon = epsilon;
-    request.set.body_kind = kind;
-    request.set.effort = bcd::Effort::Fast;
-    const certify::SetCache cache(certify::SetCache::default_folder());
-    const certify::CertifiedBodies bodies = certify::certify_bodies(robot, request, &cache);
-    std::size_t points = 0;
-    double reach = 0;
-    for (const robot::LinkBody& body : bodies.artefact()) points += body.points.size();
-    const std::vector<Link> links = links_of(bodies, robot.robot.links.size());
-    const std::size_t joints = robot.robot.variables.size();
-    for (const geom::Transform& pose : robot::forward(robot.robot, std::vector<double>(joints, 0)))
-      reach = std::max(reach, pose.translation.norm());
+/// Time of a query and the share of those that find a collision.
+struct Figures {
+  double microseconds = 0, alarms = 0;
+};
+
+/// A robot along motions in some scenes; the least time of several runs, as other programs of the
+/// machine disturb one.
+Figures time_in(const SceneKind& kind, const robot::Robot& robot, const std::vector<Link>& links,
+                double reach) {
+  constexpr int kRuns = 5, kScenes = 5, kMotions = 60, kSteps = 25;
+  Figures out;
+  for (int run = 0; run < kRuns; ++run) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> value(-2, 2);
+    const std::size_t joints = robot.variables.size();
     double total = 0;
-    std::size_t alarms = 0, queries = 0;
-    constexpr int kScenes = 5, kMotions = 60, kSteps = 25;
+    std::size_t alarms = 0;
     for (int s = 0; s < kScenes; ++s) {
-      const BoundingSet boxes = scene(reach, random);
+      const BoundingSet boxes = scene(kind, reach, random);
       const PosedSet fixed(boxes);
       std::vector<PosedSet> moving;
       for (const Link& link : links) moving.emplace_back(link.set);
@@ -190,7 +192,7 @@ void robot_in_scene(const std::string& file, const Length& epsilon) {
         for (int step = 0; step < kSteps; ++step) {
           for (std::size_t j = 0; j < joints; ++j)
             q[j] = from[j] + step * (to[j] - from[j]) / kSteps;
-          poses.push_back(robot::forward(robot.robot, q));
+          poses.push_back(robot::forward(robot, q));
         }
         // The clock takes as long as a query: it is asked once for a motion.
         const double start = processor();
@@ -201,16 +203,53 @@ void robot_in_scene(const std::string& file, const Length& epsilon) {
             hit = collide::find_collision(moving[l], fixed, 0, &memory[l]).has_value();
           }
           alarms += hit ? 1U : 0U;
-          ++queries;
         }
         total += processor() - start;
       }
     }
-    const double each = 1e6 * total / static_cast<double>(queries);
-    if (reference == 0) reference = each;
-    std::printf("%10s %8zu %9zu %9.2f %7.2f %8.1f%%\n", name, bodies.artefact().size(), points,
-                each, each / reference,
-                100 * static_cast<double>(alarms) / static_cast<double>(queries));
+    constexpr double kQueries = kScenes * kMotions * kSteps;
+    const double each = 1e6 * total / kQueries;
+    out = {run == 0 ? each : std::min(out.microseconds, each),
+           static_cast<double>(alarms) / kQueries};
+  }
+  return out;
+}
+
+void robot_in_scene(const std::string& file, const Length& epsilon) {
+  const robot::RobotFile robot = robot::read_robot(file);
+  std::printf("%s within %s\n%10s %8s %9s", file.c_str(), epsilon.text().c_str(), "kind", "bodies",
+              "vertices");
+  for (const SceneKind& scene : {kCrowded, kOpen})
+    std::printf(" | %8s us %7s %9s", scene.name, "ratio", "alarms");
+  std::printf("\n");
+  using Kind = certify::SetRequest::BodyKind;
+  std::array<double, 2> reference{};
+  for (const auto& [name, kind] :
+       {std::pair{"polytopes", Kind::Polytopes}, std::pair{"capsules", Kind::Capsules},
+        std::pair{"boxes", Kind::Boxes}, std::pair{"mixed", Kind::Mixed}}) {
+    certify::RobotRequest request;
+    request.set.epsilon = epsilon;
+    request.set.body_kind = kind;
+    request.set.effort = bcd::Effort::Fast;
+    const certify::SetCache cache(certify::SetCache::default_folder());
+    const certify::CertifiedBodies bodies = certify::certify_bodies(robot, request, &cache);
+    std::size_t points = 0;
+    double reach = 0;
+    for (const robot::LinkBody& body : bodies.artefact()) points += body.points.size();
+    const std::vector<Link> links = links_of(bodies, robot.robot.links.size());
+    const std::vector<double> zero(robot.robot.variables.size(), 0);
+    for (const geom::Transform& pose : robot::forward(robot.robot, zero))
+      reach = std::max(reach, pose.translation.norm());
+    std::printf("%10s %8zu %9zu", name, bodies.artefact().size(), points);
+    std::size_t column = 0;
+    for (const SceneKind& scene : {kCrowded, kOpen}) {
+      const Figures figures = time_in(scene, robot.robot, links, reach);
+      double& first = reference[column++];
+      if (first == 0) first = figures.microseconds;
+      std::printf(" | %11.2f %7.2f %8.1f%%", figures.microseconds, figures.microseconds / first,
+                  100 * figures.alarms);
+    }
+    std::printf("\n");
   }
 }
 

@@ -8,36 +8,19 @@
 #include <limits>
 
 #include "lengths.h"
-#include "twos.h"
+#include "meeting.h"
+#include "poses.h"
+#include "shapes.h"
 
 namespace kaboum::collide {
 namespace {
 
 using detail::kSumUp;
 using detail::require_length;
-using detail::Two;
-using detail::Twos;
 using geom::Box3;
 using geom::Vec3;
 
 constexpr double kFarthest = 1e60;  ///< as Posed takes it
-
-/// LᵀL − I
-Eigen::Matrix3d defect_of(const Eigen::Matrix3d& l) {
-  const auto product = [&](int i, int j) {
-    return l(0, i) * l(0, j) + l(1, i) * l(1, j) + l(2, i) * l(2, j);
-  };
-  const double xy = product(0, 1), xz = product(0, 2), yz = product(1, 2);
-  Eigen::Matrix3d out;
-  out << product(0, 0) - 1, xy, xz, xy, product(1, 1) - 1, yz, xz, yz, product(2, 2) - 1;
-  return out;
-}
-
-double determinant(const Eigen::Matrix3d& l) {
-  return l(0, 0) * (l(1, 1) * l(2, 2) - l(2, 1) * l(1, 2)) -
-         l(0, 1) * (l(1, 0) * l(2, 2) - l(2, 0) * l(1, 2)) +
-         l(0, 2) * (l(1, 0) * l(2, 1) - l(2, 0) * l(1, 1));
-}
 
 /// Whether it only swaps axes and turns them round.
 bool swaps_axes(const Eigen::Matrix3d& l) {
@@ -50,10 +33,17 @@ bool swaps_axes(const Eigen::Matrix3d& l) {
 
 /// Bounds |LᵀL − I|: 0 for matrices that only swap axes and turn them round. An entry of nine errs
 /// by less than 5 · 2^-52.
-double bound_of_defect(const Eigen::Matrix3d& l, const Eigen::Matrix3d& defect) {
-  if (swaps_axes(l)) return 0;
-  return defect.norm() + 0x1p-47;
+double bound_of_defect(const Eigen::Matrix3d& l, double square) {
+  if (square == 0 && swaps_axes(l)) return 0;
+  return std::sqrt(square) + 0x1p-47;
 }
+
+/// Floats not above and not below a number.
+float below(double x) {
+  const auto out = static_cast<float>(x);
+  return out > x ? std::nextafter(out, -std::numeric_limits<float>::infinity()) : out;
+}
+float above(double x) { return -below(-x); }
 
 /// A ball round the points that is at most a hundredth larger than the smallest
 /// one: M. Bădoiu, K. L. Clarkson, Smaller core-sets for balls, 2003.
@@ -118,17 +108,38 @@ BoundingSet::BoundingSet(std::vector<geom::ConvexBody> bodies, Direction directi
                 return body.core.vertices.size() == 1 && body.radius == bodies_.front().radius;
               });
   ball_ = ball_of(bodies_, box_);
-  rows_.resize(10 * stride());
-  for (std::size_t i = 0; i < stride() && !bodies_.empty(); ++i) {
-    const std::size_t body = std::min(i, size() - 1);
-    const Box3& box = polytopes_[body].box();
-    const Vec3 middle = box.center(), half = 0.5 * box.max - 0.5 * box.min;
-    for (int k = 0; k < 3; ++k) {
-      rows_[k * stride() + i] = middle[k];
-      rows_[(3 + k) * stride() + i] = half[k];
-      rows_[(6 + k) * stride() + i] = polytopes_[body].magnitude()[k];
+  shapes_ = std::make_shared<const detail::Shapes>(bodies_, box_);
+  add_levels();
+}
+
+void BoundingSet::add_levels() {
+  std::size_t count = size(), all = 6 * count;
+  levels_.push_back({0, count});
+  while (count > kBlock) {
+    count = (count + kBlock - 1) / kBlock;
+    levels_.push_back({all, count});
+    all += 6 * count;
+  }
+  rows_.resize(all + detail::kBoxesAtOnce);
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Box3& box = polytopes_[i].box();
+    const Vec3 reach =
+        Vec3::Constant(bodies_[i].radius * kSumUp) + 0x1p-50 * polytopes_[i].magnitude();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      rows_[levels_[0].at(k) + i] = below(box.min[axis] - reach[axis]);
+      rows_[levels_[0].at(3 + k) + i] = above(box.max[axis] + reach[axis]);
     }
-    rows_[9 * stride() + i] = bodies_[body].radius;
+  }
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    const Level &lower = levels_[l - 1], &here = levels_[l];
+    for (std::size_t row = 0; row < 6; ++row)
+      for (std::size_t i = 0; i < here.count; ++i) {
+        const float* first = rows_.data() + lower.at(row) + i * kBlock;
+        const float* last = first + std::min(kBlock, lower.count - i * kBlock);
+        rows_[here.at(row) + i] =
+            row < 3 ? *std::min_element(first, last) : *std::max_element(first, last);
+      }
   }
 }
 
@@ -136,77 +147,38 @@ BoundingSet::BoundingSet(const geom::ConvexSet& set)
     : BoundingSet(bodies_of(set), direction_of(set), epsilon_of(set)) {}
 
 PosedSet::PosedSet(const BoundingSet& set, const geom::Transform& pose, double error) : set_(&set) {
-  std::size_t size = 6 * set.stride();
-  for (std::size_t count = set.size(); count > kBlock;) {
-    count = (count + kBlock - 1) / kBlock;
-    levels_.push_back({size, count});
-    size += 6 * count;
-  }
-  boxes_ = std::make_shared<std::vector<double>>(size);
   place(pose, error);
 }
 
-void PosedSet::place_blocks() {
-  const double* below = boxes_->data();
-  std::size_t stride = set_->stride(), many = set_->size();
-  for (const Level& level : levels_) {
-    double* at = boxes_->data() + level.from;
-    for (std::size_t row = 0; row < 6; ++row)
-      for (std::size_t i = 0; i < level.count; ++i) {
-        const double* first = below + row * stride + i * kBlock;
-        const double* last = first + std::min(kBlock, many - i * kBlock);
-        at[row * level.count + i] =
-            row < 3 ? *std::min_element(first, last) : *std::max_element(first, last);
-      }
-    below = at;
-    stride = many = level.count;
-  }
-}
-
 void PosedSet::place(const geom::Transform& pose, double error) {
-  const Eigen::Matrix3d defect = defect_of(pose.linear);
-  if (!(defect.cwiseAbs().maxCoeff() < 1e-9) || !(determinant(pose.linear) > 0))
+  detail::RotationDefect defect;
+  detail::rotation_defect(pose, 1e-9, defect);
+  if (!defect.is_rotation)
     throw Error(ErrorCode::InvalidArgument, "a pose whose matrix is no rotation");
-  if (!pose.translation.allFinite() || !(pose.translation.cwiseAbs().maxCoeff() <= kFarthest))
+  const auto is_near = [](double along) { return std::abs(along) <= kFarthest; };
+  const Vec3& t = pose.translation;
+  if (!is_near(t[0]) || !is_near(t[1]) || !is_near(t[2]))
     throw Error(ErrorCode::InvalidArgument, "a pose with numbers beyond 1e60");
   pose_ = pose;
   error_ = require_length(error, "an error of its place");
-  defect_ = bound_of_defect(pose.linear, defect);
-  box_ = {};
-  if (set_->size() == 0) return;
-  if (boxes_.use_count() > 1) boxes_ = std::make_shared<std::vector<double>>(boxes_->size());
-  const std::size_t stride = set_->stride();
-  const Twos radius{set_->row(9)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    // Posed::box, for two bodies at once.
-    const double x = pose.linear(k, 0), y = pose.linear(k, 1), z = pose.linear(k, 2),
-                 t = pose.translation[k];
-    const double x_size = std::abs(x), y_size = std::abs(y), z_size = std::abs(z),
-                 t_size = std::abs(t);
-    const Twos middle[3] = {{set_->row(0)}, {set_->row(1)}, {set_->row(2)}},
-               half[3] = {{set_->row(3)}, {set_->row(4)}, {set_->row(5)}},
-               magnitude[3] = {{set_->row(6)}, {set_->row(7)}, {set_->row(8)}};
-    double *low = boxes_->data() + k * stride, *high = low + 3 * stride;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Two least = Two{} + kInfinity, most = Two{} - kInfinity;
-    for (std::size_t i = 0; i < stride; i += 2) {
-      const Two at = x * middle[0][i] + y * middle[1][i] + z * middle[2][i] + t;
-      const Two wide = x_size * half[0][i] + y_size * half[1][i] + z_size * half[2][i];
-      const Two large =
-          x_size * magnitude[0][i] + y_size * magnitude[1][i] + z_size * magnitude[2][i] + t_size;
-      // Radius and error, rounded up.
-      const Two reach = (radius[i] * (1 + defect_) + error) * kSumUp;
-      const Two far = (wide + reach) * (1 + 0x1p-48) + 0x1p-48 * large + 0x1p-900;
-      const Two from = at - far, to = at + far;
-      std::memcpy(low + i, &from, sizeof from);
-      std::memcpy(high + i, &to, sizeof to);
-      least = from < least ? from : least;
-      most = to > most ? to : most;
-    }
-    box_.min[k] = std::min(least[0], least[1]);
-    box_.max[k] = std::max(most[0], most[1]);
-  }
-  place_blocks();
+  defect_ = bound_of_defect(pose.linear, defect.square);
+}
+
+Box3 PosedSet::box(std::size_t i) const { return body(i).box((radius_above(i) + error_) * kSumUp); }
+
+std::vector<Box3> PosedSet::boxes() const {
+  std::vector<Box3> out;
+  out.reserve(set_->size());
+  for (std::size_t i = 0; i < set_->size(); ++i) out.push_back(box(i));
+  return out;
+}
+
+Box3 PosedSet::box() const {
+  if (set_->size() == 0) return {};
+  const std::vector<Vec3> ends{set_->box().min, set_->box().max};
+  // Radii may be stretched by what the box is not.
+  const double stretched = 2 * defect_ * (ends[1] - ends[0]).sum();
+  return Posed(Polytope(ends), pose_).box((error_ + stretched) * kSumUp);
 }
 
 }  // namespace kaboum::collide

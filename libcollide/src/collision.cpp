@@ -10,26 +10,24 @@
 #include <cstdint>
 #include <limits>
 
+#include "closed_forms.h"
+#include "facings.h"
 #include "lengths.h"
-#include "meeting.h"
 
 namespace kaboum::collide {
 namespace {
 
+using detail::Facings;
 using detail::kSumUp;
 using detail::require_length;
 using geom::Box3;
 using geom::Vec3;
 
-bool overlap(const Box3& a, const Box3& b) {
-  return a.min.x() <= b.max.x() && b.min.x() <= a.max.x() && a.min.y() <= b.max.y() &&
-         b.min.y() <= a.max.y() && a.min.z() <= b.max.z() && b.min.z() <= a.max.z();
-}
+constexpr std::size_t kVeryMany = 4096;
 
-Box3 enlarged(const Box3& box, double by) {
-  if (by == 0) return box;
-  const Vec3 all = Vec3::Constant(by) + 0x1p-50 * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
-  return {box.min - all, box.max + all};
+double square_size(const PosedSet& set) {
+  const Box3& box = set.set().box();
+  return (box.max - box.min).squaredNorm();
 }
 
 /// Sum of lengths, not below the exact one; exact when one of them is all.
@@ -78,129 +76,6 @@ std::optional<Polytope> shrunk(const geom::Mesh& hull, double by) {
 
 }  // namespace
 
-/// Pairs of bodies whose boxes meet, 64 bodies of b after the other. Boxes round 64 bodies, and
-/// round 64 of such boxes, leave out most of a set of very many.
-struct BoxPairs {
-  const PosedSet &a, &b;
-  double slack;
-
-  static constexpr std::size_t kBlock = PosedSet::kBlock;
-
-  /// Calls visit(i, j) for them until it is true.
-  template <typename Visit>
-  [[nodiscard]] bool any(const Visit& visit) const {
-    // Only b is looked at by blocks.
-    if (a.set().size() > kVeryMany && b.set().size() < a.set().size())
-      return BoxPairs{b, a, slack}.any_in_order(
-          [&](std::size_t j, std::size_t i) { return visit(i, j); });
-    return any_in_order(visit);
-  }
-
- private:
-  static constexpr std::size_t kVeryMany = 4096;
-
-  template <typename Visit>
-  [[nodiscard]] bool any_in_order(const Visit& visit) const {
-    const std::size_t n = a.set().size(), m = b.set().size();
-    const Box3 all = enlarged(b.box(), slack), whole = enlarged(a.box(), slack);
-    if (n == 0 || m == 0 || !overlap(whole, b.box())) return false;
-    const Query<Visit> query{*this, all, whole, visit};
-    return query.any_of_level(b.levels_.size(), 0, b.levels_.empty() ? m : b.levels_.back().count);
-  }
-
-  template <typename Visit>
-  struct Query {
-    const BoxPairs& pairs;
-    const Box3 &all, &whole;
-    const Visit& visit;
-
-    /// @param level  0: of bodies. @param from, count  of the boxes that are looked at
-    [[nodiscard]] bool any_of_level(std::size_t level, std::size_t from, std::size_t count) const {
-      const PosedSet& b = pairs.b;
-      if (level == 0) {
-        const detail::BoxRows rows{{b.low(0), b.low(1), b.low(2)},
-                                   {b.high(0), b.high(1), b.high(2)}};
-        // Most are far from all of a.
-        const std::uint64_t near = detail::meeting_boxes(rows, from, count, whole);
-        return near != 0 && any_of_bodies(from, near);
-      }
-      const PosedSet::Level& here = b.levels_[level - 1];
-      const double* at = b.boxes_->data() + here.from;
-      const auto row = [&](std::size_t k) { return at + k * here.count; };
-      const detail::BoxRows rows{{row(0), row(1), row(2)}, {row(3), row(4), row(5)}};
-      const std::size_t below = level == 1 ? b.set().size() : b.levels_[level - 2].count;
-      for (std::uint64_t left = detail::meeting_boxes(rows, from, count, whole); left != 0;
-           left &= left - 1) {
-        const std::size_t first =
-            kBlock * (from + static_cast<std::size_t>(std::countr_zero(left)));
-        if (any_of_level(level - 1, first, std::min(below - first, kBlock))) return true;
-      }
-      return false;
-    }
-
-    /// @param near  a bit for each body of b from `from` on that is looked at
-    [[nodiscard]] bool any_of_bodies(std::size_t from, std::uint64_t near) const {
-      const PosedSet &a = pairs.a, &b = pairs.b;
-      for (std::size_t i = 0; i < a.set().size(); ++i) {
-        const Box3 one = a.box(i);
-        if (!overlap(one, all)) continue;
-        const Box3 own = enlarged(one, pairs.slack);
-        for (std::uint64_t left = near; left != 0; left &= left - 1) {
-          const std::size_t j = from + static_cast<std::size_t>(std::countr_zero(left));
-          if (overlap(own, b.box(j)) && visit(i, j)) return true;
-        }
-      }
-      return false;
-    }
-  };
-};
-
-/// Boxes of two sets' bodies along the axes of both sets
-/// (docs/algorithms/bounded-predicates.md, "Boxes").
-class OrientedBoxes {
- public:
-  OrientedBoxes(const PosedSet& a, const PosedSet& b) : a_(a.set()), b_(b.set()) {
-    const geom::Transform &at_a = a.pose(), &at_b = b.pose();
-    between_ = at_a.linear.transpose() * at_b.linear;
-    const Vec3 way = at_b.translation - at_a.translation;
-    way_a_ = at_a.linear.transpose() * way;
-    way_b_ = at_b.linear.transpose() * way;
-    size_ = at_a.translation.lpNorm<1>() + at_b.translation.lpNorm<1>();
-  }
-
-  /// True only for bodies that are farther apart than `reach`.
-  [[nodiscard]] bool are_beyond(std::size_t i, std::size_t j, double reach) const {
-    const Vec3 middle_a = a_.column(0, i), half_a = a_.column(3, i), middle_b = b_.column(0, j),
-               half_b = b_.column(3, j);
-    const double size = size_ + a_.polytope(i).magnitude().sum() + b_.polytope(j).magnitude().sum();
-    const double most = kUp * reach + kError * size + 1e-200;
-    for (int k = 0; k < 3; ++k) {
-      const double x = between_(k, 0), y = between_(k, 1), z = between_(k, 2);
-      const double way =
-          way_a_[k] + x * middle_b[0] + y * middle_b[1] + z * middle_b[2] - middle_a[k];
-      const double wide =
-          std::abs(x) * half_b[0] + std::abs(y) * half_b[1] + std::abs(z) * half_b[2] + half_a[k];
-      if (std::abs(way) > kUp * wide + most) return true;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double x = between_(0, k), y = between_(1, k), z = between_(2, k);
-      const double way =
-          way_b_[k] - x * middle_a[0] - y * middle_a[1] - z * middle_a[2] + middle_b[k];
-      const double wide =
-          std::abs(x) * half_a[0] + std::abs(y) * half_a[1] + std::abs(z) * half_a[2] + half_b[k];
-      if (std::abs(way) > kUp * wide + most) return true;
-    }
-    return false;
-  }
-
- private:
-  static constexpr double kError = 1e-8, kUp = 1 + kError;
-  const BoundingSet &a_, &b_;
-  Eigen::Matrix3d between_;
-  Vec3 way_a_, way_b_;  ///< from a to b, along the axes of each
-  double size_;
-};
-
 Axis* Memory::axis(std::size_t i, std::size_t j, std::size_t n, std::size_t m) {
   constexpr std::size_t kMost = 1 << 16;
   if (n * m > kMost) return nullptr;
@@ -213,14 +88,31 @@ std::optional<BodyPair> find_collision(const PosedSet& a, const PosedSet& b, dou
   if (a.set().direction() != Direction::Outer || b.set().direction() != Direction::Outer)
     throw Error(ErrorCode::InvalidArgument, "a collision is looked for with outer sets");
   require_length(slack, "a slack");
+  const std::size_t n = a.set().size(), m = b.set().size();
+  // Bodies of the set that reaches farther are looked at one by one, where they are near the other
+  // one, and those of that one eight at a time.
+  const bool by_blocks_of_a = n > kVeryMany && m < n;
+  const bool a_faces = by_blocks_of_a || (m <= Facings::kBlock && square_size(a) > square_size(b));
+  // Of pairs that meet, that with the first lane is meant, among 64 bodies that face it; or else
+  // that with the first body that faces.
+  const bool lanes_first = !a_faces || by_blocks_of_a;
+  const Facings facings(a_faces ? a : b, a_faces ? b : a, slack);
+  const auto meet = [&](std::size_t face, std::size_t lane) {
+    const std::size_t i = a_faces ? face : lane, j = a_faces ? lane : face;
+    Axis* axis = memory == nullptr ? nullptr : memory->axis(i, j, n, m);
+    return are_within(a.body(i), b.body(j), reach_of(a, i, b, j, slack), axis, decided);
+  };
   std::optional<BodyPair> found;
-  std::optional<OrientedBoxes> boxes;
-  static_cast<void>(BoxPairs{a, b, slack}.any([&](std::size_t i, std::size_t j) {
-    const double reach = reach_of(a, i, b, j, slack);
-    if (!boxes) boxes.emplace(a, b);
-    if (boxes->are_beyond(i, j, reach)) return false;
-    Axis* axis = memory == nullptr ? nullptr : memory->axis(i, j, a.set().size(), b.set().size());
-    if (are_within(a.body(i), b.body(j), reach, axis, decided)) found = {i, j};
+  std::size_t best = a_faces ? m : n;
+  static_cast<void>(facings.any_block([&](std::size_t from, std::uint64_t near) {
+    for (std::uint64_t left = near; left != 0 && best > 0; left &= left - 1) {
+      const std::size_t face = from + static_cast<std::size_t>(std::countr_zero(left));
+      const std::size_t lane = facings.first_to_meet(face, best, meet, decided);
+      if (lane == best) continue;
+      best = lane;
+      found = a_faces ? BodyPair{face, lane} : BodyPair{lane, face};
+      if (!lanes_first) break;
+    }
     return found.has_value();
   }));
   return found;
@@ -231,7 +123,9 @@ bool certainly_collide(const PosedSet& a, const PosedSet& b) {
     if (s->set().direction() == Direction::Outer && s->set().epsilon() > 0)
       throw Error(ErrorCode::InvalidArgument, "a certain collision is looked for with inner sets");
   const double errors = sum_up({a.error(), b.error()});
-  return BoxPairs{a, b, 0}.any([&](std::size_t i, std::size_t j) {
+  const bool a_faces = a.set().size() > kVeryMany && b.set().size() < a.set().size();
+  return Facings(a_faces ? a : b, a_faces ? b : a, 0).any_pair([&](std::size_t f, std::size_t l) {
+    const std::size_t i = a_faces ? f : l, j = a_faces ? l : f;
     if (errors == 0) return are_within(a.body(i), b.body(j), margins(a, i, b, j));
     const double radii = margins(a, i, b, j);
     if (radii > 2 * errors) return are_within(a.body(i), b.body(j), (radii - errors) / kSumUp);
@@ -245,12 +139,13 @@ std::optional<Clearance> clearance(const PosedSet& a, const PosedSet& b) {
     double least;
     BodyPair pair;
   };
+  const std::vector<Box3> boxes_a = a.boxes(), boxes_b = b.boxes();
   const auto least_of = [&](std::size_t i, std::size_t j) {
-    const Vec3 apart =
-        (a.box(i).min - b.box(j).max).cwiseMax(b.box(j).min - a.box(i).max).cwiseMax(Vec3::Zero());
+    const Box3 &x = boxes_a[i], &y = boxes_b[j];
+    const Vec3 apart = (x.min - y.max).cwiseMax(y.min - x.max).cwiseMax(Vec3::Zero());
     // The boxes hold the margins; rounding of the difference is relative to what it is of.
-    const double scale = a.box(i).min.cwiseAbs().sum() + a.box(i).max.cwiseAbs().sum() +
-                         b.box(j).min.cwiseAbs().sum() + b.box(j).max.cwiseAbs().sum();
+    const double scale = x.min.cwiseAbs().sum() + x.max.cwiseAbs().sum() + y.min.cwiseAbs().sum() +
+                         y.max.cwiseAbs().sum();
     return apart.norm() / kSumUp - 0x1p-48 * scale;
   };
   const auto upper_of = [&](const Gap& gap, std::size_t i, std::size_t j) {

@@ -247,6 +247,7 @@ Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner, std::size
     throw Error(ErrorCode::InvalidArgument,
                 "an inclusion is looked for with an outer set in an inner one");
   bool undecided = false;
+  const std::vector<geom::Box3> boxes = inner.boxes();
   for (std::size_t i = 0; i < outer.set().size(); ++i) {
     const double errors = outer.error() + inner.error();
     const double radius = (outer.set().body(i).radius + errors) * (errors > 0 ? 1 + 0x1p-50 : 1);
@@ -254,8 +255,8 @@ Inclusion find_inclusion(const PosedSet& outer, const PosedSet& inner, std::size
     const geom::Box3 box = Posed(Polytope(hull.vertices), outer.pose()).box();
     std::vector<std::vector<Plane>> bodies;
     for (std::size_t j = 0; j < inner.set().size(); ++j) {
-      if (((box.min - inner.box(j).max).array() > 0).any() ||
-          ((inner.box(j).min - box.max).array() > 0).any())
+      if (((box.min - boxes[j].max).array() > 0).any() ||
+          ((boxes[j].min - box.max).array() > 0).any())
         continue;
       const geom::ConvexBody& body = inner.set().body(j);
       const geom::Mesh polytope = body.radius > 0 ? within(body) : body.core;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <kaboum/base/processor.h>
-#include <kaboum/geom/mesh.h>
 
 #include <array>
 #include <cstddef>
@@ -9,15 +8,22 @@
 
 namespace kaboum::collide::detail {
 
-/// Ends of many boxes, axis by axis.
+constexpr std::size_t kBoxesAtOnce = 8;
+
+/// Ends of many boxes, axis by axis. kBoxesAtOnce - 1 numbers behind the last one may be read.
 struct BoxRows {
-  std::array<const double*, 3> low, high;
+  std::array<const float*, 3> low, high;
+};
+
+/// The fourth numbers are of no use.
+struct FloatBox {
+  float low[4] = {}, high[4] = {};
 };
 
 /// Bit k is set for boxes from + k that meet a box, which touching ones do.
 /// @param count  of boxes looked at, 64 at most
-/// @param wide   whether four are looked at at once, else one. @pre has_avx2() where it is
+/// @param wide   whether eight are looked at at once, else one. @pre has_avx2() where it is
 std::uint64_t meeting_boxes(const BoxRows& rows, std::size_t from, std::size_t count,
-                            const geom::Box3& box, bool wide = has_avx2());
+                            const FloatBox& box, bool wide = has_avx2());
 
 }  // namespace kaboum::collide::detail

@@ -150,6 +150,7 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
   std::optional<SetPenetration> out;
   std::vector<Vec3> directions;
   const double errors = (a.error() + b.error()) * kSumUp;
+  const std::vector<geom::Box3> boxes_a = a.boxes(), boxes_b = b.boxes();
   const auto meet = [](const geom::Box3& x, const geom::Box3& y) {
     return (x.min.array() <= y.max.array()).all() && (y.min.array() <= x.max.array()).all();
   };
@@ -161,10 +162,10 @@ std::optional<SetPenetration> penetration(const PosedSet& a, const PosedSet& b) 
   const bool very_many = a.set().size() * b.set().size() > kVeryMany;
   for (std::size_t i = 0; i < a.set().size(); ++i) {
     for (std::size_t j = 0; j < b.set().size(); ++j) {
-      if (!meet(a.box(i), b.box(j))) continue;
+      if (!meet(boxes_a[i], boxes_b[j])) continue;
       // No pair is deeper than its boxes: of very many pairs, only those are looked at that may be
       // deeper than the deepest so far.
-      if (very_many && out && depth_of(a.box(i), b.box(j)) <= out->depth.lower) continue;
+      if (very_many && out && depth_of(boxes_a[i], boxes_b[j]) <= out->depth.lower) continue;
       const Posed body_a = a.body(i), body_b = b.body(j);
       const double above = (a.radius_above(i) + b.radius_above(j)) * kSumUp,
                    below = (a.radius_below(i) + b.radius_below(j)) / kSumUp;

@@ -10,6 +10,11 @@
 
 namespace kaboum::collide {
 
+namespace detail {
+class Facings;
+struct Shapes;
+}  // namespace detail
+
 enum class Direction {
   Outer,  ///< contains its solid
   Inner,  ///< lies in its solid
@@ -49,20 +54,20 @@ class BoundingSet {
   [[nodiscard]] double epsilon() const { return epsilon_; }
 
  private:
-  friend class PosedSet;
-  friend class OrientedBoxes;
+  friend class detail::Facings;
 
   std::vector<geom::ConvexBody> bodies_;
   std::vector<Polytope> polytopes_;
-  /// Rows of the cores' boxes, axis by axis: middle, half the size, and the largest |coordinate|;
-  /// then the radii. Each for as many bodies as stride() says, the last one repeated.
-  std::vector<double> rows_;
-  [[nodiscard]] std::size_t stride() const { return (size() + 1) / 2 * 2; }
-  [[nodiscard]] const double* row(std::size_t i) const { return rows_.data() + i * stride(); }
-  /// Three rows from there on, of one body.
-  [[nodiscard]] geom::Vec3 column(std::size_t from, std::size_t body) const {
-    return {row(from)[body], row(from + 1)[body], row(from + 2)[body]};
-  }
+  std::shared_ptr<const detail::Shapes> shapes_;
+  /// Boxes that each hold kBlock boxes of the level below; level 0 are the bodies', radii included.
+  struct Level {
+    std::size_t from = 0, count = 0;  ///< place in rows_, rows of `count`
+    [[nodiscard]] std::size_t at(std::size_t row) const { return from + row * count; }
+  };
+  static constexpr std::size_t kBlock = 64;
+  void add_levels();
+  std::vector<float> rows_;    ///< lower ends of boxes, axis by axis, then upper ends; by levels
+  std::vector<Level> levels_;  ///< up to one of at most kBlock boxes
   Ball ball_;
   geom::Box3 box_;
   Direction direction_ = Direction::Outer;
@@ -96,33 +101,18 @@ class PosedSet {
   [[nodiscard]] Posed body(std::size_t i) const {
     return {set_->polytope(i), pose_, Posed::Checked{}};
   }
-  /// Boxes along the axes, radii and error included.
-  [[nodiscard]] const geom::Box3& box() const { return box_; }
-  [[nodiscard]] geom::Box3 box(std::size_t i) const {
-    return {{low(0)[i], low(1)[i], low(2)[i]}, {high(0)[i], high(1)[i], high(2)[i]}};
-  }
+  /// Boxes along the axes that hold all bodies, and one; radii and error included.
+  [[nodiscard]] geom::Box3 box() const;
+  [[nodiscard]] geom::Box3 box(std::size_t i) const;
+  [[nodiscard]] std::vector<geom::Box3> boxes() const;  ///< of each body
 
  private:
+  friend class detail::Facings;
+
   const BoundingSet* set_;
   geom::Transform pose_;
   double error_ = 0;
   double defect_ = 0;  ///< of `linear` from a rotation, more than twice what it stretches by
-  friend struct BoxPairs;
-  [[nodiscard]] const double* low(std::size_t axis) const {
-    return boxes_->data() + axis * set_->stride();
-  }
-  [[nodiscard]] const double* high(std::size_t axis) const { return low(3 + axis); }
-  /// Boxes that each hold kBlock boxes of the level below, the bodies' being level 0.
-  struct Level {
-    std::size_t from = 0, count = 0;  ///< place in boxes_, rows of `count`, as those of the bodies
-  };
-  static constexpr std::size_t kBlock = 64;
-  void place_blocks();
-  /// Lower ends of the bodies' boxes, axis by axis, then upper ends, each as BoundingSet::row; then
-  /// those of the levels above. Copies of a set share them until one of them is moved.
-  std::shared_ptr<std::vector<double>> boxes_;
-  std::vector<Level> levels_;  ///< from 1 on, up to one of at most kBlock boxes
-  geom::Box3 box_;
 };
 
 /// Axes that separated the bodies of two sets, from one query to the next. Belongs to who asks: one
