@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <utility>
 
 namespace kaboum::certify {
@@ -159,8 +160,9 @@ std::vector<LinkVerdict> verdicts(const LinkEnclosures& robot) {
 namespace {
 
 /// Adds what a link's shapes have of a region.
+/// @param looked_at  meshes so far
 void look_at(const robot::RobotFile& robot, std::uint32_t link, const robot::LinkRegion& region,
-             const CertifiedBodies& bodies, RegionVerdict& out) {
+             const CertifiedBodies& bodies, std::size_t& looked_at, RegionVerdict& out) {
   const BodiesCertificate& made = bodies.certificate();
   for (const robot::LinkBody& body : bodies.artefact())
     out.reached =
@@ -178,6 +180,12 @@ void look_at(const robot::RobotFile& robot, std::uint32_t link, const robot::Lin
     };
     const SetCertificate::Region* found = of_mesh();
     out.held = out.held && found != nullptr;
+    if (found != nullptr) {
+      const double diagonal = mesh.made.found.set.certificate().diagonal;
+      const bool is_idle = mesh.epsilon && mesh.epsilon->of(diagonal) <= found->epsilon;
+      out.is_idle = is_idle && (out.is_idle || looked_at == 0);
+      ++looked_at;
+    }
     if (found == nullptr || !region.epsilon.percent) continue;
     const robot::Geometry& g = made.choice.shapes_of(robot.robot.links[link])[shape.index];
     out.epsilon = std::max(out.epsilon, found->epsilon * g.size.cwiseAbs().maxCoeff());
@@ -190,6 +198,7 @@ std::vector<RegionVerdict> region_verdicts(const robot::RobotFile& robot,
                                            const robot::LinkRegions& regions,
                                            const CertifiedBodies& bodies) {
   std::vector<RegionVerdict> out;
+  std::map<std::string, std::size_t> looked_at;
   for (std::uint32_t link = 0; link < robot.robot.links.size(); ++link) {
     const std::string& name = robot.robot.links[link].name;
     const auto own = regions.find(name);
@@ -198,7 +207,7 @@ std::vector<RegionVerdict> region_verdicts(const robot::RobotFile& robot,
       auto at = std::ranges::find(out, region.name, &RegionVerdict::name);
       if (at == out.end()) at = out.insert(at, {region.name, {}});
       at->links.push_back(name);
-      look_at(robot, link, region, bodies, *at);
+      look_at(robot, link, region, bodies, looked_at[region.name], *at);
     }
   }
   return out;
@@ -210,7 +219,8 @@ std::string in_words(const RegionVerdict& region) {
            ": NOT verified: a mesh near it is not held as asked for";
   if (!region.reached) return "note: no body reaches the region " + region.name;
   return "distance in the region " + region.name + ": verified: nowhere more than " +
-         number_up(region.epsilon);
+         number_up(region.epsilon) +
+         (region.is_idle ? "; no less than outside of it, so that it changes nothing" : "");
 }
 
 Outcome outcome_of(const std::vector<LinkVerdict>& links) {

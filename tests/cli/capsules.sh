@@ -99,6 +99,8 @@ P
 sed '/<link name="hand"/,/<\/link>/{/collision/,/\/collision/d}' boxes.urdf >gone.urdf
 shows 1 "link 'hand': refuted" "$V" robot arm.urdf --bodies gone.urdf
 expect 3 'this is a mesh' "$V" robot arm.urdf --bodies arm.urdf
+# Without --bodies each mesh would need a closed mesh that holds it: the way out is named.
+expect 7 'bound-verify robot arm.urdf --bodies boxes.urdf' "$V" robot arm.urdf boxes.urdf
 sed 's/"base"/"bsae"/g' boxes.urdf >stranger.urdf
 expect 3 "no link 'bsae'" "$V" robot arm.urdf --bodies stranger.urdf
 expect 2 'state one' "$V" robot arm.urdf arm.urdf --bodies boxes.urdf

@@ -170,6 +170,10 @@ shows 0 '^verified' "$V" robot arm.urdf by_map/arm.urdf --prepare --epsilon 6mm 
 shows 1 'finger.: refuted' "$V" robot arm.urdf coarse/arm.urdf --prepare --epsilon 6mm --epsilon-map link.json
 expect 2 'epsilon-map .*epsilons' "$B" arm.urdf -o x --epsilon 6mm --epsilon-map link.json --epsilons link.yaml
 
+# What is no finer than elsewhere changes nothing.
+sed 's/"epsilon": [^,}]*/"epsilon": "8mm"/' ball.json >idle.json
+expect 0 'notch.: verified: .*it changes nothing' "$B" arm.urdf -o idle --epsilon 6mm --effort fast --epsilon-map idle.json
+
 # What no body reaches is noted.
 sed 's/0.01, 0.008/3, 3/' ball.json >far.json
 expect 0 'no body reaches the region .notch.' "$B" arm.urdf -o far --epsilon 6mm --effort fast --epsilon-map far.json

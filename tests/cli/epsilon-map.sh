@@ -69,6 +69,18 @@ for text in '"epsilon": 1, "box": [[0,0,0],[1,1,1]], "box": [[9,9,9],[10,10,10]]
   expect 3 'bad.json: region 2: .*\(given twice\|out of range\)' "$B" notched.off -o out.glb --epsilon 0.6 --epsilon-map bad.json
   expect 3 'bad.json: region 2: .*\(given twice\|out of range\)' "$V" cover notched.off coarse.glb --epsilon 0.6 --epsilon-map bad.json
 done
+# A region with an epsilon above that of all else changes nothing, and that is said.
+sed 's/0.05/0.7/' left.json >idle.json
+expect 0 'left.: verified: nowhere more than 0.7.*; no less than outside of it, so that it changes nothing' \
+  "$B" notched.off -o idle.glb --epsilon 0.6 --effort fast --epsilon-map idle.json --no-cache
+python3 - coarse.glb idle.glb <<'P' || fail "an idle region changes bodies"
+import struct, sys
+def bodies(name):
+    data = open(name, "rb").read()
+    return data[20 + struct.unpack_from("<I", data, 12)[0]:]
+assert bodies(sys.argv[1]) == bodies(sys.argv[2])
+P
+
 # Regions that no body reaches say nothing: that is noted.
 echo '{"regions": [{"name": "far", "epsilon": 0.05, "box": [[100, 100, 100], [101, 101, 101]]}]}' >far.json
 expect 0 'no body reaches the region .far.' "$B" notched.off -o far.glb --epsilon 0.6 --effort fast --epsilon-map far.json --no-cache --report far_made.json

@@ -173,6 +173,11 @@ for program in moveit mujoco gazebo bullet drake; do
 done
 grep -q 'filename="package://moveit/bodies/' moveit/r.urdf || fail "--for moveit: $(grep filename moveit/r.urdf)"
 [ -f mujoco/r.xml ] && [ ! -f mujoco/r.sdf ] || fail "--for mujoco"
+# What its least thickness does not go with is said by the option's name.
+for option in '--max-facets-per-body 12' '--max-total-vertices 99'; do
+  expect 2 "for mujoco means --min-thickness 1e-04, .* ${option% *}" \
+    "$D" robot/r.urdf -o x --visual --effort fast --for mujoco $option
+done
 [ -f gazebo/r.sdf ] && [ ! -f gazebo/r.xml ] || fail "--for gazebo"
 grep -q '"bodies/.*stl"' bullet/r.urdf || fail "--for bullet"
 grep -q 'bodies/.*obj' drake/r.urdf && grep -q '<drake:declare_convex/>' drake/r.urdf || fail "--for drake"

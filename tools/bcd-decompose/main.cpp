@@ -62,10 +62,16 @@ int decompose_mesh(const DecomposeOptions& o) {
   const certify::SetCertificate& certificate = made.found.set.certificate();
   log(o.common.quiet,
       page::summary_of(certificate) + (made.found.cached ? " (from the cache)" : ""));
-  for (const certify::SetCertificate::Region& one : certificate.regions)
-    log(o.common.quiet, one.reached ? "distance in the region " + one.name +
-                                          ": verified: nowhere more than " + number_up(one.epsilon)
-                                    : "note: no body reaches the region " + one.name);
+  const std::optional<Length>& epsilon = o.set.request.epsilon;
+  for (const certify::SetCertificate::Region& one : certificate.regions) {
+    const bool is_idle = epsilon && epsilon->of(certificate.diagonal) <= one.epsilon;
+    log(o.common.quiet,
+        one.reached
+            ? "distance in the region " + one.name + ": verified: nowhere more than " +
+                  number_up(one.epsilon) +
+                  (is_idle ? "; no less than outside of it, so that it changes nothing" : "")
+            : "note: no body reaches the region " + one.name);
+  }
   const std::string why = page::shortfall_of(certificate);
   if (!why.empty()) log(o.common.quiet, why);
   if (is_page(o.preview))

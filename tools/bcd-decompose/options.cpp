@@ -214,7 +214,16 @@ void require_meaning(const CLI::App& app, const DecomposeOptions& o) {
 }
 
 void apply_preset(const CLI::App& app, DecomposeOptions& o) {
-  if (is_robot(o.input)) apply_preset(app, o.output, o.robot, &o.set.request.thickness);
+  if (!is_robot(o.input)) return;
+  const bool stated = o.set.request.thickness.has_value();
+  apply_preset(app, o.output, o.robot, &o.set.request.thickness);
+  if (stated || !o.set.request.thickness) return;
+  for (const char* option : {"--max-facets-per-body", "--max-total-vertices"})
+    if (app.count(option) != 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--for " + o.robot.preset + " means --min-thickness " +
+                      o.set.request.thickness->text() + ", which does not go with " + option +
+                      ": leave that out, or state what else --for means (--robot-format mjcf)");
 }
 
 }  // namespace kaboum::tools

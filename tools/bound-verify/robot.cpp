@@ -214,6 +214,25 @@ class RobotVerifier {
                              (visual() ? "collision" : "visual") +
                              " mesh of the original: judge them with" +
                              (visual() ? "out --visual" : " --visual"));
+    if (has_sets_of_shapes())
+      notes_.add(o_.result,
+                 "links with a mesh have spheres, boxes, cylinders or capsules here: whether these "
+                 "hold the link together is decided by bound-verify robot " +
+                     o_.original + " --bodies " + o_.result);
+  }
+
+  /// Whether some link has shapes that are no meshes in place of a mesh.
+  [[nodiscard]] bool has_sets_of_shapes() const {
+    const auto is_mesh = [](const Geometry& g) { return g.shape == Geometry::Shape::Mesh; };
+    return std::ranges::any_of(original_.robot.links, [&](const robot::Link& link) {
+      const auto other = result_.robot.find_link(link.name);
+      if (!other || std::ranges::none_of(shapes_of(link), is_mesh)) return false;
+      const std::vector<Geometry>& shapes = shapes_of(result_.robot.links[*other]);
+      return !shapes.empty() && std::ranges::none_of(shapes, is_mesh);
+    });
+  }
+  [[nodiscard]] const std::vector<Geometry>& shapes_of(const robot::Link& link) const {
+    return visual() ? link.visual : link.collision;
   }
 
   void note_on_unprepared(const verify::ShapeVerdict& shape) {

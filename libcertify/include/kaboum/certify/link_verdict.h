@@ -46,6 +46,8 @@ struct RegionVerdict {
   bool held = true;      ///< no point of a mesh's bodies in it is farther than its epsilon
   bool reached = false;  ///< else no body has a point in it
   double epsilon = 0;    ///< the largest of its meshes [length, as the robot]
+  /// True if each of its meshes has an epsilon that is no larger anyway.
+  bool is_idle = false;
 };
 
 /// Of all regions, those of the first links first; those of one name are one.
