@@ -9,8 +9,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "batch_impl.h"
 #include "lanes.h"
-#include "model.h"
 
 namespace kaboum::filter {
 
@@ -36,14 +36,6 @@ BatchCounts& BatchCounts::operator+=(const BatchCounts& other) {
   return *this;
 }
 
-struct BatchChecker::Impl {
-  const world::Checker* checker;
-  world::WorldState state;
-  std::size_t robot;
-  Instructions instructions;
-  detail::Model model;
-};
-
 BatchChecker::BatchChecker(const world::Checker& checker, world::WorldState state,
                            std::size_t robot, const Options& options) {
   if (robot >= checker.world().robots.size())
@@ -62,6 +54,7 @@ BatchChecker::BatchChecker(BatchChecker&&) noexcept = default;
 BatchChecker& BatchChecker::operator=(BatchChecker&&) noexcept = default;
 
 std::size_t BatchChecker::variables() const { return impl_->model.variables; }
+bool BatchChecker::decides() const { return !impl_->model.unusable && impl_->model.variables > 0; }
 std::size_t BatchChecker::balls() const { return impl_->model.outer.size(); }
 
 void BatchChecker::filter(std::span<const double> rows, std::span<Answer> answers) const {
@@ -161,10 +154,9 @@ BatchCounts BatchChecker::decide(std::span<const double> rows, std::span<std::ui
 
 namespace {
 
-/// A part of a motion, from a share of its way to another one.
-struct Stretch {
+/// A part of one of several motions.
+struct Stretch : detail::Share {
   std::size_t motion = 0;
-  double begin = 0, end = 1;
 };
 
 /// Motions that are looked at at once.
@@ -182,7 +174,7 @@ class MotionBatch {
         slack_(slack),
         result_(count, Answer::Free),
         memory_(model) {
-    for (std::size_t i = 0; i < count; ++i) stretches_.push_back({i});
+    for (std::size_t i = 0; i < count; ++i) stretches_.push_back({{}, i});
   }
 
   /// Halves stretches until they are free, in contact, or too short for that. @return of each
@@ -201,8 +193,8 @@ class MotionBatch {
           continue;
         }
         const double middle = 0.5 * (s.begin + s.end);
-        next.push_back({s.motion, s.begin, middle});
-        next.push_back({s.motion, middle, s.end});
+        next.push_back({{s.begin, middle}, s.motion});
+        next.push_back({{middle, s.end}, s.motion});
       }
       stretches_ = std::move(next);
       leave_long_motions();
@@ -239,16 +231,10 @@ class MotionBatch {
     const std::size_t n = model_.variables;
     rows_.clear();
     widths_.clear();
-    for (const Stretch& s : stretches_) {
-      const double middle = 0.5 * (s.begin + s.end), half = 0.5 * (s.end - s.begin);
-      for (std::size_t k = 0; k < n; ++k) {
-        const double a = from_[s.motion * n + k], b = to_[s.motion * n + k];
-        rows_.push_back(std::clamp(a + middle * (b - a), std::min(a, b), std::max(a, b)));
-        // More than is rounded: of the row, and of the place between.
-        widths_.push_back(half * std::abs(b - a) * (1 + 0x1p-40) +
-                          0x1p-48 * (std::abs(a) + std::abs(b)));
-      }
-    }
+    for (const Stretch& s : stretches_)
+      for (std::size_t k = 0; k < n; ++k)
+        detail::put_stretch(s, from_[s.motion * n + k], to_[s.motion * n + k], rows_.emplace_back(),
+                            widths_.emplace_back());
     answers_.resize(stretches_.size());
     detail::filter_rows(model_, set_, rows_.data(), widths_.data(), answers_.size(), memory_,
                         answers_.data(), slack_);
@@ -265,20 +251,6 @@ class MotionBatch {
   detail::LaneMemory memory_;
 };
 
-/// A resolution as motions are looked at with it: rounded up, as sums of floats need it, with what
-/// check_motion allows for the rounding of instants.
-/// @param size  of the robot
-float slack_of(double resolution, double size) {
-  return std::nextafter(static_cast<float>((resolution + 0x1p-29 * size) * (1 + 0x1p-20)),
-                        HUGE_VALF);
-}
-
-bool is_within(const detail::Model& model, std::span<const double> row) {
-  for (std::size_t k = 0; k < row.size(); ++k)
-    if (!(row[k] >= model.low[k] && row[k] <= model.high[k])) return false;
-  return true;
-}
-
 }  // namespace
 
 BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span<const double> to,
@@ -286,7 +258,6 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
                                          const world::MotionOptions& options,
                                          const std::function<void()>& progress) const {
   constexpr std::size_t kPart = 64;
-  constexpr double kLargestResolution = 1e6;  // lengths that errors of floats are bounded for
   struct Worker {
     const Impl& impl;
     std::span<const double> from, to;
@@ -299,14 +270,13 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
     void filter(std::size_t first, std::span<Answer> answers) const {
       const detail::Model& model = impl.model;
       const std::size_t n = model.variables;
-      bool usable = !model.unusable && !model.always_contact && n > 0 &&
-                    options.resolution < kLargestResolution;
+      bool usable = detail::decides_motions(model, options.resolution);
       for (std::size_t i = first; usable && i < first + answers.size(); ++i)
-        usable = is_within(model, row(from, i)) && is_within(model, row(to, i));
+        usable = detail::is_within(model, row(from, i)) && detail::is_within(model, row(to, i));
       if (usable)
         std::ranges::copy(
             MotionBatch(model, impl.instructions, from.data() + first * n, to.data() + first * n,
-                        answers.size(), slack_of(options.resolution, model.size))
+                        answers.size(), detail::slack_of(options.resolution, model.size))
                 .run(),
             answers.begin());
       else

@@ -18,7 +18,7 @@ using Answer = BatchChecker::Answer;
 
 /// A model by pointers.
 struct View {
-  std::size_t variables, steps, shapes, outer_count, shape_pairs, obstacle_pairs;
+  std::size_t variables, steps, shapes, outer_count, inner_count, shape_pairs, obstacle_pairs;
   const double *low, *high;
   const float* base;
   const Step* step;
@@ -36,6 +36,7 @@ struct View {
   float* memory;         // of one pack
   unsigned char* ready;  // of each shape: which of its balls are placed
   float slack;           // that free ones are apart by, besides margins
+  Look look;
 };
 
 namespace baseline {
@@ -82,7 +83,9 @@ constexpr std::size_t kMostLanes = 16;
 
 LaneMemory::LaneMemory(const Model& model)
     : floats_((14 * (model.steps.size() + 1) +
-               3 * (model.shapes.size() + model.outer.size() + model.inner.size()) + 1) *
+               3 * (model.shapes.size() + model.outer.size() + model.inner.size() +
+                    model.corners.size()) +
+               1) *
               kMostLanes),
       ready_(model.shapes.size()) {}
 
@@ -94,11 +97,12 @@ float* LaneMemory::floats() {
 
 namespace {
 
-View view_of(const Model& model, LaneMemory& memory, float slack = 0) {
+View view_of(const Model& model, LaneMemory& memory, float slack = 0, Look look = Look::All) {
   return {model.variables,
           model.steps.size(),
           model.shapes.size(),
           model.outer.size(),
+          model.inner.size(),
           model.shape_pairs.size(),
           model.obstacle_pairs.size(),
           model.low.data(),
@@ -119,15 +123,16 @@ View view_of(const Model& model, LaneMemory& memory, float slack = 0) {
           model.obstacle_pairs.data(),
           memory.floats(),
           memory.ready(),
-          slack};
+          slack,
+          look};
 }
 
 }  // namespace
 
 void filter_rows(const Model& model, [[maybe_unused]] Instructions set, const double* rows,
                  const double* widths, std::size_t count, LaneMemory& memory,
-                 BatchChecker::Answer* answers, float slack) {
-  const View view = view_of(model, memory, slack);
+                 BatchChecker::Answer* answers, float slack, Look look) {
+  const View view = view_of(model, memory, slack, look);
 #ifdef KABOUM_AVX2
   if (set == Instructions::Avx512) return avx512::filter_rows(view, rows, widths, count, answers);
   if (set == Instructions::Avx2) return avx2::filter_rows(view, rows, widths, count, answers);

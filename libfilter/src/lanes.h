@@ -22,13 +22,22 @@ class LaneMemory {
   std::vector<unsigned char> ready_;
 };
 
+/// What of rows is looked for.
+enum class Look : std::uint8_t {
+  All,       ///< every row's answer
+  One,       ///< one in contact is enough: the others may be open then
+  Contacts,  ///< one in contact with an obstacle: all else is open
+  Apart,     ///< rows that are free: others are open
+};
+
 /// Decides rows of values, several at a time. @pre the processor has the instructions.
 /// @param widths  null; or for each row how far every variable goes from its value, to both sides:
 ///   free is then what is so at all these values, in contact what is so at the row's own
 /// @param slack  free is what is apart by more than that besides the margin; rounded up [length]
+/// @param look  what is looked for
 void filter_rows(const Model& model, Instructions set, const double* rows, const double* widths,
                  std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers,
-                 float slack = 0);
+                 float slack = 0, Look look = Look::All);
 
 /// Centres of the outer balls for each row, x, y, z; for tests.
 void place_outer_balls(const Model& model, Instructions set, const double* rows, std::size_t count,

@@ -244,6 +244,7 @@ class Pack {
     whole_ = reinterpret_cast<Point*>(motions_ + m.steps + 1);
     outer_ = whole_ + m.shapes;
     inner_ = outer_ + m.outer_count;
+    corners_ = inner_ + m.inner_count;
     all_ = count == 32 ? ~0U : (1U << count) - 1;
     open_ = place_frames(m, rows, count, frames_) & all_;
     if constexpr (Moving) bound_motions(m, widths, count, motions_);
@@ -255,9 +256,10 @@ class Pack {
   }
 
   void decide() {
-    for (std::size_t i = 0; i < m_.shape_pairs && contact_ != all_; ++i) look_at(m_.shape_pair[i]);
-    for (std::size_t i = 0; i < m_.obstacle_pairs && contact_ != all_; ++i)
-      look_at(m_.obstacle_pair[i]);
+    if (m_.look != Look::Contacts)
+      for (std::size_t i = 0; i < m_.shape_pairs && !ends(); ++i) look_at(m_.shape_pair[i]);
+    for (std::size_t i = 0; i < m_.obstacle_pairs && !ends(); ++i) look_at(m_.obstacle_pair[i]);
+    if (m_.look == Look::Contacts || (stops() && contact_ != 0)) open_ |= all_;
   }
 
   /// Lanes that are in contact for certain, and others of which nothing is known.
@@ -265,6 +267,13 @@ class Pack {
   [[nodiscard]] unsigned open() const { return open_ & ~contact_; }
 
  private:
+  /// True if a contact ends the look.
+  [[nodiscard]] bool stops() const { return m_.look == Look::One || m_.look == Look::Contacts; }
+  [[nodiscard]] bool ends() const {
+    if (m_.look == Look::Apart && open_ == all_) return true;
+    return contact_ == all_ || (stops() && contact_ != 0);
+  }
+
   void look_at(const ObstaclePair& pair) {
     const ShapeModel& shape = m_.shape[pair.shape];
     const Point& whole = whole_[pair.shape];
@@ -284,17 +293,57 @@ class Pack {
   void look_at(const ObstaclePair& pair, const ShapeModel& shape, const Obstacle& o,
                unsigned near) {
     if (near == 0) return;
-    place_outer(pair.shape);
     const auto motion = whole_motion(shape.frame, 0);
-    unsigned doubt = 0;
-    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
-      doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], pair.margin + m_.slack), o);
-    if (doubt == 0) return;
+    unsigned doubt = near;
+    if (m_.look != Look::Contacts) {
+      place_outer(pair.shape);
+      const float more = pair.margin + m_.slack;
+      doubt = 0;
+      for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
+        doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], more), o);
+      if (doubt != 0) doubt &= not_beyond_face(pair, shape, motion, o, doubt);
+      if (doubt == 0) return;
+      if (m_.look == Look::Apart) return note(doubt, 0);
+    }
     place_inner(pair.shape);
     unsigned meet = 0;
     for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k)
       meet |= doubt & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
     note(doubt, meet);
+  }
+
+  /// Lanes in which no face of an obstacle's box, of those that the shape's ball is in front of,
+  /// separates the shape from it.
+  template <typename Any>
+  unsigned not_beyond_face(const ObstaclePair& pair, const ShapeModel& shape, const Any& motion,
+                           const Obstacle& o, unsigned doubt) {
+    place_corners(pair.shape);
+    FrameBall ball;
+    ball.length = shape.reach;
+    ball.radius = shape.corner_radius;
+    const auto reach = radius_of(motion, ball, pair.margin + m_.slack) + o.radius;
+    unsigned left = ~0U;
+    for (int k = 0; k < 3; ++k) {
+      const float* axis = o.axes + 3 * k;
+      const Point& middle = whole_[pair.shape];
+      const Ints outside =
+          magnitude(axis[0] * (middle.x - o.center[0]) + axis[1] * (middle.y - o.center[1]) +
+                    axis[2] * (middle.z - o.center[2])) > o.half[k];
+      const unsigned lanes = bits_of(outside) & doubt & left;
+      if (lanes == 0) continue;
+      Floats least = Floats{} + __builtin_huge_valf(), most = -least;
+      for (std::uint32_t i = shape.corners.begin; i < shape.corners.end; ++i) {
+        const Point& p = corners_[i];
+        const Floats along = axis[0] * (p.x - o.center[0]) + axis[1] * (p.y - o.center[1]) +
+                             axis[2] * (p.z - o.center[2]);
+        least = along < least ? along : least;
+        most = along > most ? along : most;
+      }
+      const auto face = (o.half[k] + reach) * kAbove;
+      const Ints apart = (least > face) | (-most > face);
+      left &= bits_of(~apart) | ~lanes;
+    }
+    return left;
   }
 
   void look_at(const ObstaclePair& pair, const ShapeModel& shape, const CloudModel& cloud,
@@ -314,6 +363,7 @@ class Pack {
     for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
       doubt |= may_touch(outer_[k], m_.outer[k], near & ~doubt);
     if (doubt == 0) return;
+    if (m_.look == Look::Apart) return note(doubt, 0);
     place_inner(pair.shape);
     unsigned meet = 0;
     for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k) {
@@ -332,11 +382,10 @@ class Pack {
     const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
     const auto motion_a = whole_motion(a.frame, pair.common),
                motion_b = whole_motion(b.frame, pair.common);
-    unsigned near =
-        all_ & ~contact_ &
-        may_meet(whole_a, whole_b,
-                 radius_of(motion_a, a.whole, pair.margin + m_.slack) +
-                     radius_of(motion_b, b.whole, 0));
+    unsigned near = all_ & ~contact_ &
+                    may_meet(whole_a, whole_b,
+                             radius_of(motion_a, a.whole, pair.margin + m_.slack) +
+                                 radius_of(motion_b, b.whole, 0));
     for (std::uint32_t i = pair.witnesses.begin; i < pair.witnesses.end && near != 0; ++i) {
       const Witness& w = m_.witness[i];
       near &= w.of_first ? not_separated(w, a, motion_a, b, motion_b)
@@ -357,6 +406,7 @@ class Pack {
       doubt |= found;
     }
     if (doubt == 0) return;
+    if (m_.look == Look::Apart) return note(doubt, 0);
     place_inner(pair.a);
     place_inner(pair.b);
     unsigned meet = 0;
@@ -409,6 +459,13 @@ class Pack {
     for (std::uint32_t k = shape.outer.begin; k < shape.outer.end; ++k)
       outer_[k] = place(frames_[shape.frame], m_.outer[k].center);
   }
+  void place_corners(std::uint32_t s) {
+    if ((m_.ready[s] & 4) != 0) return;
+    m_.ready[s] |= 4;
+    const ShapeModel& shape = m_.shape[s];
+    for (std::uint32_t k = shape.corners.begin; k < shape.corners.end; ++k)
+      corners_[k] = place(frames_[shape.frame], m_.corner[k].at);
+  }
   void place_inner(std::uint32_t s) {
     if ((m_.ready[s] & 2) != 0) return;
     m_.ready[s] |= 2;
@@ -448,7 +505,7 @@ class Pack {
   const View& m_;
   Frame* frames_;
   Motion* motions_;
-  Point *whole_, *outer_, *inner_;
+  Point *whole_, *outer_, *inner_, *corners_;
   unsigned all_ = 0, contact_ = 0, open_ = 0;
 };
 
@@ -467,6 +524,10 @@ void filter_all(const View& m, const double* rows, const double* widths, std::si
       answers[first + lane] = ((contact >> lane) & 1) != 0 ? Answer::Contact
                               : ((open >> lane) & 1) != 0  ? Answer::Open
                                                            : Answer::Free;
+    const bool stops = m.look == Look::One || m.look == Look::Contacts;
+    if (!stops || contact == 0) continue;
+    for (std::size_t i = first + here; i < count; ++i) answers[i] = Answer::Open;
+    return;
   }
 }
 void filter_rows(const View& m, const double* rows, const double* widths, std::size_t count,

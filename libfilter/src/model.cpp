@@ -392,11 +392,18 @@ void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   model.groups.push_back(out);
 }
 
+double largest_radius(const collide::BoundingSet& set) {
+  double out = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) out = std::max(out, set.body(i).radius);
+  return out;
+}
+
 void add_corners(const world::Checker& checker, const world::RobotModel& robot, std::size_t index,
-                 const Chain& chain, Model& model) {
+                 const Chain& chain, const std::vector<double>& errors, Model& model) {
   for (std::size_t s = 0; s < model.shapes.size(); ++s) {
     ShapeModel& shape = model.shapes[s];
     const LinkPlace& link = chain.links[robot.shapes[s].link];
+    const double radius = largest_radius(robot.shapes[s].outer);
     double reach = 0;
     shape.corners.begin = size_of(model.corners);
     for (const Vec3& p : checker.hull_of({index, s})) {
@@ -405,16 +412,12 @@ void add_corners(const world::Checker& checker, const world::RobotModel& robot, 
       put(at, corner.at);
       model.corners.push_back(corner);
       reach = std::max(reach, at.norm() + kDoubles * (link.lengths + p.norm()));
+      shape.corner_radius =
+          std::max(shape.corner_radius, outer_ball(chain, link, {p, radius}, errors[s]).radius);
     }
     shape.corners.end = size_of(model.corners);
     shape.reach = rounded_up(reach * (1 + 1e-6));
   }
-}
-
-double largest_radius(const collide::BoundingSet& set) {
-  double out = 0;
-  for (std::size_t i = 0; i < set.size(); ++i) out = std::max(out, set.body(i).radius);
-  return out;
 }
 
 /// Planes that separate two shapes in configurations that balls leave open.
@@ -661,7 +664,7 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   out.always_contact = std::ranges::any_of(
       checker.find_contacts(state, scratch, {}),
       [&](const auto& contact) { return !moves(contact.items[0]) && !moves(contact.items[1]); });
-  add_corners(checker, model, robot, chain, out);
+  add_corners(checker, model, robot, chain, errors, out);
   const std::vector<double> rows = drawn_rows(out);
   for (std::size_t i = 0; i < out.shape_pairs.size(); ++i)
     add_witnesses(checker, state, robot, chain, errors, rows, i, out);

@@ -57,7 +57,8 @@ struct ShapeModel {
   FrameBall whole;  ///< holds all of it
   Range outer, inner;
   Range corners;
-  float reach = 0;  ///< of the corners, rounded up
+  float reach = 0;          ///< of the corners, rounded up
+  float corner_radius = 0;  ///< of balls round the corners whose hull holds all of it, as FrameBall
 };
 
 /// A box along its own axes, enlarged by a ball: a sphere, capsule or box, or what holds a body.

@@ -1,137 +1,48 @@
 // Paths in joint space: straight, else RRT-Connect. Source: [kuffner2000], with edges that are
 // certified only once they are part of a path. docs/algorithms/motion-planning.md.
 
-#include <kaboum/base/error.h>
-#include <kaboum/motion/find_path.h>
-#include <kaboum/robot/kinematics.h>
+#include <kaboum/motion/path_finder.h>
 
-#include <algorithm>
 #include <array>
-#include <numeric>
 
-#include "search_space.h"
+#include "path_finder_impl.h"
+#include "path_query.h"
 #include "shorten.h"
 #include "tree.h"
 
 namespace kaboum::motion {
 namespace {
 
-using Outcome = PathAnswer::Outcome;
 using Certain = world::MotionAnswer::Outcome;
 
-class PathSearch {
+class TreeSearch {
  public:
-  PathSearch(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
-             const Values& start, std::span<const Values> goals, const PathOptions& options)
-      : space_(checker, state, robot, start, options),
+  TreeSearch(SearchSpace& space, PathQuery& query, const Values& start,
+             std::span<const Values> goals, const PathOptions& options)
+      : space_(space),
+        query_(query),
         start_(start),
         goals_(goals),
         options_(options),
         random_(options.seed) {}
 
-  PathAnswer run() {
-    search();
-    answer_.blockers = space_.blockers();
-    answer_.spent = space_.spent();
-    return std::move(answer_);
-  }
-
- private:
-  void search() {
-    if (!look_at_start() || !look_at_goals()) return;
-    if (go_straight()) return;
+  void run() {
     space_.draw_around(start_, goals_);
     grow();
   }
 
-  void end(Outcome outcome) { answer_.outcome = outcome; }
-
-  bool look_at_start() {
-    if (const auto outside = find_out_of_limits(space_.kinematics(), start_)) {
-      answer_.variable = *outside;
-      end(Outcome::StartOutsideLimits);
-      return false;
-    }
-    answer_.contact = space_.find_contact(start_);
-    if (answer_.contact) {
-      end(Outcome::StartInContact);
-      return false;
-    }
-    answer_.broken = space_.find_broken({start_});
-    if (answer_.broken) end(Outcome::StartBreaksConstraint);
-    return !answer_.broken;
-  }
-
-  /// Keeps the goals that can be reached, the nearest first.
-  bool look_at_goals() {
-    std::optional<std::uint32_t> variable;
-    std::optional<world::Contact> contact;
-    std::optional<ConstraintAnswer> broken;
-    for (std::size_t g = 0; g < goals_.size(); ++g) {
-      if (const auto outside = find_out_of_limits(space_.kinematics(), goals_[g])) {
-        if (!variable) variable = outside;
-      } else if (auto met = space_.find_contact(goals_[g])) {
-        if (!contact) contact = std::move(met);
-      } else if (auto not_kept = space_.find_broken({goals_[g]})) {
-        // One that is not certain is told of: then nothing is known of all.
-        if (!broken || not_kept->outcome == ConstraintAnswer::Outcome::Undecided)
-          broken = std::move(not_kept);
-      } else {
-        order_.push_back(g);
-      }
-    }
-    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return space_.distance(start_, goals_[a]) < space_.distance(start_, goals_[b]);
-    });
-    if (!order_.empty()) return true;
-    if (broken) {
-      answer_.broken = std::move(broken);
-      end(Outcome::GoalBreaksConstraint);
-    } else if (contact) {
-      answer_.contact = std::move(contact);
-      end(Outcome::GoalInContact);
-    } else {
-      answer_.variable = *variable;
-      end(Outcome::GoalOutsideLimits);
-    }
-    return false;
-  }
-
-  /// The only way to an answer with a path: what is returned has been decided as it is.
-  bool accept(const robot::Path& path, std::size_t goal) {
-    if (space_.check(path).outcome != Certain::Free || space_.find_broken(path)) return false;
-    answer_.deviations = space_.deviations();
-    answer_.path = path;
-    answer_.goal = goal;
-    end(Outcome::Found);
-    return true;
-  }
-
-  bool go_straight() {
-    for (const std::size_t g : order_) {
-      const auto way = space_.way(start_, goals_[g]);
-      if (!way) continue;
-      robot::Path path{start_};
-      path.insert(path.end(), way->begin(), way->end());
-      if (path.size() > 2) path = without_detours(path, space_);
-      if (!accept(path, g)) continue;
-      answer_.straight = path.size() == 2;
-      return true;
-    }
-    return false;
-  }
-
+ private:
   void grow() {
     std::array<Tree, 2> trees;
     trees[0].add_root(start_);
-    for (const std::size_t g : order_) trees[1].add_root(goals_[g]);
+    for (const std::size_t g : query_.order()) trees[1].add_root(goals_[g]);
     std::size_t near = 0;
     for (;;) {
-      if (const auto outcome = space_.ended()) return end(*outcome);
-      const std::size_t node = extend(trees[near], space_.sample(random_), nullptr);
+      if (const auto outcome = space_.ended()) return query_.end(*outcome);
+      const std::size_t node = extend(trees[near], near == 1, space_.sample(random_), nullptr);
       if (node != Tree::kNone) {
-        const Values q = trees[near][node].q;
-        const std::size_t other = connect(trees[1 - near], q);
+        const Values q = trees[near].at(node);
+        const std::size_t other = connect(trees[1 - near], near == 0, q);
         if (other != Tree::kNone &&
             (near == 0 ? join(trees, node, other) : join(trees, other, node)))
           return;
@@ -141,25 +52,30 @@ class PathSearch {
   }
 
   /// A step from the nearest node towards q. @return the new node; kNone: something is in the way.
-  std::size_t extend(Tree& tree, const Values& q, bool* reached) {
-    return step(tree, tree.nearest(q, space_), q, reached);
+  /// @param back  the tree's edges are gone towards its roots
+  std::size_t extend(Tree& tree, bool back, const Values& q, bool* reached) {
+    return step(tree, back, tree.nearest(q, space_), q, reached);
   }
 
-  std::size_t step(Tree& tree, std::size_t from, const Values& q, bool* reached) {
-    const double distance = space_.distance(tree[from].q, q);
+  std::size_t step(Tree& tree, bool back, std::size_t from, const Values& q, bool* reached) {
+    const Values here = tree.at(from);
+    const double distance = space_.distance(here, q);
     const bool whole = distance <= space_.range();
-    Values to = whole ? q : between(tree[from].q, q, space_.range() / distance);
+    Values to = whole ? q : between(here, q, space_.range() / distance);
     if (reached != nullptr) *reached = whole;
     // A node of the other tree is on the constraints, a sample is not.
     const bool is_node = whole && reached != nullptr;
-    if (space_.has_constraints() && !is_node &&
-        (!space_.project(to) || !is_progress(tree[from].q, to, q)))
+    if (space_.has_constraints() && !is_node && (!space_.project(to) || !is_progress(here, to, q)))
       return Tree::kNone;
-    const auto way = space_.way(tree[from].q, to);
+    const auto way = space_.way(here, to, back);
     if (!way) return Tree::kNone;
+    const Values* last = &here;
     for (const Values& waypoint : *way) {
       ++space_.spent().nodes;
-      from = tree.add(waypoint, from);
+      const bool certain =
+          back ? space_.is_known_free(waypoint, *last) : space_.is_known_free(*last, waypoint);
+      from = tree.add(waypoint, from, certain);
+      last = &waypoint;
     }
     return from;
   }
@@ -173,14 +89,14 @@ class PathSearch {
   }
 
   /// Steps towards q until it is reached. @return the node at q; kNone: something is in the way.
-  std::size_t connect(Tree& tree, const Values& q) {
+  std::size_t connect(Tree& tree, bool back, const Values& q) {
     bool reached = false;
-    std::size_t node = extend(tree, q, &reached);
+    std::size_t node = extend(tree, back, q, &reached);
     while (node != Tree::kNone && !reached && !space_.ended()) {
-      const double before = space_.distance(tree[node].q, q);
-      node = step(tree, node, q, &reached);
+      const double before = space_.distance(tree.at(node), q);
+      node = step(tree, back, node, q, &reached);
       // On constraints, steps may lead round in circles.
-      if (node != Tree::kNone && !reached && space_.distance(tree[node].q, q) >= before)
+      if (node != Tree::kNone && !reached && space_.distance(tree.at(node), q) >= before)
         return Tree::kNone;
     }
     return reached ? node : Tree::kNone;
@@ -189,22 +105,25 @@ class PathSearch {
   /// The path over two nodes at the same place, if all of it is certainly free; else the edge that
   /// is not is removed.
   bool join(std::array<Tree, 2>& trees, std::size_t first, std::size_t second) {
-    if (!certify(trees[0], first) || !certify(trees[1], second)) return false;
+    if (!certify(trees[0], false, first) || !certify(trees[1], true, second)) return false;
     robot::Path path;
-    for (const std::size_t i : trees[0].branch(first)) path.push_back(trees[0][i].q);
+    for (const std::size_t i : trees[0].branch(first)) path.push_back(trees[0].at(i));
     const std::vector<std::size_t> back = trees[1].branch(second);
-    for (std::size_t i = back.size() - 1; i-- > 0;) path.push_back(trees[1][back[i]].q);
-    const std::size_t goal = order_[trees[1][second].root];
-    return accept(shorten(path, space_, options_.shortcuts, random_), goal) || accept(path, goal);
+    for (std::size_t i = back.size() - 1; i-- > 0;) path.push_back(trees[1].at(back[i]));
+    const std::size_t goal = query_.order()[trees[1][second].root];
+    return query_.accept(shorten(path, space_, options_.shortcuts, random_), goal) ||
+           query_.accept(path, goal);
   }
 
-  bool certify(Tree& tree, std::size_t node) {
+  /// Whether the branch is certainly free; else the first edge that is not is removed.
+  bool certify(Tree& tree, bool back, std::size_t node) {
     const std::vector<std::size_t> branch = tree.branch(node);
     std::size_t begin = 0;
     while (begin + 1 < branch.size() && tree[branch[begin + 1]].certain) ++begin;
     robot::Path path;
-    for (std::size_t i = begin; i < branch.size(); ++i) path.push_back(tree[branch[i]].q);
+    for (std::size_t i = begin; i < branch.size(); ++i) path.push_back(tree.at(branch[i]));
     if (path.size() < 2) return true;
+    if (back && space_.decides_motions()) return certify_back(tree, branch, begin);
     const world::MotionAnswer answer = space_.check(path);
     const bool free = answer.outcome == Certain::Free;
     const std::size_t certain = free ? path.size() - 1 : answer.segment;
@@ -213,18 +132,36 @@ class PathSearch {
     return free;
   }
 
-  SearchSpace space_;
+  /// The same for edges that were looked at the other way.
+  bool certify_back(Tree& tree, const std::vector<std::size_t>& branch, std::size_t begin) {
+    for (std::size_t i = begin; i + 1 < branch.size(); ++i) {
+      if (space_.check({tree.at(branch[i + 1]), tree.at(branch[i])}).outcome != Certain::Free) {
+        tree.remove(branch[i + 1]);
+        return false;
+      }
+      tree.set_certain(branch[i + 1]);
+    }
+    return true;
+  }
+
+  SearchSpace& space_;
+  PathQuery& query_;
   const Values& start_;
   std::span<const Values> goals_;
   const PathOptions& options_;
   Random random_;
-  std::vector<std::size_t> order_;  ///< of the goals
-  PathAnswer answer_;
 };
+
+PathAnswer search(SearchSpace& space, const Values& start, std::span<const Values> goals,
+                  const PathOptions& options) {
+  PathQuery query(space, start, goals);
+  if (query.look_at_ends() && !query.go_straight()) grow_trees(space, query, start, goals, options);
+  return query.take();
+}
 
 }  // namespace
 
-const char* name_of(Outcome outcome) {
+const char* name_of(PathAnswer::Outcome outcome) {
   static constexpr std::array<const char*, 10> kNames{"found",
                                                       "start outside limits",
                                                       "goal outside limits",
@@ -238,17 +175,39 @@ const char* name_of(Outcome outcome) {
   return kNames.at(static_cast<std::size_t>(outcome));
 }
 
+void grow_trees(SearchSpace& space, PathQuery& query, const Values& start,
+                std::span<const Values> goals, const PathOptions& options) {
+  TreeSearch(space, query, start, goals, options).run();
+}
+
 PathAnswer find_path(const world::Checker& checker, const world::WorldState& state,
                      std::size_t robot, const Values& start, std::span<const Values> goals,
                      const PathOptions& options) {
-  if (goals.empty()) throw Error(ErrorCode::InvalidArgument, "a path without a goal");
-  if (!(options.most_work > 0) || !(options.most_seconds > 0) || options.most_nodes == 0)
-    throw Error(ErrorCode::InvalidArgument, "limits of a search must be above 0");
-  require_fits(checker, state, robot, start);
-  for (const Values& goal : goals) require_fits(checker, state, robot, goal);
-  for (const PathConstraint& constraint : options.constraints)
-    require_keepable(constraint, checker.world().robots[robot].kinematics);
-  return PathSearch(checker, state, robot, start, goals, options).run();
+  require_query(checker, state, robot, start, goals, options);
+  const Metric metric = metric_of(checker, state, robot);
+  SearchMemory memory;
+  SearchSpace space(checker, state, robot, start, options, metric, memory);
+  return search(space, start, goals, options);
+}
+
+PathFinder::PathFinder(const world::Checker& checker, world::WorldState state, std::size_t robot,
+                       const filter::BatchChecker::Options& options)
+    : impl_(std::make_unique<Impl>(checker, std::move(state), robot, options)) {}
+PathFinder::~PathFinder() = default;
+PathFinder::PathFinder(PathFinder&&) noexcept = default;
+PathFinder& PathFinder::operator=(PathFinder&&) noexcept = default;
+
+const world::Checker& PathFinder::checker() const { return *impl_->checker; }
+const world::WorldState& PathFinder::state() const { return impl_->state; }
+std::size_t PathFinder::robot() const { return impl_->robot; }
+
+PathAnswer PathFinder::find(const Values& start, std::span<const Values> goals,
+                            const PathOptions& options) const {
+  Impl& s = *impl_;
+  require_query(*s.checker, s.state, s.robot, start, goals, options);
+  const Impl::Borrowed memory(s);
+  SearchSpace space(*s.checker, s.state, s.robot, start, options, s.metric, *memory);
+  return search(space, start, goals, options);
 }
 
 }  // namespace kaboum::motion

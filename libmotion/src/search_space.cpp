@@ -17,7 +17,7 @@ using Outcome = PathAnswer::Outcome;
 
 // Steps in about seconds of one core; only their ratio matters to what is found.
 constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9,
-                 kInstant = 0.5e-6, kProjection = 35e-6;
+                 kInstant = 0.5e-6, kProjection = 35e-6, kPack = 1e-6, kStretch = 0.15e-6;
 
 /// A configuration is on the constraints where no deviation is more than this part of what is
 /// allowed: the rest is for the lines between such configurations.
@@ -32,6 +32,12 @@ constexpr std::size_t kToldEvery = 64;  // configurations
 
 /// A variable that moves the robot little is not to be free of cost.
 constexpr double kLeastWeight = 0.1;
+/// Configurations of motions that are only looked at are so near each other, in parts of a step.
+constexpr double kSpacing = 0.05;
+/// Motions that were not free and may be asked for what is in the way: so many, then some.
+constexpr std::size_t kFewBlocked = 32;
+/// Configurations of a motion that are looked at where vector code leaves it open.
+constexpr std::size_t kMostLooks = 16;
 
 }  // namespace
 
@@ -55,34 +61,24 @@ Values between(const Values& a, const Values& b, double share) {
   return out;
 }
 
-SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
-                         const Values& start, const PathOptions& options)
-    : checker_(checker),
-      state_(std::move(state)),
-      robot_(robot),
-      options_(options),
-      scratch_(options.check.scratch != nullptr ? *options.check.scratch : own_.emplace()),
-      bands_(bands_of(options.constraints, checker.world().robots[robot], start)),
-      projection_(checker.world().robots[robot], options.constraints, bands_) {
-  kept_.parts.resize(options.constraints.size());
-  check_.where = false;
-  check_.scratch = &scratch_;
+Metric metric_of(const world::Checker& checker, const world::WorldState& state, std::size_t robot) {
   const world::RobotModel& model = checker.world().robots[robot];
   const std::size_t count = model.kinematics.variables.size();
-  weight_.assign(count, 0);
+  Metric out;
+  out.weight.assign(count, 0);
   const auto weigh = [&](std::uint32_t link, const sweep::Reach& reach) {
     for (std::size_t i = 0; i < count; ++i) {
       Values to = model.home;
       to[i] += 1;
       const sweep::LinkMotion motion(model.kinematics, link, model.home, to);
       if (motion.moves())
-        weight_[i] = std::max(weight_[i], sweep::MotionBounds(motion, reach).derivative(1));
+        out.weight[i] = std::max(out.weight[i], sweep::MotionBounds(motion, reach).derivative(1));
     }
   };
   for (std::size_t i = 0; i < model.shapes.size(); ++i)
     weigh(model.shapes[i].link, checker.reach_of(robot, i));
-  for (std::size_t o = 0; o < state_.attachments.size(); ++o) {
-    const auto& attachment = state_.attachments[o];
+  for (std::size_t o = 0; o < state.attachments.size(); ++o) {
+    const auto& attachment = state.attachments[o];
     if (!attachment || attachment->robot != robot) continue;
     std::vector<geom::Vec3> points = checker.hull_of({world::Item::kObject, o});
     for (geom::Vec3& p : points) p = attachment->pose * p;
@@ -91,11 +87,29 @@ SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state,
                                             points));
   }
   double most = 0;
-  for (const double w : weight_) most = std::max(most, w);
+  for (const double w : out.weight) most = std::max(most, w);
   if (!(most > 0)) most = 1;
-  for (double& w : weight_) w = std::max(w, kLeastWeight * most);
-  range_ = most;
-  spacing_ = 0.05 * most;
+  for (double& w : out.weight) w = std::max(w, kLeastWeight * most);
+  out.range = most;
+  return out;
+}
+
+SearchSpace::SearchSpace(const world::Checker& checker, world::WorldState state, std::size_t robot,
+                         const Values& start, const PathOptions& options, const Metric& metric,
+                         SearchMemory& memory)
+    : checker_(checker),
+      state_(std::move(state)),
+      robot_(robot),
+      options_(options),
+      metric_(metric),
+      memory_(memory),
+      scratch_(options.check.scratch != nullptr ? *options.check.scratch : memory.scratch),
+      bands_(bands_of(options.constraints, checker.world().robots[robot], start)),
+      projection_(checker.world().robots[robot], options.constraints, bands_) {
+  kept_.parts.resize(options.constraints.size());
+  check_.where = false;
+  check_.scratch = &scratch_;
+  memory_.decided.clear();
 }
 
 void SearchSpace::draw_around(const Values& start, std::span<const Values> goals) {
@@ -128,19 +142,28 @@ Values SearchSpace::sample(Random& random) {
 }
 
 double SearchSpace::distance(const Values& a, const Values& b) const {
+  return std::sqrt(squared_distance(a.data(), b.data()));
+}
+
+double SearchSpace::squared_distance(const double* a, const double* b) const {
   double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double d = weight_[i] * (b[i] - a[i]);
+  for (std::size_t i = 0; i < metric_.weight.size(); ++i) {
+    const double d = metric_.weight[i] * (b[i] - a[i]);
     sum += d * d;
   }
-  return std::sqrt(sum);
+  return sum;
+}
+
+void SearchSpace::tell(std::size_t count) const {
+  if (count % kToldEvery != 0 || !options_.check.progress) return;
+  options_.check.progress((decides_motions()
+                               ? std::to_string(spent_.motions) + " motions, "
+                               : std::to_string(spent_.configurations) + " configurations, ") +
+                          std::to_string(spent_.nodes) + " nodes");
 }
 
 std::optional<world::Contact> SearchSpace::find_contact(const Values& q) {
-  if (spent_.configurations % kToldEvery == 0 && options_.check.progress)
-    options_.check.progress(std::to_string(spent_.configurations) + " configurations, " +
-                            std::to_string(spent_.nodes) + " nodes");
-  ++spent_.configurations;
+  tell(spent_.configurations++);
   spent_.work += kConfiguration;
   state_.q[robot_] = q;
   std::optional<world::Contact> contact = checker_.find_contact(state_, scratch_);
@@ -148,9 +171,87 @@ std::optional<world::Contact> SearchSpace::find_contact(const Values& q) {
   return contact;
 }
 
+Known SearchSpace::look(const Values& from, const Values& to, bool closely) {
+  using Answer = filter::MotionChecker::Answer;
+  Known* known = memory_.decided.find(from, to);
+  if (known == nullptr) {
+    const Answer answer = filter(from, to);
+    tell(spent_.motions++);
+    memory_.decided.add(from, to,
+                        answer == Answer::Free      ? Known::Free
+                        : answer == Answer::Contact ? Known::NotFree
+                                                    : Known::Open);
+    known = memory_.decided.find(from, to);
+    if (answer == Answer::Contact) note_blocked(from, to);
+  } else if (closely && *known == Known::Open) {
+    filter(from, to);  // which has the open stretches of the last motion
+  }
+  if (closely && *known == Known::Open) {
+    *known = looks_free_where_open(from, to) ? Known::LooksFree : Known::NotFree;
+    if (*known == Known::NotFree) note_blocked(from, to);
+  }
+  return *known;
+}
+
+void SearchSpace::note_blocked(const Values& from, const Values& to) {
+  // The first ones, then fewer and fewer.
+  const std::size_t n = blocked_count_++;
+  if (n < kFewBlocked || (n & (n - 1)) == 0) blocked_.push_back({from, to});
+}
+
+filter::MotionChecker::Answer SearchSpace::filter(const Values& from, const Values& to) {
+  filter::MotionChecker& motions = *memory_.motions;
+  const std::size_t before = motions.stretches();
+  const auto answer = motions.filter(from, to, check_.resolution);
+  const std::size_t stretches = motions.stretches() - before;
+  spent_.intervals += stretches;
+  spent_.work += kPack + kStretch * static_cast<double>(stretches);
+  return answer;
+}
+
+bool SearchSpace::is_soon_certain(const Values& from, const Values& to) {
+  if (decides_motions()) return look(from, to, false) == Known::Free;
+  return looks_free(from, to) && check({from, to}).outcome == world::MotionAnswer::Outcome::Free;
+}
+
+bool SearchSpace::is_certain(const Values& from, const Values& to) {
+  const Known known = look(from, to, true);
+  if (known != Known::LooksFree) return known == Known::Free;
+  using Answer = filter::MotionChecker::Answer;
+  bool free = filter(from, to) == Answer::Free;  // it is open, and now the last one
+  if (!free && memory_.motions->open().empty()) {
+    free = check_exactly({from, to}).outcome == world::MotionAnswer::Outcome::Free;
+  } else if (!free) {
+    std::size_t intervals = 0;
+    free = memory_.motions->are_open_free(from, to, check_, intervals);
+    spent_.intervals += intervals;
+    spent_.work += kMotion + kInterval * static_cast<double>(intervals);
+  }
+  *memory_.decided.find(from, to) = free ? Known::Free : Known::NotFree;
+  return free;
+}
+
+bool SearchSpace::looks_free_where_open(const Values& from, const Values& to) {
+  const auto open = memory_.motions->open();
+  std::size_t most = 1;
+  while (most < open.size()) most *= 2;
+  std::size_t looks = 0;
+  // Far apart first: the middle one, then those at quarters, and so on.
+  for (std::size_t step = most; step > 1; step /= 2)
+    for (std::size_t at = step / 2; at < open.size(); at += step) {
+      if (looks++ == kMostLooks) return true;
+      ++spent_.configurations;
+      spent_.work += kConfiguration;
+      state_.q[robot_] = between(from, to, 0.5 * (open[at][0] + open[at][1]));
+      if (!checker_.is_free(state_, scratch_)) return false;
+    }
+  return true;
+}
+
 bool SearchSpace::looks_free(const Values& from, const Values& to) {
+  if (decides_motions()) return look(from, to, true) != Known::NotFree;
   if (find_contact(to)) return false;
-  const auto parts = static_cast<std::size_t>(std::ceil(distance(from, to) / spacing_));
+  const auto parts = static_cast<std::size_t>(std::ceil(distance(from, to) / (kSpacing * range())));
   // Far apart first: halves, then quarters between them, and so on.
   std::size_t most = 1;
   while (most < parts) most *= 2;
@@ -174,20 +275,24 @@ bool SearchSpace::keeps(const Values& from, const Values& to) {
 }
 
 std::optional<ConstraintAnswer> SearchSpace::find_broken(const robot::Path& path) {
+  if (bands_.empty()) return std::nullopt;
   kept_ = check_bands(kinematic_model(), bands_, options_.constraints.size(), path, check_);
   spent_.work += kInstant * static_cast<double>(kept_.instants);
   return kept_.outcome == ConstraintAnswer::Outcome::Kept ? std::nullopt : std::optional(kept_);
 }
 
-std::optional<robot::Path> SearchSpace::way(const Values& from, const Values& to) {
+std::optional<robot::Path> SearchSpace::way(const Values& from, const Values& to, bool back) {
   robot::Path out;
   if (!has_constraints()) {
     out.push_back(to);
   } else if (!trace(from, to, kMostHalvings, out)) {
     return std::nullopt;
   }
-  for (std::size_t i = 0; i < out.size(); ++i)
-    if (!looks_free(i == 0 ? from : out[i - 1], out[i])) return std::nullopt;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Values& before = i == 0 ? from : out[i - 1];
+    if (!(back && decides_motions() ? looks_free(out[i], before) : looks_free(before, out[i])))
+      return std::nullopt;
+  }
   return out;
 }
 
@@ -205,6 +310,17 @@ bool SearchSpace::trace(const Values& from, const Values& to, int depth, robot::
 }
 
 world::MotionAnswer SearchSpace::check(const robot::Path& path) {
+  if (!decides_motions() || path.size() < 2) return check_exactly(path);
+  world::MotionAnswer answer;
+  for (; answer.segment + 1 < path.size(); ++answer.segment)
+    if (!is_certain(path[answer.segment], path[answer.segment + 1])) {
+      answer.outcome = world::MotionAnswer::Outcome::Contact;
+      break;
+    }
+  return answer;
+}
+
+world::MotionAnswer SearchSpace::check_exactly(const robot::Path& path) {
   world::MotionAnswer answer = check_motion(checker_, state_, robot_, path, check_);
   const std::size_t segments = std::min(answer.segment + 1, path.size());
   spent_.motions += segments;
@@ -231,7 +347,10 @@ void SearchSpace::note(const std::optional<world::Contact>& contact) {
   if (contact) ++met_[contact->items];
 }
 
-std::vector<Blocker> SearchSpace::blockers() const {
+std::vector<Blocker> SearchSpace::blockers(bool found) {
+  if (!found)
+    for (const robot::Path& motion : blocked_)
+      note(check_motion(checker_, state_, robot_, motion, check_).contact);
   std::vector<Blocker> out;
   for (const auto& [items, times] : met_) out.push_back({items, times});
   std::stable_sort(out.begin(), out.end(),

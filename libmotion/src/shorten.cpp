@@ -11,6 +11,8 @@ using Certain = world::MotionAnswer::Outcome;
 
 /// The waypoints after `a` of a way to `b` that is certainly free and keeps the constraints.
 std::optional<robot::Path> certain_way(SearchSpace& space, const Values& a, const Values& b) {
+  if (!space.has_constraints())
+    return space.is_soon_certain(a, b) ? std::optional<robot::Path>({b}) : std::nullopt;
   auto way = space.way(a, b);
   if (!way) return std::nullopt;
   robot::Path path{a};
@@ -21,7 +23,7 @@ std::optional<robot::Path> certain_way(SearchSpace& space, const Values& a, cons
 
 bool can_join(SearchSpace& space, const Values& a, const Values& b) {
   if (space.has_constraints() && space.find_broken({a, b})) return false;
-  return space.looks_free(a, b) && space.check({a, b}).outcome == Certain::Free;
+  return space.is_soon_certain(a, b);
 }
 
 /// A place on a path: a segment and a share of it.

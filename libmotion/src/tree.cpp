@@ -8,13 +8,16 @@
 namespace kaboum::motion {
 
 std::size_t Tree::add_root(const Values& q) {
-  nodes_.push_back({q, kNone, nodes_.size(), true, false});
+  variables_ = q.size();
+  values_.insert(values_.end(), q.begin(), q.end());
+  nodes_.push_back({kNone, nodes_.size(), true, false});
   ++living_;
   return nodes_.size() - 1;
 }
 
-std::size_t Tree::add(const Values& q, std::size_t parent) {
-  nodes_.push_back({q, parent, nodes_[parent].root, false, false});
+std::size_t Tree::add(const Values& q, std::size_t parent, bool certain) {
+  values_.insert(values_.end(), q.begin(), q.end());
+  nodes_.push_back({parent, nodes_[parent].root, certain, false});
   ++living_;
   return nodes_.size() - 1;
 }
@@ -25,7 +28,7 @@ std::size_t Tree::nearest(const Values& q, SearchSpace& space) const {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].gone) continue;
-    const double d = space.distance(nodes_[i].q, q);
+    const double d = space.squared_distance(values_.data() + i * variables_, q.data());
     if (d < least || best == kNone) {
       least = d;
       best = i;

@@ -9,7 +9,6 @@ class Tree {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Node {
-    Values q;
     std::size_t parent = kNone;
     std::size_t root = 0;
     bool certain = false;  ///< the edge to the parent is free at every instant
@@ -17,7 +16,8 @@ class Tree {
   };
 
   std::size_t add_root(const Values& q);
-  std::size_t add(const Values& q, std::size_t parent);
+  /// @param certain  the edge is free at every instant
+  std::size_t add(const Values& q, std::size_t parent, bool certain);
   /// The node at the least distance.
   [[nodiscard]] std::size_t nearest(const Values& q, SearchSpace& space) const;
   /// From a root to the node.
@@ -26,11 +26,17 @@ class Tree {
   void remove(std::size_t node);
 
   [[nodiscard]] const Node& operator[](std::size_t i) const { return nodes_[i]; }
+  [[nodiscard]] Values at(std::size_t i) const {
+    const double* q = values_.data() + i * variables_;
+    return {q, q + variables_};
+  }
   void set_certain(std::size_t node) { nodes_[node].certain = true; }
   [[nodiscard]] std::size_t size() const { return living_; }
 
  private:
   std::vector<Node> nodes_;
+  std::size_t variables_ = 0;
+  std::vector<double> values_;  ///< of the nodes, one after the other
   std::size_t living_ = 0;
 };
 

@@ -80,10 +80,13 @@ class BatchChecker {
   void filter(std::span<const double> rows, std::span<Answer> answers) const;
 
   [[nodiscard]] std::size_t variables() const;
+  /// False: all is left to the checker.
+  [[nodiscard]] bool decides() const;
   /// Balls that hold the robot's links.
   [[nodiscard]] std::size_t balls() const;
 
  private:
+  friend class MotionChecker;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

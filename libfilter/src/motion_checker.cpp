@@ -1,0 +1,150 @@
+// Motions one by one: the stretches of one fill the lanes. docs/algorithms/batches.md, "One by
+// one".
+
+#include <kaboum/filter/motion_checker.h>
+#include <kaboum/world/stretch_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "batch_impl.h"
+#include "lanes.h"
+
+namespace kaboum::filter {
+namespace {
+
+/// Stretches that a motion is looked at in at first: as many as the widest vectors have lanes.
+constexpr std::size_t kFirst = 16;
+constexpr std::size_t kParts = 4;             ///< that an open stretch is cut into
+constexpr std::size_t kMostStretches = 1024;  ///< at a time; a motion with more is open
+constexpr double kFine = 0.004;  ///< of the robot's size: moves that are not cut further
+
+}  // namespace
+
+struct MotionChecker::Impl {
+  explicit Impl(const BatchChecker::Impl& of) : batch(of), memory(of.model) {}
+
+  /// How far points move in half of the motion, about.
+  [[nodiscard]] double move_of(std::span<const double> from, std::span<const double> to) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < from.size(); ++k)
+      sum += std::abs(to[k] - from[k]) * batch.model.levers[k];
+    return 0.5 * sum;
+  }
+
+  /// Looks at the stretches, or at their middles alone.
+  bool finds_contact(std::span<const double> from, std::span<const double> to, float slack,
+                     detail::Look look) {
+    const std::size_t n = batch.model.variables;
+    rows.resize(shares.size() * n);
+    widths.resize(shares.size() * n);
+    answers.resize(shares.size());
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      for (std::size_t k = 0; k < n; ++k)
+        detail::put_stretch(shares[i], from[k], to[k], rows[i * n + k], widths[i * n + k]);
+    stretches += shares.size();
+    detail::filter_rows(batch.model, batch.instructions, rows.data(),
+                        look == detail::Look::Contacts ? nullptr : widths.data(), shares.size(),
+                        memory, answers.data(), slack, look);
+    return std::ranges::find(answers, Answer::Contact) != answers.end();
+  }
+
+  const BatchChecker::Impl& batch;
+  detail::LaneMemory memory;
+  std::vector<double> rows, widths;
+  std::vector<detail::Share> shares, next;
+  std::vector<Answer> answers;
+  std::vector<std::array<double, 2>> open;
+  std::optional<world::StretchChecker> exactly;
+  world::Scratch scratch;
+  robot::Path path{{}, {}};
+  std::size_t stretches = 0, exact = 0;
+};
+
+MotionChecker::MotionChecker(const BatchChecker& batch)
+    : impl_(std::make_unique<Impl>(*batch.impl_)) {}
+MotionChecker::~MotionChecker() = default;
+MotionChecker::MotionChecker(MotionChecker&&) noexcept = default;
+MotionChecker& MotionChecker::operator=(MotionChecker&&) noexcept = default;
+
+std::size_t MotionChecker::stretches() const { return impl_->stretches; }
+std::size_t MotionChecker::exact() const { return impl_->exact; }
+std::span<const std::array<double, 2>> MotionChecker::open() const { return impl_->open; }
+
+MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
+                                            std::span<const double> to, double resolution) {
+  Impl& s = *impl_;
+  s.open.clear();
+  const detail::Model& model = s.batch.model;
+  if (!detail::decides_motions(model, resolution) || !detail::is_within(model, from) ||
+      !detail::is_within(model, to))
+    return Answer::Open;
+  const float slack = detail::slack_of(resolution, model.size);
+  const double fine = kFine * model.size;
+  double move = s.move_of(from, to);  // in half of a stretch
+  std::size_t parts = 1;
+  while (parts < kFirst && move > fine) {
+    parts *= 2;
+    move /= 2;
+  }
+  s.shares.assign(1, {});
+  for (bool first = true;; first = false) {
+    s.next.clear();
+    const auto share = 1 / static_cast<double>(parts);
+    for (const detail::Share& whole : s.shares) {
+      // Halves of halves: the ends are those of check_motion's stretches, without rounding.
+      const double length = (whole.end - whole.begin) * share;
+      for (std::size_t i = 0; i < parts; ++i)
+        s.next.push_back({whole.begin + static_cast<double>(i) * length,
+                          whole.begin + static_cast<double>(i + 1) * length});
+    }
+    std::swap(s.shares, s.next);
+    if (s.shares.size() > kMostStretches) return Answer::Open;
+    // Most motions that are not free are found in contact at first sight.
+    if (first && s.finds_contact(from, to, slack, detail::Look::Contacts)) return Answer::Contact;
+    if (s.finds_contact(from, to, slack, first ? detail::Look::Apart : detail::Look::One))
+      return Answer::Contact;
+    s.next.clear();
+    for (std::size_t i = 0; i < s.shares.size(); ++i)
+      if (s.answers[i] == Answer::Open) s.next.push_back(s.shares[i]);
+    if (s.next.empty()) return Answer::Free;
+    std::swap(s.shares, s.next);
+    if (move <= fine) break;
+    parts = kParts;
+    move /= kParts;
+  }
+  for (const detail::Share& share : s.shares) s.open.push_back({share.begin, share.end});
+  return Answer::Open;
+}
+
+bool MotionChecker::are_open_free(std::span<const double> from, std::span<const double> to,
+                                  const world::MotionOptions& options, std::size_t& intervals) {
+  Impl& s = *impl_;
+  if (s.open.empty()) return false;
+  ++s.exact;
+  if (!s.exactly) s.exactly.emplace(*s.batch.checker, s.batch.state, s.batch.robot);
+  const auto answer = s.exactly->is_apart(from, to, s.open,
+                                          detail::slack_of(options.resolution, s.batch.model.size),
+                                          options.most_intervals);
+  intervals += answer.intervals;
+  return answer.apart;
+}
+
+bool MotionChecker::is_free(std::span<const double> from, std::span<const double> to,
+                            const world::MotionOptions& options) {
+  const Answer answer = filter(from, to, options.resolution);
+  if (answer != Answer::Open) return answer == Answer::Free;
+  Impl& s = *impl_;
+  ++s.exact;
+  s.path[0].assign(from.begin(), from.end());
+  s.path[1].assign(to.begin(), to.end());
+  world::MotionOptions exact = options;
+  exact.where = false;
+  exact.progress = {};
+  exact.scratch = &s.scratch;
+  return check_motion(*s.batch.checker, s.batch.state, s.batch.robot, s.path, exact).outcome ==
+         world::MotionAnswer::Outcome::Free;
+}
+
+}  // namespace kaboum::filter
