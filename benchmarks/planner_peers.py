@@ -14,7 +14,6 @@ import pathlib
 import re
 import subprocess
 import tarfile
-import time
 import xml.etree.ElementTree as xml
 
 import numpy
@@ -247,29 +246,44 @@ def main():
     parser.add_argument("--problems", type=int, default=100, help="of each kind of MotionBenchMaker's")
     parser.add_argument("--scenes", type=int, default=100, help="queries in each scene of batch_scenes.py")
     parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--no-judge", action="store_true")
+    parser.add_argument("--no-judge", action="store_true", help="leave the exact meshes out")
+    parser.add_argument("--nodes", type=int, default=2000, help="of a roadmap of each scene of batch_scenes.py; 0: none")
     args = parser.parse_args()
     args.build, args.folder = args.build.resolve(), args.folder.resolve()
     for name in args.robots.split(","):
-        scene, urdf = robot_scene(args, name)
-        problems = benchmark_problems(args, name) + scene_problems(args, name)
-        folder = args.folder / name
-        (folder / "problems").write_text("".join(json.dumps(p) + "\n" for p in problems))
-        theirs = by_vamp(name, problems, args.repeats)
-        begin = time.time()
-        subprocess.run([args.build / "benchmarks/path-query-benchmark", "plan", scene, folder / "problems", folder / "ours", str(args.repeats)], check=True)
-        ours = [json.loads(line) for line in (folder / "ours").read_text().splitlines()]
-        print(f"{name}: {len(problems)} queries in {time.time() - begin:.0f} s; a scene's checker takes {1e3 * numpy.median([a['setup'] for a in ours]):.0f} ms")
-        nothing = [{"contacts": 0, "samples": 0}] * len(problems)
-        verdicts = {who: nothing if args.no_judge else judged(args, scene, urdf, folder, who, answers) for who, answers in (("kaboum", ours), ("vamp", theirs))}
-        rows = []
-        kinds = list(dict.fromkeys(p["problem"] for p in problems))
-        for kind in kinds + ["all"]:
-            some = [i for i, p in enumerate(problems) if kind in (p["problem"], "all")]
-            both = [k for k, i in enumerate(some) if ours[i]["outcome"] == theirs[i]["outcome"] == "found"]
-            for who, answers in (("KABouM", ours), ("VAMP", theirs)):
-                rows.append(summary(kind, who, [answers[i] for i in some], [verdicts["kaboum" if answers is ours else "vamp"][i] for i in some], both))
-        table(name, rows)
+        compare(args, name)
+
+
+def by_kaboum(args, scene, problems, answers, nodes):
+    subprocess.run([args.build / "benchmarks/path-query-benchmark", "plan", scene, problems, answers, str(args.repeats), str(nodes)], check=True)
+    return [json.loads(line) for line in answers.read_text().splitlines()]
+
+
+def compare(args, name):
+    scene, urdf = robot_scene(args, name)
+    drawn = scene_problems(args, name)
+    problems = benchmark_problems(args, name) + drawn
+    folder = args.folder / name
+    write = lambda file, some: (folder / file).write_text("".join(json.dumps(p) + "\n" for p in some))
+    write("problems", problems)
+    write("drawn", drawn)
+    answers = {"KABouM": by_kaboum(args, scene, folder / "problems", folder / "answers", 0), "VAMP": by_vamp(name, problems, args.repeats)}
+    if args.nodes:
+        mapped = by_kaboum(args, scene, folder / "drawn", folder / "mapped", args.nodes)
+        answers["KABouM, roadmap"] = [None] * (len(problems) - len(drawn)) + mapped
+        print(f"\n{name}: a roadmap of {args.nodes} nodes takes {numpy.median([a['setup'] for a in mapped]):.1f} s")
+    print(f"{name}: a scene's checker takes {1e3 * numpy.median([a['setup'] for a in answers['KABouM']]):.0f} ms")
+    nothing = [{"contacts": 0, "samples": 0}] * len(problems)
+    verdicts = {who: nothing if args.no_judge else judged(args, scene, urdf, folder, who.split()[-1].lower(), [a or {"path": []} for a in some])
+                for who, some in answers.items()}
+    rows = []
+    for kind in list(dict.fromkeys(p["problem"] for p in problems)) + ["all"]:
+        some = [i for i, p in enumerate(problems) if kind in (p["problem"], "all")]
+        by = {who: [of[i] for i in some] for who, of in answers.items() if all(of[i] for i in some)}
+        both = [k for k in range(len(some)) if all(of[k]["outcome"] == "found" for of in by.values())]
+        for who, of in by.items():
+            rows.append(summary(kind, who, of, [verdicts[who][i] for i in some], both))
+    table(name, rows)
 
 
 if __name__ == "__main__":

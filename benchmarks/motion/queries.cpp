@@ -90,6 +90,7 @@ struct Cell {
     world = std::make_unique<world::World>(with_objects(robot, of));
     const double start = now();
     checker = std::make_unique<world::Checker>(*world);
+    finder = std::make_unique<motion::PathFinder>(*checker, initial_state(*world), 0);
     motion::RoadmapOptions options;
     options.nodes = nodes;
     if (nodes > 0) roadmap = std::make_unique<motion::Roadmap>(*finder, options);

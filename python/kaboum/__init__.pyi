@@ -385,6 +385,41 @@ class Path:
     def __bool__(self) -> bool: ...
     def __len__(self) -> int: ...
 
+class PathFinder:
+    @property
+    def nodes(self) -> int: ...
+    @property
+    def edges(self) -> int: ...
+    def find_path(
+        self,
+        start: ArrayLike,
+        goals: ArrayLike,
+        *,
+        # options of find_path
+        max_work: float = 10.0,
+        max_nodes: int = 100000,
+        timeout: float | None = None,
+        shortcuts: int = 60,
+        seed: int = 1,
+        resolution: _Length = 1e-05,
+        # end of options
+        # options of keep
+        keep: str | Sequence[str] | None = None,
+        tool: str = "",
+        # end of options
+        progress: _Progress | None = None,
+    ) -> Path: ...
+    def make_roadmap(
+        self,
+        *,
+        nodes: int = 1000,
+        neighbours: int = 12,
+        seed: int = 1,
+        progress: _Progress | None = None,
+    ) -> None: ...
+    def read_roadmap(self, file: _Path) -> None: ...
+    def write_roadmap(self, file: _Path) -> None: ...
+
 class Trajectory:
     @property
     def duration(self) -> float: ...
@@ -599,6 +634,7 @@ class World:
         robot: str | None = None,
         progress: _Progress | None = None,
     ) -> Any: ...
+    def path_finder(self, *, robot: str | None = None) -> PathFinder: ...
     def pose_goals(
         self,
         pose: ArrayLike,

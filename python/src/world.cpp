@@ -7,6 +7,7 @@
 #include <kaboum/motion/goals.h>
 #include <kaboum/motion/keep_options.h>
 #include <kaboum/motion/path_options.h>
+#include <kaboum/motion/roadmap.h>
 #include <kaboum/motion/sampled_path.h>
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
@@ -511,8 +512,10 @@ std::vector<double> start_of(const world::RobotModel& robot, const py::object& s
   return rows.front();
 }
 
-PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
-                    const std::optional<std::string>& robot, const py::kwargs& given) {
+/// @param search  what looks for the path: (state, start, goals, options)
+template <class Search>
+PathValue look_for_path(const WorldValue& in, std::size_t index, const py::object& start,
+                        const py::object& goals, const py::kwargs& given, const Search& search) {
   motion::PathOptions options;
   motion::KeepRequest keep;
   py::dict keywords = given;
@@ -520,7 +523,6 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   take_options(motion::keep_options(), keywords, keep);
   const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
   require_all_taken("find_path", keywords, path_keywords(), Runs::Alone);
-  const std::size_t index = robot_index(in.world(), robot);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
   const std::vector<double> from = start_of(in.world().robots[index], start);
   bool one = false;
@@ -530,10 +532,73 @@ PathValue find_path(const WorldValue& in, const py::object& start, const py::obj
   return run(0, [&] {
     const world::WorldState state = initial_state(in.world());
     options.constraints = constraints_of(in.world(), state, index, from, to, keep);
-    return PathValue{in, index, options.check.resolution,
-                     motion::find_path(*in.checker, state, index, from, to, options),
+    return PathValue{in, index, options.check.resolution, search(state, from, to, options),
                      options.constraints};
   });
+}
+
+PathValue find_path(const WorldValue& in, const py::object& start, const py::object& goals,
+                    const std::optional<std::string>& robot, const py::kwargs& given) {
+  const std::size_t index = robot_index(in.world(), robot);
+  return look_for_path(
+      in, index, start, goals, given,
+      [&](const auto& state, const auto& from, const auto& to, const auto& options) {
+        return motion::find_path(*in.checker, state, index, from, to, options);
+      });
+}
+
+/// Paths query after query, by a roadmap where one was made.
+struct FinderValue {
+  WorldValue in;
+  std::size_t robot = 0;
+  std::shared_ptr<const motion::PathFinder> finder;
+  std::shared_ptr<const motion::Roadmap> roadmap = nullptr;
+};
+
+FinderValue path_finder(const WorldValue& in, const std::optional<std::string>& robot) {
+  const std::size_t index = robot_index(in.world(), robot);
+  return run(0, [&] {
+    return FinderValue{
+        in, index,
+        std::make_shared<const motion::PathFinder>(*in.checker, initial_state(in.world()), index)};
+  });
+}
+
+PathValue find_path_again(const FinderValue& f, const py::object& start, const py::object& goals,
+                          const py::kwargs& given) {
+  const std::shared_ptr<const motion::Roadmap> roadmap = f.roadmap;
+  return look_for_path(f.in, f.robot, start, goals, given,
+                       [&](const auto&, const auto& from, const auto& to, const auto& options) {
+                         return roadmap ? roadmap->find(*f.finder, from, to, options)
+                                        : f.finder->find(from, to, options);
+                       });
+}
+
+void make_roadmap(FinderValue& f, std::size_t nodes, std::size_t neighbours, std::uint64_t seed,
+                  const py::object& progress) {
+  Watch watch(progress);
+  motion::RoadmapOptions options{.seed = seed, .nodes = nodes, .neighbours = neighbours};
+  options.check.progress = watch.hook();
+  const auto finder = f.finder;
+  f.roadmap = run(0, [&] { return std::make_shared<const motion::Roadmap>(*finder, options); });
+}
+
+void read_roadmap(FinderValue& f, const py::object& file) {
+  const auto path = path_of(file);
+  if (!path) throw Error(ErrorCode::InvalidArgument, "file must be the name of a file");
+  const auto finder = f.finder;
+  f.roadmap = run(0, [&] {
+    const std::vector<char> bytes = io::read_file(*path);
+    return std::make_shared<const motion::Roadmap>(
+        motion::Roadmap::from_json({bytes.data(), bytes.size()}, *path, *finder));
+  });
+}
+
+void write_roadmap(const FinderValue& f, const py::object& file) {
+  const auto path = path_of(file);
+  if (!path) throw Error(ErrorCode::InvalidArgument, "file must be the name of a file");
+  if (!f.roadmap) throw Error(ErrorCode::InvalidArgument, "no roadmap was made or read");
+  run(0, [&] { io::write_file(*path, f.roadmap->to_json()); });
 }
 
 py::array goals_array(const motion::Goals& goals, const world::RobotModel& robot) {
@@ -997,6 +1062,65 @@ void bind_path(py::module_& module) {
       });
 }
 
+constexpr const char* kFinderPathDoc =
+    R"(As `World.find_path`: the same is claimed of the path, which may be another one. By the roadmap,
+where there is one; where that leads nowhere, or constraints are to be kept, by trees.
+
+Parameters
+----------
+start : array
+    k values; None: home.
+goals : array
+    k values, or n x k.
+{keywords}
+)";
+
+constexpr const char* kMakeRoadmapDoc =
+    R"(Makes a roadmap, in place of one that there is: free configurations, joined by straight motions
+that are free at every instant.
+
+Parameters
+----------
+nodes : int
+    Configurations; fewer where few that are drawn are free.
+neighbours : int
+    That each is joined to.
+seed : int
+    Of the configurations.
+progress
+    As of `World.find_path`.)";
+
+void bind_path_finder(py::module_& module) {
+  py::class_<FinderValue> finder(module, "PathFinder",
+                                 R"(Paths of a robot of a world, query after query.
+
+What queries share is made once, which takes about a tenth of a second. Paths are the same whatever
+was asked before.)");
+  finder
+      .def_property_readonly(
+          "nodes", [](const FinderValue& f) { return f.roadmap ? f.roadmap->nodes() : 0; },
+          "Of the roadmap; 0: there is none.")
+      .def_property_readonly(
+          "edges", [](const FinderValue& f) { return f.roadmap ? f.roadmap->edges() : 0; },
+          "Of the roadmap.")
+      .def("make_roadmap", &make_roadmap, py::kw_only(), py::arg("nodes") = 1000,
+           py::arg("neighbours") = 12, py::arg("seed") = 1, py::arg("progress") = py::none(),
+           kMakeRoadmapDoc)
+      .def("read_roadmap", &read_roadmap, py::arg("file"),
+           "Takes a roadmap that `write_roadmap` wrote; one of another scene is refused "
+           "('invalid_input').")
+      .def("write_roadmap", &write_roadmap, py::arg("file"),
+           "Writes the roadmap (docs/formats.md).")
+      .def("__repr__", [](const FinderValue& f) {
+        return "<kaboum.PathFinder of " + f.in.world().robots[f.robot].name + ">";
+      });
+  py::options signatures;
+  signatures.disable_function_signatures();  // the table's
+  const std::string text = document("find_path", "self: object, start: object, goals: object, *",
+                                    path_keywords(), "kaboum.Path", kFinderPathDoc, Runs::Alone);
+  finder.def("find_path", &find_path_again, py::arg("start"), py::arg("goals"), text.c_str());
+}
+
 using WorldClass = py::class_<WorldValue>;
 
 constexpr const char* kCheckDoc =
@@ -1278,6 +1402,8 @@ void bind_questions(WorldClass& world) {
       .def("is_inside", &is_inside, py::arg("what"), py::arg("region"), py::arg("q") = py::none(),
            py::kw_only(), py::arg("robot") = py::none(), py::arg("progress") = py::none(),
            kInsideDoc)
+      .def("path_finder", &path_finder, py::kw_only(), py::arg("robot") = py::none(),
+           "What finds paths of a robot query after query, faster than `find_path` does.")
       .def("pose_goals", &pose_goals, py::arg("pose"), py::kw_only(), py::arg("start") = py::none(),
            py::arg("tool") = py::none(), py::arg("robot") = py::none(), py::arg("seed") = 1,
            py::arg("progress") = py::none(), kPoseGoalsDoc)
@@ -1374,6 +1500,7 @@ void bind_worlds(py::module_& module) {
   bind_answers(module);
   bind_inclusion_and_pairs(module);
   bind_path(module);
+  bind_path_finder(module);
   bind_world(module);
 }
 

@@ -60,6 +60,22 @@ expect 0 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o p8.csv --seed 8
 ! cmp -s p1.csv p8.csv || fail "the seed changes nothing"
 expect 0 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o p.csv --timeout 60 --seed 7
 cmp -s p1.csv p.csv || fail "a limit of time changes the path"
+# By a roadmap: made once, read afterwards; the same bytes on any number of threads; of another scene it is refused.
+expect 0 'roadmap of 1000 nodes' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o m1.csv --roadmap map1.json --threads 1
+expect 0 'roadmap of 1000 nodes' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o m2.csv --roadmap map2.json --threads 5
+cmp -s map1.json map2.json || fail "another roadmap on 5 threads"
+cmp -s m1.csv m2.csv || fail "another path by a roadmap on 5 threads"
+expect 0 'free at every instant' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o m2.csv --roadmap map1.json
+cmp -s m1.csv m2.csv || fail "another path by a roadmap that is read"
+cmp -s map1.json map2.json || fail "a roadmap that is read is written"
+shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path m1.csv
+expect 7 'does not say that there is none.*--max-work' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --roadmap map1.json --max-work 1e-6
+sed 's/1\.5/1.50001/' cell.json >moved.json
+! cmp -s cell.json moved.json || fail "nothing was moved"
+expect 3 'of another scene' "$M" moved.json --from=-0.8,0 --to 0.8,0 -o none.csv --roadmap map1.json
+echo '{}' >no-map.json
+expect 3 'no roadmap' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o none.csv --roadmap no-map.json
+expect 2 '' "$M" cell.json --from=-0.8,0 --to 0.8,0 -o same.csv --roadmap same.csv
 # Straight; from home; from where another path ends; to the nearest of several; in degrees.
 expect 0 'straight' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv
 shows 0 '^j1,j2$' "$M" cell.json --start p.csv --to 0.5,0

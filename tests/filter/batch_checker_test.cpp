@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
-#include <kaboum/filter/batch_checker.h>
+#include <kaboum/filter/motion_checker.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/robot/robot.h>
 #include <kaboum/world/cloud.h>
@@ -591,6 +591,81 @@ TEST(Lanes, WitnessesThatLieAreNoticed) {
   EXPECT_EQ(wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0], 0U);
   EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 5U);
   EXPECT_LT(open(model), open(none));
+}
+
+/// Faces of boxes that links are in front of decide what balls leave open; corners that are said to
+/// be nearer to the link than they are give wrong answers.
+TEST(Lanes, CornersThatLieAreNoticed) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+  detail::Model mutant = model, none = model;
+  for (detail::ShapeModel& s : mutant.shapes) s.corner_radius -= 0.003F;
+  for (detail::ShapeModel& s : none.shapes) s.corner_radius = 100;
+  const std::vector<double> rows = rows_at_contact(checker, 6000, 77, {1e-6, 1e-5, 1e-4, 1e-3});
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  const auto count = [&](const detail::Model& m, Answer answer) {
+    return std::ranges::count(answers_of(m, instruction_sets().back(), rows), answer);
+  };
+  EXPECT_EQ(wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0], 0U);
+  EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 20U);
+  EXPECT_GT(count(model, Answer::Free), count(none, Answer::Free) + 10);
+  for (const Instructions set : instruction_sets())
+    EXPECT_EQ(answers_of(model, set, rows), answers_of(model, instruction_sets().back(), rows));
+}
+
+/// Motions one by one: what vector code says of them is so, and the same for all instructions.
+TEST(MotionChecker, AnswersAsCheckMotionDoes) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const std::size_t count = 400;
+  const std::vector<double> from = random_rows(world, count, 61),
+                            ends = random_rows(world, count, 62);
+  const std::size_t n = world.robots[0].kinematics.variables.size();
+  std::vector<BatchChecker> batches;
+  std::vector<MotionChecker> checkers;
+  for (const Instructions set : instruction_sets())
+    batches.emplace_back(checker, initial_state(world), 0,
+                         BatchChecker::Options{.instructions = set});
+  for (const BatchChecker& batch : batches) checkers.emplace_back(batch);
+  std::array<std::size_t, 3> answers{};
+  std::size_t open_free = 0, open_not_free = 0;
+  for (const double resolution : {1e-5, 0.02}) {
+    world::MotionOptions options;
+    options.resolution = resolution;
+    options.where = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double share = i % 4 == 0 ? 1 : i % 4 == 1 ? 0.3 : i % 4 == 2 ? 0.05 : 1e-3;
+      std::vector<double> a(from.begin() + static_cast<std::ptrdiff_t>(i * n),
+                            from.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+      std::vector<double> b = a;
+      for (std::size_t k = 0; k < n; ++k) b[k] += share * (ends[i * n + k] - a[k]);
+      const bool free = check_motion(checker, initial_state(world), 0, {a, b}, options).outcome ==
+                        world::MotionAnswer::Outcome::Free;
+      const Answer answer = checkers.back().filter(a, b, resolution);
+      const std::vector<std::array<double, 2>> open(checkers.back().open().begin(),
+                                                    checkers.back().open().end());
+      ++answers[static_cast<std::size_t>(answer)];
+      if (answer != Answer::Open) {
+        EXPECT_EQ(answer == Answer::Free, free) << i;
+        EXPECT_EQ(checkers.back().filter(b, a, resolution), answer) << i;
+      }
+      for (MotionChecker& other : checkers) {
+        EXPECT_EQ(other.filter(a, b, resolution), answer) << i;
+        EXPECT_TRUE(std::ranges::equal(other.open(), open)) << i;
+        EXPECT_EQ(other.is_free(a, b, options), free) << i;
+      }
+      if (checkers.back().filter(a, b, resolution) != Answer::Open) continue;
+      std::size_t intervals = 0;
+      const bool apart = checkers.back().are_open_free(a, b, options, intervals);
+      EXPECT_GT(intervals, 0U);
+      if (apart) EXPECT_TRUE(free) << i;
+      ++(apart ? open_free : open_not_free);
+    }
+  }
+  for (const std::size_t some : answers) EXPECT_GT(some, 30U);
+  EXPECT_GT(open_free, 10U);
+  EXPECT_GT(open_not_free, 10U);
 }
 
 /// Points on a table and on a ball, and some that are apart from all others.

@@ -354,6 +354,41 @@ def test_paths_are_free_at_every_instant(cell):
         refused.trajectory()
 
 
+def test_paths_query_after_query(cell, tmp_path):
+    world = kaboum.World(cell)
+    home = world.home()
+    rng = np.random.default_rng(3)
+    goals = [q for q in home + rng.uniform(-1, 1, (60, len(home))) if world.check(q)][:12]
+    finder = world.path_finder()
+    assert finder.nodes == 0
+    with pytest.raises(kaboum.Error, match="no roadmap"):
+        finder.write_roadmap(tmp_path / "map.json")
+    by_trees = [finder.find_path(home, q, max_work=0.2) for q in goals]
+    assert any(by_trees)
+    finder.make_roadmap(nodes=100)
+    assert finder.nodes == 100 and finder.edges > 0
+    by_roadmap = [finder.find_path(home, q, max_work=0.2) for q in goals]
+    for path in by_trees + by_roadmap:
+        assert not path or world.check_motion(path.waypoints)
+    finder.write_roadmap(tmp_path / "map.json")
+    other = kaboum.World(cell).path_finder()
+    other.read_roadmap(tmp_path / "map.json")
+    assert other.nodes == 100 and other.edges == finder.edges
+    for q, path in zip(goals, by_roadmap):
+        assert np.array_equal(other.find_path(home, q, max_work=0.2).waypoints, path.waypoints)
+    assert not other.find_path(home, goals, keep="upright=0.4", max_work=1e-6, timeout=10).broken
+    # The program reads it too; of a world with a margin it is another one's.
+    code, text = run("kaboum-move", cell, "--to=" + spelled(goals[0]), "-o", tmp_path / "path.csv", "--roadmap", tmp_path / "map.json")
+    assert code in (0, 7), text
+    with pytest.raises(kaboum.Error, match="another scene"):
+        kaboum.World(cell, margin=0.01).path_finder().read_roadmap(tmp_path / "map.json")
+    for wrong in (dict(max_work=0), dict(nodes=3)):
+        with pytest.raises(kaboum.Error):
+            finder.find_path(home, goals[0], **wrong)
+    with pytest.raises(kaboum.Error):
+        finder.make_roadmap(nodes=0)
+
+
 def test_motions_keep_what_is_asked_for(cell):
     world = kaboum.World(cell)
     home = world.home()

@@ -1,7 +1,9 @@
 // kaboum-move: paths of a robot of a scene, certified free at every instant, and their execution.
 #include <kaboum/base/error.h>
+#include <kaboum/motion/roadmap.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 
 #include "common/cli.h"
@@ -16,6 +18,23 @@ using motion::PathAnswer;
 using Outcome = PathAnswer::Outcome;
 using tools::MoveOptions;
 
+/// The roadmap of a file; of none, one that is made and written there.
+motion::Roadmap roadmap_of(const MoveOptions& o, const motion::PathFinder& finder,
+                           const motion::PathOptions& options) {
+  if (std::filesystem::exists(o.roadmap)) {
+    const std::vector<char> bytes = io::read_file(o.roadmap);
+    return motion::Roadmap::from_json({bytes.data(), bytes.size()}, o.roadmap, finder);
+  }
+  motion::RoadmapOptions made;
+  made.seed = options.seed;
+  made.check = options.check;
+  motion::Roadmap out(finder, made);
+  io::write_file(o.roadmap, out.to_json());
+  tools::log(o.common.quiet, "roadmap of " + std::to_string(out.nodes()) + " nodes and " +
+                                 std::to_string(out.edges()) + " edges: " + o.roadmap);
+  return out;
+}
+
 int move(const MoveOptions& o) {
   if (o.degrees && motion::message_format(o.trajectory))
     throw Error(ErrorCode::InvalidArgument,
@@ -24,9 +43,11 @@ int move(const MoveOptions& o) {
   const tools::MoveRequest r = tools::read_request(o);
   std::vector<std::string> inputs = r.scene.inputs;
   inputs.insert(inputs.end(), {o.start, o.goals});
-  tools::require_apart(
-      {{"--output", o.output}, {"--trajectory", o.trajectory}, {"--report", o.common.report}},
-      inputs);
+  tools::require_apart({{"--output", o.output},
+                        {"--trajectory", o.trajectory},
+                        {"--roadmap", o.roadmap},
+                        {"--report", o.common.report}},
+                       inputs);
   for (const std::string& note : r.notes) tools::log(o.common.quiet, note);
   if (r.goals.empty()) {
     for (const std::string& why : r.unreached) std::cerr << "kaboum-move: " << why << '\n';
@@ -42,7 +63,10 @@ int move(const MoveOptions& o) {
     motion::PathOptions options = o.search;
     options.constraints = r.constraints;
     options.check.progress = [&](const std::string& stage) { progress.show(stage); };
-    return find_path(checker, initial_state(r.scene.world), r.robot, r.start, r.goals, options);
+    const world::WorldState state = initial_state(r.scene.world);
+    if (o.roadmap.empty()) return find_path(checker, state, r.robot, r.start, r.goals, options);
+    const motion::PathFinder finder(checker, state, r.robot);
+    return roadmap_of(o, finder, options).find(finder, r.start, r.goals, options);
   }();
   tools::Json report = tools::answer_json(r, answer, o);
   if (!r.notes.empty()) report["notes"] = r.notes;

@@ -61,6 +61,11 @@ void describe(CLI::App& app, MoveOptions& o) {
       ->type_name("FILE");
   app.add_flag("--degrees", o.degrees,
                "Angles are in degrees, those read and those in -o and --trajectory [radians]");
+  app.add_option("--roadmap", o.roadmap,
+                 "Find the path by a roadmap of the scene and the robot, JSON: it is read where "
+                 "the file is there, and made and written where it is not. One of another scene is "
+                 "refused")
+      ->type_name("FILE");
   add_request_options(app, motion::path_options(), o.search, o.stated);
   add_request_options(app, motion::keep_options(), o.keep, o.stated);
   add_request_options(app, world::margin_options(), o.margin, o.stated);

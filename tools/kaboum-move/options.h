@@ -17,7 +17,7 @@ namespace kaboum::tools {
 
 /// The command line of kaboum-move.
 struct MoveOptions {
-  std::string scene, robot, from, start, goals, output = "-", trajectory;
+  std::string scene, robot, from, start, goals, output = "-", trajectory, roadmap;
   std::vector<std::string> to, to_pose, reach;
   motion::PathOptions search;
   motion::TrajectoryOptions execution;
