@@ -214,7 +214,7 @@ def length(path):
 def judged(args, scene, urdf, folder, who, answers):
     (folder / f"{who}.paths").write_text("".join(json.dumps(a["path"]) + "\n" for a in answers))
     subprocess.run([args.build / "benchmarks/path-query-benchmark", "judge", scene, urdf, folder / "problems", folder / f"{who}.paths",
-                    folder / f"{who}.verdicts"], check=True)
+                    folder / f"{who}.verdicts", str(args.step)], check=True)
     return [json.loads(line) for line in (folder / f"{who}.verdicts").read_text().splitlines()]
 
 
@@ -246,7 +246,7 @@ def main():
     parser.add_argument("--problems", type=int, default=100, help="of each kind of MotionBenchMaker's")
     parser.add_argument("--scenes", type=int, default=100, help="queries in each scene of batch_scenes.py")
     parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--no-judge", action="store_true", help="leave the exact meshes out")
+    parser.add_argument("--step", type=float, default=0.01, help="between samples that the exact meshes judge [rad]; 0: they are left out")
     parser.add_argument("--nodes", type=int, default=2000, help="of a roadmap of each scene of batch_scenes.py; 0: none")
     args = parser.parse_args()
     args.build, args.folder = args.build.resolve(), args.folder.resolve()
@@ -274,7 +274,7 @@ def compare(args, name):
         print(f"\n{name}: a roadmap of {args.nodes} nodes takes {numpy.median([a['setup'] for a in mapped]):.1f} s")
     print(f"{name}: a scene's checker takes {1e3 * numpy.median([a['setup'] for a in answers['KABouM']]):.0f} ms")
     nothing = [{"contacts": 0, "samples": 0}] * len(problems)
-    verdicts = {who: nothing if args.no_judge else judged(args, scene, urdf, folder, who.split()[-1].lower(), [a or {"path": []} for a in some])
+    verdicts = {who: nothing if not args.step else judged(args, scene, urdf, folder, who.split()[-1].lower(), [a or {"path": []} for a in some])
                 for who, some in answers.items()}
     rows = []
     for kind in list(dict.fromkeys(p["problem"] for p in problems)) + ["all"]:

@@ -1,7 +1,7 @@
 // Queries for paths, timed, and paths judged by exact meshes.
 //
 //   path-query-benchmark plan SCENE PROBLEMS ANSWERS REPEATS [NODES]
-//   path-query-benchmark judge SCENE URDF PROBLEMS PATHS ANSWERS
+//   path-query-benchmark judge SCENE URDF PROBLEMS PATHS ANSWERS STEP
 //
 // SCENE has a robot; PROBLEMS are lines of JSON: objects, start and goal; PATHS are lines of
 // waypoints, one for each problem. planner_peers.py writes and reads all of them.
@@ -167,8 +167,7 @@ geom::Mesh mesh_of_link(const robot::Link& link, robot::MeshFiles& files) {
   return all;
 }
 
-/// Samples of a path that are in contact by the exact meshes, a thousandth of a radian or less
-/// apart.
+/// Samples of a path that are in contact by the exact meshes.
 struct Verdict {
   std::size_t samples = 0, contacts = 0;
   std::map<std::string, std::size_t> pairs;
@@ -196,12 +195,12 @@ Verdict judge(const judge::Cell& cell, judge::CellState& state, const robot::Pat
 }
 
 int judge_paths(int argc, char** argv) {
-  if (argc < 7) return 2;
   const world::SceneFile scene = world::read_scene(argv[2]);
   const robot::RobotFile file = robot::read_robot(argv[3]);
   robot::MeshFiles files(file.path, {});
   const std::vector<json> problems = read_lines(argv[4]), paths = read_lines(argv[5]);
   std::ofstream out(argv[6]);
+  const double step = std::atof(argv[7]);
   const world::RobotModel& model = scene.world.robots[0];
   std::vector<std::pair<std::uint32_t, geom::Mesh>> links;
   for (const world::LinkShape& shape : model.shapes)
@@ -226,7 +225,7 @@ int judge_paths(int argc, char** argv) {
         state.objects.push_back({object.pose, {}, false});
       }
     }
-    const Verdict v = judge(*cell, state, paths[i].get<robot::Path>(), 1e-3);
+    const Verdict v = judge(*cell, state, paths[i].get<robot::Path>(), step);
     out << json{{"samples", v.samples}, {"contacts", v.contacts}, {"pairs", v.pairs}} << '\n';
   }
   return 0;
@@ -237,7 +236,7 @@ int judge_paths(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     if (argc >= 5 && std::string(argv[1]) == "plan") return plan(argc, argv);
-    if (argc >= 7 && std::string(argv[1]) == "judge") return judge_paths(argc, argv);
+    if (argc >= 8 && std::string(argv[1]) == "judge") return judge_paths(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "path-query-benchmark: " << error.what() << '\n';
     return 1;

@@ -82,17 +82,18 @@ constexpr std::size_t kMostLanes = 16;
 }  // namespace
 
 LaneMemory::LaneMemory(const Model& model)
-    : floats_((14 * (model.steps.size() + 1) +
-               3 * (model.shapes.size() + model.outer.size() + model.inner.size() +
-                    model.corners.size()) +
-               1) *
-              kMostLanes),
+    : floats_(
+          std::make_unique_for_overwrite<float[]>((14 * (model.steps.size() + 1) +
+                                                   3 * (model.shapes.size() + model.outer.size() +
+                                                        model.inner.size() + model.corners.size()) +
+                                                   1) *
+                                                  kMostLanes)),
       ready_(model.shapes.size()) {}
 
 float* LaneMemory::floats() {
   constexpr std::uintptr_t kAlignment = 4 * kMostLanes;
-  const auto at = std::bit_cast<std::uintptr_t>(floats_.data());
-  return floats_.data() + (kAlignment - at % kAlignment) % kAlignment / sizeof(float);
+  const auto at = std::bit_cast<std::uintptr_t>(floats_.get());
+  return floats_.get() + (kAlignment - at % kAlignment) % kAlignment / sizeof(float);
 }
 
 namespace {

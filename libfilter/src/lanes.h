@@ -3,6 +3,7 @@
 #include <kaboum/filter/batch_checker.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "model.h"
@@ -18,7 +19,7 @@ class LaneMemory {
   unsigned char* ready() { return ready_.data(); }
 
  private:
-  std::vector<float> floats_;
+  std::unique_ptr<float[]> floats_;
   std::vector<unsigned char> ready_;
 };
 

@@ -25,9 +25,10 @@ namespace {
 using nlohmann::json;
 using Certain = world::MotionAnswer::Outcome;
 
-constexpr std::size_t kDrawnPerNode = 100;  ///< at most
-constexpr std::size_t kNearest = 30;        ///< nodes that an end of a query may be joined to
-constexpr std::size_t kJoined = 4;          ///< so many are enough
+constexpr std::size_t kDrawnPerNode = 100;    ///< at most
+constexpr std::size_t kNearest = 30;          ///< nodes that an end of a query may be joined to
+constexpr std::size_t kJoined = 4;            ///< so many are enough
+constexpr std::size_t kMotionsAtOnce = 4096;  ///< between calls of a progress
 
 class Hashed {
  public:
@@ -285,7 +286,6 @@ Roadmap::Roadmap(const PathFinder& finder, const RoadmapOptions& options) {
     for (auto it = near.begin(); it != near.begin() + most; ++it)
       wanted.insert({std::min(i, it->second), std::max(i, it->second)});
   }
-  tell(std::to_string(wanted.size()) + " motions");
   std::vector<double> from, to;
   for (const auto& [a, b] : wanted)
     for (std::size_t k = 0; k < n; ++k) {
@@ -293,8 +293,13 @@ Roadmap::Roadmap(const PathFinder& finder, const RoadmapOptions& options) {
       to.push_back(values_[b * n + k]);
     }
   free.assign(wanted.size(), 0);
-  f.batch.decide_motions(from, to, free, options.check,
-                         [&] { tell(std::to_string(wanted.size()) + " motions"); });
+  for (std::size_t i = 0; i < free.size(); i += kMotionsAtOnce) {
+    const std::size_t count = std::min(kMotionsAtOnce, free.size() - i);
+    tell(std::to_string(i) + " of " + std::to_string(free.size()) + " motions");
+    f.batch.decide_motions(std::span(from).subspan(i * n, count * n),
+                           std::span(to).subspan(i * n, count * n),
+                           std::span(free).subspan(i, count), options.check);
+  }
   std::size_t i = 0;
   for (const auto& [a, b] : wanted)
     if (free[i++] != 0) edges_.push_back({a, b});

@@ -376,15 +376,15 @@ def test_paths_query_after_query(cell, tmp_path):
     assert other.nodes == 100 and other.edges == finder.edges
     for q, path in zip(goals, by_roadmap):
         assert np.array_equal(other.find_path(home, q, max_work=0.2).waypoints, path.waypoints)
-    assert not other.find_path(home, goals, keep="upright=0.4", max_work=1e-6, timeout=10).broken
+    kept = [p for p in (other.find_path(home, q, keep="upright=0.8", max_work=0.1) for q in goals) if p]
+    assert kept and all(world.check_motion(p.waypoints, keep="upright=0.8") for p in kept)
     # The program reads it too; of a world with a margin it is another one's.
     code, text = run("kaboum-move", cell, "--to=" + spelled(goals[0]), "-o", tmp_path / "path.csv", "--roadmap", tmp_path / "map.json")
     assert code in (0, 7), text
     with pytest.raises(kaboum.Error, match="another scene"):
         kaboum.World(cell, margin=0.01).path_finder().read_roadmap(tmp_path / "map.json")
-    for wrong in (dict(max_work=0), dict(nodes=3)):
-        with pytest.raises(kaboum.Error):
-            finder.find_path(home, goals[0], **wrong)
+    with pytest.raises(kaboum.Error):
+        finder.find_path(home, goals[0], max_work=0)
     with pytest.raises(kaboum.Error):
         finder.make_roadmap(nodes=0)
 
