@@ -7,6 +7,7 @@
 #include <kaboum/world/margins.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>

@@ -8,6 +8,7 @@
 #include <kaboum/robot/robot.h>
 #include <kaboum/world/cloud.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -6,6 +6,9 @@
 #include <kaboum/motion/trajectory.h>
 
 #include <atomic>
+#include <optional>
+#include <random>
+#include <set>
 #include <thread>
 
 #include "random_scene.h"
