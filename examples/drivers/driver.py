@@ -3,87 +3,68 @@
 
     kaboum-plan run ... --robot 'python3 examples/drivers/driver.py --sense "isSpillable(o1)=true"'
 
-A real one moves motors where this one sleeps: it replaces `move`, `take`, `release` and `sense`. docs/planning/drivers.md says what
-the lines are. --faults shows what kaboum-plan makes of a driver that is late, dies, lies, answers twice or fails.
+A real one moves motors where this one sleeps: it replaces `move`, `close`, `open` and `sense` of kaboum.driver.Driver
+(docs/planning/drivers.md). --faults shows what kaboum-plan makes of a driver that is late, dies, lies, answers twice or fails.
 """
 import argparse
 import json
 import math
+import pathlib
 import random
 import sys
 import time
 
+try:
+    from kaboum.driver import Driver
+except ImportError:  # in a checkout: the file itself, which needs nothing else
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python/kaboum"))
+    from driver import Driver
 
-class Driver:
+
+class NoRobot(Driver):
     def __init__(self, options):
-        self.options, self.random, self.q, self.held = options, random.Random(options.seed), {}, set()
+        super().__init__()
+        self.options, self.random = options, random.Random(options.seed)
         self.sensed = dict(text.rsplit("=", 1) for text in options.sense)
 
-    def begin(self, message):
-        self.q = {name: robot["q"] for name, robot in message["robots"].items()}
-        self.held = {(name, o["held_by"]) for name, o in message["objects"].items() if "held_by" in o}
-        return {"done": True, "q": self.q}
+    def where(self, robot):
+        return self.q[robot]
 
-    def act(self, message):
-        return {"done": True}
-
-    def move(self, message):
-        points = message["trajectory"]["points"]
-        if points[0]["positions"] != self.q[message["robot"]]:
-            return {"failed": "the trajectory begins elsewhere", "q": self.q[message["robot"]]}
+    def move(self, robot, motion):
         if self.options.real_time:
-            time.sleep(points[-1]["time_from_start"])
-        self.q[message["robot"]] = points[-1]["positions"]
-        reply = {"done": True, "q": self.q[message["robot"]]}
+            for _ in self.follow(motion, rate=100):
+                pass
+        self.q[robot] = motion.positions[-1]
         if self.options.stray is not None:  # what encoders would have seen: farthest off half way
-            end = points[-1]["time_from_start"]
-            reply["executed"] = [[p["time_from_start"], *(x + self.options.stray * math.sin(math.pi * p["time_from_start"] / end) for x in p["positions"])]
-                                 for p in points]
-        return reply
+            return [[t, *(x + self.options.stray * math.sin(math.pi * t / motion.duration) for x in q)] for t, q in zip(motion.times, motion.positions)]
 
-    def take(self, message):
-        hold = message["object"], message["robot"]
-        if hold in self.held:
-            return {"failed": message["object"] + " is held already"}
-        self.held.add(hold)
-        return {"done": True}
+    def sense(self, fact, values):
+        said = self.sensed.get(fact)
+        return said if said is not None else self.random.choice(values)
 
-    def release(self, message):
-        hold = message["object"], message["robot"]
-        if hold not in self.held:
-            return {"failed": message["object"] + " is not held by it"}
-        self.held.remove(hold)
-        return {"done": True}
-
-    def sense(self, message):
-        said = self.sensed.get(message["fact"])
-        return {"sensed": said if said is not None else self.random.choice(message["values"])}
-
-    def finish(self, message):
-        return {"done": True}
-
-    def answer(self, message):
-        """What is said to a message: lines, one of them if all is well."""
+    def lines(self, message):
+        """What is said to a message: a line, if all is well."""
         fault = self.random.choice(FAULTS) if self.random.random() < self.options.faults else None
         if fault == "dead":
             sys.exit(3)
         if fault == "late":
             time.sleep(self.options.late)
         if fault == "fails":
-            reply = {"failed": "by chance"}
+            reply = {"failed": "by chance", "id": message["id"]}
             if message["do"] == "move":
                 reply["q"] = self.q[message["robot"]]
-            return [{**reply, "id": message["id"]}]
-        reply = {**getattr(self, message["do"])(message), "id": message["id"]}
+            return [json.dumps(reply)]
+        reply = self.answer(message)
         if fault == "twice":
-            return [reply, reply]
+            return 2 * [json.dumps(reply)]
         if fault == "wrong id":
-            return [{**reply, "id": message["id"] + 1}]
+            return [json.dumps({**reply, "id": message["id"] + 1})]
         if fault == "elsewhere" and message["do"] == "move":
-            return [{**reply, "q": [x + 0.5 for x in reply["q"]]}]
+            return [json.dumps({**reply, "q": [x + 0.5 for x in reply["q"]]})]
         if fault == "nonsense":
-            return ["{", [], {"id": message["id"]}, {"id": message["id"], "done": False}][self.random.randrange(4):][:1]
-        return [reply]
+            nonsense = ["{", "[]", json.dumps({"id": message["id"]}), json.dumps({"id": message["id"], "done": False})]
+            return [self.random.choice(nonsense)]
+        return [json.dumps(reply)]
 
 
 FAULTS = ("dead", "late", "fails", "twice", "wrong id", "elsewhere", "nonsense")
@@ -97,14 +78,7 @@ def main():
     parser.add_argument("--faults", type=float, default=0, metavar="SHARE", help="of messages that something goes wrong at [0]")
     parser.add_argument("--stray", type=float, metavar="RAD", help="say how joints moved: so far beside the trajectory half way [not said]")
     parser.add_argument("--late", type=float, default=60, metavar="SECONDS", help="how long a late answer takes [60]")
-    driver = Driver(parser.parse_args())
-    print(json.dumps({"kaboum_driver": 1}), flush=True)
-    for line in sys.stdin:  # its end: kaboum-plan has ended, and a robot has to stand still
-        message = json.loads(line)
-        if message["do"] == "stop":
-            break
-        for reply in driver.answer(message):
-            print(reply if isinstance(reply, str) else json.dumps(reply), flush=True)
+    NoRobot(parser.parse_args()).run()
 
 
 if __name__ == "__main__":

@@ -28,6 +28,12 @@ if "DISPLAY" not in os.environ:
 import mujoco
 import numpy as np
 
+try:
+    from kaboum.driver import Driver, Failure
+except ImportError:  # in a checkout: the file itself, which needs nothing else
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python/kaboum"))
+    from driver import Driver, Failure
+
 STEP = 0.002        # of the simulation [s]
 SAMPLED = 5         # steps between samples of what was executed
 STIFF = 100.0       # of the control of joints: it corrects with this frequency, critically damped [rad/s]
@@ -99,14 +105,11 @@ def angle_between(a, b):
     return 2 * math.acos(min(1.0, abs(float(np.dot(a, b)))))
 
 
-class Failure(Exception):
-    """What the robot says why it could not."""
-
-
 class World:
     """Robots and things in MuJoCo, and beside them what the plan takes them to be."""
 
-    def __init__(self, options, begin):
+    def __init__(self, options, robots, objects):
+        """Robots and objects as kaboum-plan says them when it begins."""
         self.options = options
         scene_file = pathlib.Path(options.scene)
         scene = json.loads(scene_file.read_text())
@@ -131,13 +134,13 @@ class World:
             base = robot.get("base", {})
             frame = spec.worldbody.add_frame(pos=base.get("position", [0, 0, 0]), quat=of_rpy(base.get("rpy", [0, 0, 0])))
             spec.attach(arm, prefix=name + "/", frame=frame)
-            self.robots[name] = begin["robots"][name]["joint_names"]
+            self.robots[name] = robots[name]["joint_names"]
         links = {name: [b.name for b in spec.bodies if b.name.startswith(name + "/")] for name in self.robots}
         self.things = []
         sets = dict(text.split("=", 1) for text in options.set)
         masses = dict(text.split("=", 1) for text in options.mass)
         for thing in scene["objects"]:
-            name, where = thing["name"], begin["objects"].get(thing["name"])
+            name, where = thing["name"], objects.get(thing["name"])
             if not isinstance(where, dict) or "pose" not in where:
                 raise Failure(f"'{name}' does not stand anywhere when it begins")
             pose, free = np.array(where["pose"], float), bool(thing.get("grasps"))
@@ -171,7 +174,7 @@ class World:
             ids = [self.model.joint(f"{name}/{joint}").id for joint in joints]
             self.places[name] = np.array([self.model.jnt_qposadr[i] for i in ids])
             self.dofs[name] = np.array([self.model.jnt_dofadr[i] for i in ids])
-        self.target = {name: (np.array(begin["robots"][name]["q"], float), 0.0, 0.0) for name in self.robots}
+        self.target = {name: (np.array(robots[name]["q"], float), 0.0, 0.0) for name in self.robots}
         # Nobody has put them down exactly there.
         random = np.random.default_rng(options.seed)
         for thing in self.things:
@@ -279,24 +282,19 @@ class World:
 
     # --- what robots do ---
 
-    def move(self, robot, trajectory):
-        if trajectory["joint_names"] != self.robots[robot]:
-            raise Failure("joints in another order than when it began")
-        points = trajectory["points"]
-        times = [p["time_from_start"] for p in points]
-        rows = {k: np.array([p[k] for p in points]) for k in ("positions", "velocities", "accelerations")}
+    def move(self, robot, motion):
         executed = []
-        for k in range(round(times[-1] / STEP)):
+        for k in range(round(motion.duration / STEP)):
             t = k * STEP
             if k % SAMPLED == 0:
                 executed.append([t, *map(float, self.data.qpos[self.places[robot]])])
-            self.target[robot] = tuple(np.array([np.interp(t, times, rows[key][:, j]) for j in range(rows[key].shape[1])]) for key in rows)
+            self.target[robot] = tuple(map(np.array, motion.at(t)))
             self.step()
-        end = rows["positions"][-1]
+        end = np.array(motion.positions[-1])
         self.target[robot] = (end, 0.0, 0.0)
         for k in range(round(1 / STEP)):
             if k % SAMPLED == 0:
-                executed.append([times[-1] + k * STEP, *map(float, self.data.qpos[self.places[robot]])])
+                executed.append([motion.duration + k * STEP, *map(float, self.data.qpos[self.places[robot]])])
             if np.max(np.abs(end - self.data.qpos[self.places[robot]]), initial=0) < TRACKED and \
                     np.max(np.abs(self.data.qvel[self.dofs[robot]]), initial=0) < 0.05:
                 break
@@ -408,50 +406,49 @@ class World:
                 "contacts": [{"action": k[0], "between": k[1:], "depth": v} for k, v in sorted(self.contacts.items())]}
 
 
-class Driver:
+class Simulated(Driver):
     def __init__(self, options):
+        super().__init__()
         self.options, self.world, self.random = options, None, np.random.default_rng(options.seed)
         self.sensed = dict(text.rsplit("=", 1) for text in options.sense)
         self.measures = [re.fullmatch(r"(\w+)=weight>([0-9.e+-]+)", text) for text in options.measure]
         if None in self.measures:
             sys.exit("physics.py: --measure is FACT=weight>KILOGRAMS")
 
-    def begin(self, message):
-        self.world = World(self.options, message)
-        return {"done": True, "q": self.world.joints()}
+    def begin(self, robots, objects):
+        self.world = World(self.options, robots, objects)
 
-    def act(self, message):
-        self.world.action = message["action"]
-        return {"done": True}
+    def where(self, robot):
+        return self.world.joints()[robot]
 
-    def move(self, message):
-        executed = self.world.move(message["robot"], message["trajectory"])
-        return {"done": True, "q": self.world.joints()[message["robot"]], "executed": executed}
+    def act(self, action):
+        self.world.action = action
 
-    def take(self, message):
-        self.world.take(message["robot"], message["link"], message["object"])
-        return {"done": True}
+    def move(self, robot, motion):
+        return self.world.move(robot, motion)
 
-    def release(self, message):
-        self.world.release(message["robot"], message["object"])
-        return {"done": True}
+    def take(self, robot, object, link):
+        self.world.take(robot, link, object)
 
-    def sense(self, message):
-        fact = message["fact"]
+    def release(self, robot, object):
+        self.world.release(robot, object)
+
+    def sense(self, fact, values):
         for measure in self.measures:
             told = re.fullmatch(r"(\w+)\((\w+)\)", fact)
             if told and told.group(1) == measure.group(1):
                 weight = self.world.weight(told.group(2))
                 print(f"physics.py: {told.group(2)} weighs {weight:.3f} kg", file=sys.stderr)
-                return {"sensed": "true" if weight > float(measure.group(2)) else "false"}
+                return weight > float(measure.group(2))
         said = self.sensed.get(fact)
-        return {"sensed": said if said is not None else str(self.random.choice(message["values"]))}
+        return said if said is not None else self.random.choice(values)
 
-    def finish(self, message):
-        self.world.end(message.get("objects", {}))
-        return {"done": True}
+    def finish(self, objects):
+        self.world.end(objects)
+        self.stop()
+        self.world = None
 
-    def close(self):
+    def stop(self):
         if self.world is None:
             return
         report = self.world.report()
@@ -481,23 +478,7 @@ def main():
     parser.add_argument("--report", metavar="FILE.json", help="what went otherwise than planned")
     parser.add_argument("--log", metavar="FILE.jsonl", help="joints and poses, 100 times a second")
     parser.add_argument("--film", metavar="DIRECTORY", help="pictures, 25 a second")
-    driver = Driver(parser.parse_args())
-    print(json.dumps({"kaboum_driver": 1}), flush=True)
-    for line in sys.stdin:  # its end: kaboum-plan has ended, and a robot has to stand still
-        message = json.loads(line)
-        if message["do"] == "stop":
-            break
-        try:
-            reply = getattr(driver, message["do"])(message)
-        except Failure as failure:
-            reply = {"failed": str(failure)}
-            if message["do"] == "move":
-                reply["q"] = driver.world.joints()[message["robot"]]
-        print(json.dumps({**reply, "id": message["id"]}), flush=True)
-        if message["do"] == "finish":
-            driver.close()
-            driver.world = None
-    driver.close()
+    Simulated(parser.parse_args()).run()
 
 
 if __name__ == "__main__":

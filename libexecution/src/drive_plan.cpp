@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "motion_part.h"
+#include "node_motions.h"
 #include "simulation_state.h"
 
 namespace kaboum::execution {
@@ -23,12 +23,11 @@ class Drive {
  public:
   Drive(const world::World& world, const judge::Cell& cell, const PlanRunRequest& request,
         const DriverOptions& options, DriveReport& report)
-      : world_(world),
-        cell_(cell),
-        request_(request),
-        driver_(world, options),
-        rate_(options.rate),
-        report_(report) {}
+      : world_(world), cell_(cell), request_(request), driver_(world, options), report_(report) {
+    told_options_ = request.simulation;
+    told_options_.motion.rate = options.rate;
+    told_options_.progress = {};
+  }
 
   /// @throws DriverStop for a plan that does not hold
   std::function<void(const plan::RunStep&)> take_up(const plan::Model& model,
@@ -38,7 +37,8 @@ class Drive {
     if (const plan::CheckResult checked = plan::check(model, plan, plan::kMostStates, {}, missing);
         !checked.valid)
       throw DriverStop(Kind::Uncertified, "the plan does not hold: " + checked.violation);
-    done_.emplace_back(model, plan);
+    done_.emplace_back(world_, model, plan, told_options_);
+    certify(done_.back());
     model_ = &done_.back().model;
     plan_ = &done_.back().plan;
     told_.reset();
@@ -67,7 +67,8 @@ class Drive {
   /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
   void close() {
     for (Done& done : done_) {
-      Simulation simulation(world_, cell_, done.model, done.plan, request_.simulation);
+      Simulation simulation(world_, cell_, done.model, done.plan, request_.simulation, {},
+                            done.motions);
       std::size_t next = 0;
       plan::RunOptions again;
       again.outcomes = plan::RunOptions::Outcomes::Asked;
@@ -92,12 +93,38 @@ class Drive {
   }
 
  private:
+  /// A plan as far as it was carried out.
+  struct Done {
+    Done(const world::World& world, const plan::Model& m, const plan::Plan& p,
+         const SimulationOptions& options)
+        : model(m), plan(p), motions(std::make_shared<NodeMotions>(world, model, plan, options)) {}
+    plan::Model model;
+    plan::Plan plan;
+    std::shared_ptr<NodeMotions> motions;  ///< of the plan here
+    std::set<plan::Index> nodes = {};
+    std::map<plan::Index, std::vector<ExecutedMotion>> executed = {};  ///< by node
+    std::vector<std::string> sensed = {};                              ///< in their order
+  };
+
   /// What holds an object: a link of a robot.
   struct Holder {
     std::size_t robot;
     std::uint32_t link;
     bool operator==(const Holder&) const = default;
   };
+
+  /// Has all motions that the plan may come to certified before the first one is told: a step does
+  /// not wait for that then.
+  void certify(Done& done) const {
+    if (!(told_options_.motion.blend > 0)) return;
+    if (request_.simulation.progress) request_.simulation.progress("certifying blends");
+    plan::RunOptions every;
+    every.unplanned = [](const plan::Unplanned&) {};
+    plan::run(done.model, done.plan, every, [&](const plan::RunStep& step) {
+      if (const auto state = state_of(world_, done.model, step.before))
+        done.motions->of(step.node, *state);
+    });
+  }
 
   [[nodiscard]] StatedState known_state(const plan::KnownState& known) const {
     auto state = state_of(world_, *model_, known);
@@ -112,7 +139,8 @@ class Drive {
   void tell(plan::Index node, const plan::KnownState& before) {
     if (told_ == node) return;
     told_ = node;
-    const judge::CellState state = known_state(before).state;
+    const StatedState known = known_state(before);
+    const judge::CellState& state = known.state;
     if (!begun_) {
       begun_ = true;
       q_ = state.q;
@@ -126,11 +154,7 @@ class Drive {
     if (request_.simulation.progress) request_.simulation.progress(action);
     ++report_.actions;
     driver_.act(action);
-    std::vector<MotionPart> parts;
-    for (const plan::Plan::Call& call : n.calls)
-      for (MotionPart& part :
-           parts_of(call.payload, world_, "node " + std::to_string(node) + ", " + action))
-        parts.push_back(std::move(part));
+    const std::vector<MotionPart>& parts = done_.back().motions->of(node, known);
     std::vector<ExecutedMotion>& executed = done_.back().executed[node];
     for (std::size_t i = 0; i < parts.size(); ++i) move(parts, i, action, executed.emplace_back());
   }
@@ -158,9 +182,7 @@ class Drive {
         hold(object, next_holder(parts, i, object));
     }
     for (const auto& [object, link] : part.holds) hold(object, Holder{part.robot, link});
-    SimulationOptions options = request_.simulation;
-    options.rate = rate_;
-    driver_.move(part.robot, trajectory_of(part, world_, options), executed);
+    driver_.move(part.robot, trajectory_of(part, world_, told_options_), executed);
     q_[part.robot] = part.path.back();
   }
 
@@ -197,7 +219,7 @@ class Drive {
   const judge::Cell& cell_;
   const PlanRunRequest& request_;
   RobotDriver driver_;
-  double rate_;
+  SimulationOptions told_options_;  ///< of the motions as they are told
   DriveReport& report_;
   const plan::Model* model_ = nullptr;
   const plan::Plan* plan_ = nullptr;
@@ -206,15 +228,6 @@ class Drive {
   std::vector<std::vector<double>> q_;
   std::map<std::size_t, Holder> held_;
   std::optional<judge::CellState> end_;  ///< of what was carried out last
-  /// A plan as far as it was carried out.
-  struct Done {
-    Done(const plan::Model& m, const plan::Plan& p) : model(m), plan(p) {}
-    plan::Model model;
-    plan::Plan plan;
-    std::set<plan::Index> nodes = {};
-    std::map<plan::Index, std::vector<ExecutedMotion>> executed = {};  ///< by node
-    std::vector<std::string> sensed = {};                              ///< in their order
-  };
   std::deque<Done> done_;
 };
 

@@ -3,7 +3,10 @@
 #include "motion_part.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace kaboum::execution {
@@ -60,18 +63,53 @@ std::vector<MotionPart> parts_of(const std::string& payload, const world::World&
   return out;
 }
 
-void require_above_zero(const SimulationOptions& options) {
-  if (!(options.rate > 0) || !(options.acceleration > 0) || !(options.usual_velocity > 0))
+namespace {
+
+/// What is asked of the joints of a robot, and of all joints.
+std::map<std::string, double> of_robot(const std::map<std::string, double>& asked,
+                                       const char* option, const world::World& world,
+                                       std::size_t robot) {
+  std::map<std::string, double> out;
+  std::vector<std::string> names;
+  const auto has = [](const world::RobotModel& model, const std::string& name) {
+    return std::ranges::find(model.kinematics.variables, name, &robot::Variable::name) !=
+           model.kinematics.variables.end();
+  };
+  for (const world::RobotModel& model : world.robots)
+    for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
+  for (const auto& [name, value] : asked) {
+    if (name.empty() || has(world.robots[robot], name)) out[name] = value;
+    if (!name.empty() && std::ranges::find(names, name) == names.end())
+      throw Error(ErrorCode::InvalidArgument, "«" + std::string(option) +
+                                                  "»: no robot of the scene has a joint '" + name +
+                                                  "'" + did_you_mean(name, names));
+  }
+  return out;
+}
+
+}  // namespace
+
+motion::SpeedLimits limits_of(const SimulationOptions& options, const world::World& world,
+                              std::size_t robot) {
+  motion::TrajectoryOptions own = options.motion;
+  if (!(own.rate > 0) || !std::isfinite(own.rate))
     throw Error(ErrorCode::InvalidArgument, "rates and limits must be above 0");
+  own.velocities = of_robot(own.velocities, "max-velocity", world, robot);
+  own.accelerations = of_robot(own.accelerations, "max-acceleration", world, robot);
+  own.jerks = of_robot(own.jerks, "max-jerk", world, robot);
+  return speed_limits(own, world.robots[robot].kinematics);
+}
+
+void require_valid(const SimulationOptions& options, const world::World& world) {
+  for (std::size_t r = 0; r < world.robots.size(); ++r) limits_of(options, world, r);
 }
 
 motion::Trajectory trajectory_of(const MotionPart& part, const world::World& world,
                                  const SimulationOptions& options) {
-  motion::SpeedLimits limits;
-  for (const robot::Variable& v : world.robots[part.robot].kinematics.variables)
-    limits.velocity.push_back(v.velocity.value_or(options.usual_velocity));
-  limits.acceleration.assign(part.path.front().size(), options.acceleration);
-  return {part.path, limits, options.rate, options.profile};
+  const motion::SpeedLimits limits = limits_of(options, world, part.robot);
+  if (part.blends) return {part.path, *part.blends, limits, options.motion.rate};
+  return {part.path, limits, options.motion.rate,
+          options.motion.time_optimal ? motion::Profile::Trapezoid : motion::Profile::Quintic};
 }
 
 }  // namespace kaboum::execution

@@ -3,6 +3,7 @@
 #include <kaboum/execution/simulation.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct MotionPart {
   std::size_t robot = 0;
   std::map<std::size_t, std::uint32_t> holds;  ///< objects, by what link
   robot::Path path;
+  /// Of each waypoint, as of motion::BlendedPath; nullopt: from rest to rest along each segment.
+  std::optional<std::vector<double>> blends = {};
 };
 
 /// The motions of a payload; empty: it is of another kind.
@@ -22,10 +25,16 @@ struct MotionPart {
 std::vector<MotionPart> parts_of(const std::string& payload, const world::World& world,
                                  const std::string& where);
 
-/// @throws Error{InvalidArgument} for rates and limits that are not above 0.
-void require_above_zero(const SimulationOptions& options);
+/// Limits of a robot's joints, as motion::speed_limits.
+/// @throws Error{InvalidArgument} for rates and limits that are not above 0, and names of joints
+///   that no robot of the world has.
+motion::SpeedLimits limits_of(const SimulationOptions& options, const world::World& world,
+                              std::size_t robot);
 
-/// The part in time, from rest to rest along each segment.
+/// @throws as limits_of, of each robot.
+void require_valid(const SimulationOptions& options, const world::World& world);
+
+/// The part in time.
 /// @pre its path is not empty.
 motion::Trajectory trajectory_of(const MotionPart& part, const world::World& world,
                                  const SimulationOptions& options);

@@ -81,7 +81,7 @@ Recording::Recording(const world::World& world, const plan::Model& model, const 
       plan_(plan),
       options_(std::move(options)),
       data_(std::make_unique<Data>()) {
-  require_above_zero(options_);
+  require_valid(options_, world);
   data_->nodes = Json::array_t(plan.nodes.size());
 }
 

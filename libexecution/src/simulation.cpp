@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "motion_part.h"
+#include "node_motions.h"
 #include "simulation_state.h"
 
 namespace kaboum::execution {
@@ -45,20 +44,25 @@ SimulationReport& SimulationReport::operator+=(const SimulationReport& other) {
   seconds += other.seconds;
   most_velocity = std::max(most_velocity, other.most_velocity);
   most_acceleration = std::max(most_acceleration, other.most_acceleration);
+  most_jerk = std::max(most_jerk, other.most_jerk);
+  blends += other.blends;
   for (const std::string& problem : other.problems)
     if (problems.size() < kMostProblems) problems.push_back(problem);
   return *this;
 }
 
 Simulation::Simulation(const world::World& world, const judge::Cell& cell, const plan::Model& model,
-                       const plan::Plan& plan, SimulationOptions options, MotionSink sink)
+                       const plan::Plan& plan, SimulationOptions options, MotionSink sink,
+                       std::shared_ptr<NodeMotions> motions)
     : world_(world),
       cell_(cell),
       model_(model),
       plan_(plan),
       options_(std::move(options)),
-      sink_(std::move(sink)) {
-  require_above_zero(options_);
+      sink_(std::move(sink)),
+      motions_(std::move(motions)) {
+  require_valid(options_, world_);
+  if (!motions_) motions_ = std::make_shared<NodeMotions>(world_, model_, plan_, options_);
   for (const plan::Plan::Node& node : plan.nodes)
     for (const plan::Plan::Call& call : node.calls)
       if (model.externals[call.external].name == "mate" && call.arguments.size() == 5)
@@ -101,17 +105,15 @@ void Simulation::look_at_node(const plan::RunStep& step,
     }
   }
   std::size_t next = 0;
-  for (const plan::Plan::Call& call : node.calls)
-    for (const MotionPart& part :
-         parts_of(call.payload, world_, "node " + std::to_string(step.node) + ", " + where_)) {
-      const ExecutedMotion* now = next < executed.size() ? &executed[next++] : nullptr;
-      if (!is_done && next == executed.size()) {
-        hold(part, state);
-        if (now != nullptr) look_at_executed(*now, part, state);
-        return;
-      }
-      follow(part, state, step, now);
+  for (const MotionPart& part : motions_->of(step.node, *before)) {
+    const ExecutedMotion* now = next < executed.size() ? &executed[next++] : nullptr;
+    if (!is_done && next == executed.size()) {
+      hold(part, state);
+      if (now != nullptr) look_at_executed(*now, part, state);
+      return;
     }
+    follow(part, state, step, now);
+  }
   mounted_ = after->mounted;
   for (std::size_t o = 0; o < state.objects.size(); ++o)
     if (after->state.objects[o].away && before->state.objects[o].hold && !state.objects[o].hold &&
@@ -208,7 +210,10 @@ void Simulation::follow(const MotionPart& part, judge::CellState& state, const p
   const motion::Trajectory trajectory = trajectory_of(part, world_, options_);
   ++report_.motions;
   report_.seconds += trajectory.duration();
-  look(trajectory, part.robot, state);
+  if (part.blends)
+    report_.blends += static_cast<std::uint64_t>(
+        std::ranges::count_if(*part.blends, [](double x) { return x > 0; }));
+  look(trajectory, part, state);
   if (executed != nullptr) look_at_executed(*executed, part, state);
   state.q[part.robot] = part.path.back();
   if (sink_) sink_(step, part.robot, trajectory);
@@ -219,7 +224,7 @@ void Simulation::look_at_executed(const ExecutedMotion& executed, const MotionPa
   if (executed.samples.empty()) return;
   const std::size_t robot = part.robot;
   SimulationOptions as_told = options_;
-  as_told.rate = executed.rate;
+  as_told.motion.rate = executed.rate;
   const motion::Trajectory trajectory = trajectory_of(part, world_, as_told);
   ExecutedReport& report = report_.executed;
   ++report.motions;
@@ -247,12 +252,15 @@ void Simulation::look_at_executed(const ExecutedMotion& executed, const MotionPa
   report.longest_gap = std::max(report.longest_gap, trajectory.duration() - last);
 }
 
-void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,
+void Simulation::look(const motion::Trajectory& trajectory, const MotionPart& part,
                       judge::CellState& state) {
-  std::vector<double> before = trajectory.sample(0), now = before;
-  for (std::size_t k = 0; k < trajectory.samples(); ++k) {
-    std::vector<double> after = trajectory.sample(std::min(k + 1, trajectory.samples() - 1));
-    count_limits(robot, before, now, &after);
+  const std::size_t robot = part.robot, last = trajectory.samples() - 1;
+  const motion::SpeedLimits limits = limits_of(options_, world_, robot);
+  const auto sample = [&](std::size_t k) { return trajectory.sample(std::min(k, last)); };
+  std::array<std::vector<double>, 4> near{sample(0), sample(0), sample(1), sample(2)};
+  for (std::size_t k = 0; k <= last; ++k) {
+    count_limits(robot, limits, near, part.blends.has_value());
+    const std::vector<double>& now = near[1];
     state.q[robot] = now;
     if (options_.progress && report_.samples % 64 == 0)
       options_.progress(std::to_string(report_.steps) + " steps, " +
@@ -264,27 +272,34 @@ void Simulation::look(const motion::Trajectory& trajectory, std::size_t robot,
             std::to_string(static_cast<double>(k) / trajectory.rate()) + " s");
     }
     if (!pushed_.empty()) look_at_pushed(state);
-    before = std::move(now);
-    now = std::move(after);
+    std::shift_left(near.begin(), near.end(), 1);
+    near.back() = sample(k + 3);
   }
 }
 
-/// Positions, and first and second differences of samples: by the mean value theorem they are at
-/// most the largest velocity and acceleration in between.
-void Simulation::count_limits(std::size_t robot, const std::vector<double>& before,
-                              const std::vector<double>& now, const std::vector<double>* after) {
+/// Positions, and differences of samples: by the mean value theorem those of order 1, 2 and 3 are
+/// at most the largest velocity, acceleration and jerk in between.
+void Simulation::count_limits(std::size_t robot, const motion::SpeedLimits& limits,
+                              const std::array<std::vector<double>, 4>& samples, bool blended) {
   const robot::Robot& kinematics = world_.robots[robot].kinematics;
+  const auto& [before, now, after, next] = samples;
+  const double rate = options_.motion.rate;
   bool beyond = false;
   for (std::size_t j = 0; j < now.size(); ++j) {
     const robot::Variable& v = kinematics.variables[j];
     beyond |= now[j] < v.lower.value_or(now[j]) || now[j] > v.upper.value_or(now[j]);
-    const double velocity =
-        std::abs(now[j] - before[j]) * options_.rate / v.velocity.value_or(options_.usual_velocity);
-    const double acceleration = std::abs((*after)[j] - 2 * now[j] + before[j]) * options_.rate *
-                                options_.rate / options_.acceleration;
+    const double velocity = std::abs(now[j] - before[j]) * rate / limits.velocity[j];
+    const double acceleration =
+        std::abs(after[j] - 2 * now[j] + before[j]) * rate * rate / limits.acceleration[j];
     report_.most_velocity = std::max(report_.most_velocity, velocity);
     report_.most_acceleration = std::max(report_.most_acceleration, acceleration);
     beyond |= velocity > 1 + kRounding || acceleration > 1 + kRounding;
+    if (!blended) continue;
+    const double per_jerk = rate * rate * rate / limits.jerk[j],
+                 rounding = 0x1p-49 * (1 + std::abs(now[j])) * per_jerk;
+    const double jerk = std::abs((next[j] - before[j]) - 3 * (after[j] - now[j])) * per_jerk;
+    report_.most_jerk = std::max(report_.most_jerk, jerk);
+    beyond |= jerk > 1 + kRounding + rounding;
   }
   if (!beyond) return;
   if (report_.limit_violations++ == 0)

@@ -2,34 +2,13 @@
 
 #include <kaboum/engines/engine_options.h>
 #include <kaboum/execution/task_options.h>
+#include <kaboum/motion/trajectory_options.h>
 #include <kaboum/robot/shape_options.h>
 
 #include <array>
 #include <utility>
 
 namespace kaboum::execution {
-namespace {
-
-using Kind = OptionDescription::Kind;
-
-Option<PlanRunRequest> time_optimal_option() {
-  using motion::Profile;
-  Option<PlanRunRequest> out;
-  out.name = "time-optimal";
-  out.text =
-      "As fast as velocities and accelerations allow, which then jump, instead of by quintic "
-      "polynomials";
-  out.kind = Kind::Flag;
-  out.value = [](const PlanRunRequest& r) {
-    return option_text::of(r.simulation.profile == Profile::Trapezoid);
-  };
-  out.assign = [](PlanRunRequest& r, const std::string& text) {
-    r.simulation.profile = text == "true" ? Profile::Trapezoid : Profile::Quintic;
-  };
-  return out;
-}
-
-}  // namespace
 
 const std::vector<Option<TaskFiles>>& task_options() {
   using R = TaskFiles;
@@ -83,37 +62,33 @@ const std::vector<Option<TaskFiles>>& task_engine_options() {
 
 const std::vector<Option<PlanRunRequest>>& run_options() {
   using R = PlanRunRequest;
-  static const std::vector<Option<R>> options{
-      option<R>(
-          {.name = "replan",
-           .text = "How often it is planned again, at most, where sensing turns out as the plan "
-                   "has no branch for; 0: that is an error",
-           .low = 0},
-          [](auto& r) -> auto& { return r.replan.most; }),
-      limit_option<R>(
-          {.name = "timeout",
-           .text = "Longest time for each new plan",
-           .values = "SECONDS",
-           .low = 0,
-           .between = true,
-           .otherwise = "no limit"},
-          [](auto& r) -> auto& { return r.replan.solve.timeout; }),
-      option<R>(
-          {.name = "seed", .text = "Seed of new plans' external functions that choose at random"},
-          [](auto& r) -> auto& { return r.replan.solve.seed; }),
-      option<R>(
-          {.name = "rate", .text = "Samples per second", .values = "HZ", .low = 1, .high = 1e5},
-          [](auto& r) -> auto& { return r.simulation.rate; }),
-      option<R>(
-          {.name = "max-acceleration",
-           .text = "Of all joints, per second squared",
-           .low = 1e-3,
-           .high = 1e6},
-          [](auto& r) -> auto& { return r.simulation.acceleration; }),
-      time_optimal_option(),
-      option<R>(
-          option_named(robot::shape_options(), "package-path"),
-          [](auto& r) -> auto& { return r.packages; })};
+  static const std::vector<Option<R>> options = [] {
+    std::vector<Option<R>> made{
+        option<R>(
+            {.name = "replan",
+             .text = "How often it is planned again, at most, where sensing turns out as the plan "
+                     "has no branch for; 0: that is an error",
+             .low = 0},
+            [](auto& r) -> auto& { return r.replan.most; }),
+        limit_option<R>(
+            {.name = "timeout",
+             .text = "Longest time for each new plan",
+             .values = "SECONDS",
+             .low = 0,
+             .between = true,
+             .otherwise = "no limit"},
+            [](auto& r) -> auto& { return r.replan.solve.timeout; }),
+        option<R>(
+            {.name = "seed", .text = "Seed of new plans' external functions that choose at random"},
+            [](auto& r) -> auto& { return r.replan.solve.seed; })};
+    for (Option<R>& each : options_of_part<R>(
+             motion::trajectory_options(), [](auto& r) -> auto& { return r.simulation.motion; }))
+      made.push_back(std::move(each));
+    made.push_back(option<R>(
+        option_named(robot::shape_options(), "package-path"),
+        [](auto& r) -> auto& { return r.packages; }));
+    return made;
+  }();
   return options;
 }
 

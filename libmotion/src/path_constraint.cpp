@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "constraint_bands.h"
 
@@ -195,6 +196,16 @@ class BandCheck {
              kOutward;
   }
 
+  /// Leaves room for what is within options.around of the segment.
+  /// @param out  from the end of the segment that is farther from 0, of each variable, away from it
+  void leave_room(const sweep::LinkMotion& out) {
+    if (!out.moves()) return;
+    const std::array<Vec3, 2> points{band_.is_direction ? Vec3(Vec3::Zero()) : band_.own,
+                                     band_.own};
+    const sweep::MotionBounds bounds(out, points);
+    error_ = (error_ + (band_.is_direction ? bounds.turn() : bounds.derivative(1))) * kOutward;
+  }
+
   bool run() {
     if (band_.low == 0 && band_.high >= kAnyChord && band_.is_direction) return true;
     const Vec3 begin = residual(0), end = residual(1);
@@ -280,11 +291,19 @@ std::vector<ConstraintBand> bands_of(std::span<const PathConstraint> constraints
 bool check_segment(const world::RobotModel& robot, std::span<const ConstraintBand> bands,
                    std::span<const double> from, std::span<const double> to,
                    const world::MotionOptions& options, ConstraintAnswer& answer) {
-  std::optional<sweep::LinkMotion> motion;
+  std::optional<sweep::LinkMotion> motion, out;
   std::uint32_t link = 0;
+  const bool has_room = !options.around.empty();
+  const auto [base, moved] = has_room ? world::outward(from, to, options.around)
+                                      : std::pair<std::vector<double>, std::vector<double>>();
   for (const ConstraintBand& band : bands) {
-    if (!motion || link != band.link) motion.emplace(robot.kinematics, link = band.link, from, to);
-    if (!BandCheck(robot, band, *motion, options, answer).run()) return false;
+    if (!motion || link != band.link) {
+      motion.emplace(robot.kinematics, link = band.link, from, to);
+      if (has_room) out.emplace(robot.kinematics, link, base, moved);
+    }
+    BandCheck check(robot, band, *motion, options, answer);
+    if (out) check.leave_room(*out);
+    if (!check.run()) return false;
   }
   return true;
 }

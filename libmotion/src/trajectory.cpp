@@ -81,8 +81,9 @@ struct Trajectory::Blended {
   };
   std::vector<PathPiece> pieces;
   std::vector<Leg> legs;
-  std::vector<std::size_t> stopping;  ///< waypoints, one more than legs
-  std::vector<double> passed;         ///< time of each waypoint [s]
+  std::vector<std::size_t> stopping;                       ///< waypoints, one more than legs
+  std::vector<double> passed;                              ///< time of each waypoint [s]
+  std::vector<std::pair<std::size_t, std::size_t>> bends;  ///< Trajectory::bends
 };
 
 void Trajectory::require_valid(const SpeedLimits& limits) const {
@@ -153,6 +154,18 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
       const double enters = law.begin_of(k - first),
                    leaves = k + 1 < end ? law.begin_of(k + 1 - first) : law.duration();
       made->passed[made->pieces[k].waypoint] = begin + stretch * 0.5 * (enters + leaves);
+      // A little more: what rounding may take from the times is far less than that of a sample.
+      constexpr double kRounding = 1e-6;
+      const auto step = [&](double time) { return stretch * time * rate_; };
+      const std::size_t before = first_[i] + static_cast<std::size_t>(std::max(
+                                                 0.0, std::floor(step(enters) - kRounding))),
+                        after = std::min(first_.back(),
+                                         first_[i] + static_cast<std::size_t>(
+                                                         std::ceil(step(leaves) + kRounding)));
+      if (!made->bends.empty() && made->bends.back().second >= before)
+        made->bends.back().second = after;
+      else
+        made->bends.emplace_back(before, after);
     }
     made->passed[made->stopping[i + 1]] = begin + whole;
     made->legs.push_back({std::move(law), first, stretch});
@@ -165,6 +178,11 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
 double Trajectory::time_at(std::size_t waypoint) const {
   if (blended_) return blended_->passed.at(waypoint);
   return static_cast<double>(first_.at(waypoint)) / rate_;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> Trajectory::bends() const {
+  if (!blended_) return {};
+  return blended_->bends;
 }
 
 /// @pre step is below the last sample

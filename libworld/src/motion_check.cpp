@@ -175,6 +175,19 @@ class Obstacles {
 
 }  // namespace
 
+std::pair<std::vector<double>, std::vector<double>> outward(std::span<const double> from,
+                                                            std::span<const double> to,
+                                                            std::span<const double> around) {
+  std::vector<double> base(from.begin(), from.end()), out;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (std::abs(to[i]) > std::abs(from[i])) base[i] = to[i];
+    // What is lost in the sum is less than 2^-52 of it.
+    const double grown = around[i] > 0 ? around[i] * kUp + 0x1p-51 * std::abs(base[i]) : 0;
+    out.push_back(base[i] < 0 ? base[i] - grown : base[i] + grown);
+  }
+  return {std::move(base), std::move(out)};
+}
+
 void detail::require_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                             const robot::Path& path, const MotionOptions& options) {
   if (robot >= checker.world().robots.size())
@@ -184,6 +197,11 @@ void detail::require_motion(const Checker& checker, const WorldState& state, std
   if (!(options.resolution > 0))
     throw Error(ErrorCode::InvalidArgument, "a resolution must be above 0");
   if (path.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");
+  if (!options.around.empty() &&
+      (options.around.size() != checker.world().robots[robot].kinematics.variables.size() ||
+       !std::ranges::all_of(options.around, [](double x) { return x >= 0 && x <= 1e9; })))
+    throw Error(ErrorCode::InvalidArgument,
+                "how far each variable may be from its line is a number from 0 to 1e9");
   for (const std::vector<double>& q : path) {
     if (q.size() != checker.world().robots[robot].kinematics.variables.size())
       throw Error(ErrorCode::InvalidArgument, "a waypoint of another robot");
@@ -199,7 +217,7 @@ MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::
   if (Observer* observer = checker.observer()) observer->asked(state, robot, path, nullptr);
   if (checker.substitute() != nullptr)
     return detail::sampled_motion(checker, state, {{robot, &path}}, options);
-  return Motion(checker, state, {{robot, &path}}, options).run();
+  return Motion(checker, state, {{robot, &path, &options.around}}, options).run();
 }
 
 MotionAnswer check_motions(const Checker& checker, const WorldState& state,

@@ -6,6 +6,8 @@
 #include <kaboum/world/margins.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace kaboum::world::detail {
 namespace {
@@ -53,11 +55,16 @@ MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
                          const std::vector<Item>* things)
     : checker_(checker), world_(checker.world()), robots_(std::move(robots)) {
   WorldState start = state;
-  for (const auto& [robot, path] : robots_) {
+  for (const auto& [robot, path, around] : robots_) {
     start.q[robot] = path->front();
     // A path that leaves the limits makes pairs count that are proved apart within them.
     for (const std::vector<double>& q : *path)
-      if (!checker_.is_within_limits(robot, q)) start.q[robot] = q;
+      for (const double side : {0.0, -1.0, 1.0}) {
+        if (side != 0 && (around == nullptr || around->empty())) continue;
+        std::vector<double> near = q;
+        for (std::size_t i = 0; side != 0 && i < q.size(); ++i) near[i] += side * (*around)[i];
+        if (!checker_.is_within_limits(robot, near)) start.q[robot] = std::move(near);
+      }
   }
   const auto moves = [&](const Item& item) {
     return std::ranges::any_of(
@@ -83,7 +90,7 @@ MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
     }
     pairs_.push_back(pair);
   }
-  for (const auto& [robot, path] : robots_) start.q[robot] = path->front();
+  for (const auto& [robot, path, around] : robots_) start.q[robot] = path->front();
   std::optional<Scratch> own;
   resting_ = checker_.places(start, resting, scratch != nullptr ? *scratch : own.emplace());
   memory_.resize(pairs_.size());
@@ -134,6 +141,25 @@ void MovingPairs::prepare(std::size_t segment) {
     const auto [from, to] = ends_of(a);
     const std::vector<double> end = held(model_of(a).kinematics, a.link, b.link, from, to);
     pair.speed = speed_of(a, from, end) + speed_of(b, from, end);
+  }
+  make_room(segment);
+}
+
+/// How much nearer pairs may be than on the line of a segment.
+void MovingPairs::make_room(std::size_t segment) {
+  const MovingRobot& moving = robots_.front();
+  if (moving.around == nullptr || moving.around->empty()) return;
+  const robot::Path& path = *moving.path;
+  const auto [base, out] =
+      outward(path[segment], path[std::min(segment + 1, path.size() - 1)], *moving.around);
+  std::vector<double> room;
+  for (const Mover& m : movers_) room.push_back(speed_of(m, base, out) * kUp);
+  for (Pair& pair : pairs_) {
+    pair.room = room[pair.mover];
+    if (!pair.other) continue;
+    const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
+    const std::vector<double> end = held(model_of(a).kinematics, a.link, b.link, base, out);
+    pair.room = (speed_of(a, base, end) + speed_of(b, base, end)) * kUp;
   }
 }
 

@@ -12,6 +12,7 @@ namespace kaboum::world::detail {
 struct MovingRobot {
   std::size_t robot = 0;
   const robot::Path* path = nullptr;
+  const std::vector<double>* around = nullptr;  ///< MotionOptions::around; null: on the line
 };
 
 /// The pairs of things of which at least one moves while robots go along paths of equally many
@@ -24,6 +25,8 @@ class MovingPairs {
     std::size_t rest = 0;
     double speed = 0;   ///< bound of how fast they approach each other in a segment [length]
     double margin = 0;  ///< that they are to be kept from each other [length]
+    /// How much nearer than on the line of a segment they may be. [length]
+    double room = 0;
   };
 
   /// @param scratch  that is used; may be null.
@@ -41,9 +44,10 @@ class MovingPairs {
   void prepare(std::size_t segment);
   /// Puts what moves, of some pairs, where it is at a share of the segment.
   void place(double at, const std::vector<std::size_t>& pairs);
-  /// Whether the outer sets of a pair come within its margin and `slack` of each other there.
+  /// Whether the outer sets of a pair come within its margin, its room and `slack` of each other
+  /// there.
   [[nodiscard]] std::optional<collide::BodyPair> ask(std::size_t pair, double slack) {
-    const double margin = pairs_[pair].margin;
+    const double margin = pairs_[pair].margin + pairs_[pair].room;
     const double within = margin > 0 ? (margin + slack) * (1 + 0x1p-50) : slack;
     return find_collision(first(pair), second(pair), within, &memory_[pair]);
   }
@@ -60,6 +64,7 @@ class MovingPairs {
   [[nodiscard]] const robot::Path& path_of(const Mover& m) const;
   [[nodiscard]] double speed_of(const Mover& m, const std::vector<double>& from,
                                 const std::vector<double>& to) const;
+  void make_room(std::size_t segment);
 
   const Checker& checker_;
   const World& world_;

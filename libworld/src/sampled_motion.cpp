@@ -80,7 +80,7 @@ class Samples {
   }
 
   void place(std::size_t segment, double share) {
-    for (const auto& [robot, path] : robots_) {
+    for (const auto& [robot, path, around] : robots_) {
       const std::vector<double>&from = (*path)[segment],
             &to = (*path)[std::min(segment + 1, path->size() - 1)];
       std::vector<double>& q = state_.q[robot];
@@ -102,7 +102,7 @@ class Samples {
 std::vector<std::array<Item, 2>> moving_pairs(const Checker& checker, const WorldState& state,
                                               const std::vector<MovingRobot>& robots) {
   WorldState start = state;
-  for (const auto& [robot, path] : robots) {
+  for (const auto& [robot, path, around] : robots) {
     start.q[robot] = path->front();
     for (const std::vector<double>& q : *path)
       if (!checker.is_within_limits(robot, q)) start.q[robot] = q;

@@ -8,7 +8,10 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include "random_scene.h"
 #include "world/worlds.h"
@@ -366,6 +369,66 @@ TEST(TrajectoryMessage, IsReadAsTheSamplesWithTheirTimes) {
   EXPECT_NE(yaml.find("\n  time_from_start: {sec: 0, nanosec: 3333333}\n"), std::string::npos);
 }
 
+/// What a controller makes of two samples: polynomials of degree 3, of values and velocities, and
+/// of degree 5, of accelerations as well.
+/// @param u  share of the time between them, which is `step`
+std::pair<double, double> splines(const Instant& a, const Instant& b, std::size_t j, double u,
+                                  double step) {
+  const double p = a.q[j], d = b.q[j] - p, v = a.velocity[j] * step, w = b.velocity[j] * step,
+               x = a.acceleration[j] * step * step, y = b.acceleration[j] * step * step;
+  const double cubic = p + u * (v + u * (3 * d - 2 * v - w + u * (v + w - 2 * d)));
+  const double c3 = 10 * d - 6 * v - 4 * w - 1.5 * x + 0.5 * y,
+               c4 = -15 * d + 8 * v + 7 * w + 1.5 * x - y, c5 = 6 * d - 3 * (v + w) + 0.5 * (y - x);
+  return {cubic, p + u * (v + u * (0.5 * x + u * (c3 + u * (c4 + u * c5))))};
+}
+
+TEST(BlendedTrajectory, BetweenSamplesItIsOnASegmentOrWithinItsRoom) {
+  std::size_t bent = 0, straight = 0;
+  double nearest = 0, farthest_spline = 0;
+  for (std::uint32_t seed = 1; seed <= 120; ++seed) {
+    const Corners c = random_corners(seed);
+    for (const double rate : {7.0, 40.0, 300.0}) {
+      const Trajectory t(c.path, c.shares, c.limits, rate);
+      const Values room = room_between_samples(c.limits, rate);
+      const auto bends = t.bends();
+      std::size_t next = 0;
+      for (std::size_t k = 0; k + 1 < t.samples(); ++k) {
+        while (next < bends.size() && bends[next].second <= k) ++next;
+        const bool is_bent = next < bends.size() && bends[next].first <= k;
+        (is_bent ? bent : straight) += 1;
+        const Instant a = t.instant(k), b = t.instant(k + 1);
+        for (int part = 1; part < 8; ++part) {
+          const double u = part / 8.0;
+          const Values q = t.at((static_cast<double>(k) + u) / rate).q;
+          for (std::size_t j = 0; j < q.size(); ++j) {
+            const double chord = a.q[j] + u * (b.q[j] - a.q[j]);
+            const auto [cubic, quintic] = splines(a, b, j, u, 1 / rate);
+            if (is_bent) {
+              nearest = std::max(nearest, std::abs(q[j] - chord) / room[j]);
+              for (const double x : {cubic, quintic}) {
+                ASSERT_LE(std::abs(x - chord), room[j] + 1e-12) << seed << " " << k;
+                farthest_spline = std::max(farthest_spline, std::abs(x - chord) / room[j]);
+              }
+              continue;
+            }
+            // All joints are at one share of the line between the samples.
+            for (std::size_t i = 0; i < q.size(); ++i)
+              ASSERT_NEAR((q[j] - a.q[j]) * (b.q[i] - a.q[i]), (q[i] - a.q[i]) * (b.q[j] - a.q[j]),
+                          1e-13)
+                  << seed << ", sample " << k << " at " << rate;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(bent, 3000U);
+  EXPECT_GT(straight, 3000U);
+  // The curve takes two thirds of the room at most, and nearly does.
+  EXPECT_LE(nearest, 2.0 / 3 + 1e-6);
+  EXPECT_GT(nearest, 0.6);
+  EXPECT_GT(farthest_spline, 0.6);
+}
+
 /// The arm of three links goes round a plate with its last link drawn in. A full blend draws it in
 /// less, and meets the plate.
 class RoundAPlate : public ::testing::Test {
@@ -400,7 +463,7 @@ TEST_F(RoundAPlate, ABlendThatMeetsItIsMadeSmaller) {
   EXPECT_GT(made.blends[1], 0);
   EXPECT_LT(made.blends[1], 0.5);
   EXPECT_EQ(check(checker, made.trajectory).outcome, Outcome::Free);
-  for (const double between : made.between_samples) EXPECT_EQ(between, 5.0 / 8e6);
+  for (const double between : made.between_samples) EXPECT_EQ(between, 0.1875 * 5.0 / 1e6);
   // The one that was asked for is in contact.
   const world::MotionAnswer full =
       check(checker, Trajectory(path_, {0, 0.5, 0}, made.limits, options.rate));
@@ -412,6 +475,71 @@ TEST_F(RoundAPlate, ABlendThatMeetsItIsMadeSmaller) {
   options.blend = 0;
   EXPECT_GT(sample_path({checker, state, 0}, path_, options, 1e-5).trajectory.duration(),
             made.trajectory.duration());
+}
+
+/// The same plate nearer and nearer: what is written is free between its samples as well, of which
+/// there are few.
+TEST(BlendedTrajectory, IsFreeBetweenItsSamples) {
+  const robot::Path path{{-0.6, 0, 0}, {-0.448, 0, 1.5}, {0.5, 0, 0}};
+  std::size_t blends = 0, met = 0;
+  for (int k = 0; k < 60; ++k) {
+    test::SceneFiles files;
+    files.put(
+        "plate.glb",
+        test::set_of({test::box_mesh({-0.25, -0x1p-13, -0.5}, {0.25, 0x1p-13, 0.5})}, "outer", 0));
+    const world::World world =
+        files.world(files.scene("\"objects\": [{\"name\": \"plate\", \"pose\": {\"position\": [" +
+                                std::to_string(2.68 + 0.002 * k) +
+                                ", 0, 0]}, \"outer\": " + files.ref("plate.glb") + "}]"));
+    const world::Checker checker(world);
+    world::WorldState state = initial_state(world);
+    TrajectoryOptions options;
+    options.blend = 0.5;
+    options.rate = 5 + k % 3 * 3;
+    std::optional<SampledPath> made;
+    try {
+      made = sample_path({checker, state, 0}, path, options, 1e-5);
+    } catch (const Error&) {
+      continue;  // the waypoints meet it
+    }
+    blends += made->blends[1] > 0 ? 1 : 0;
+    world::Scratch scratch;
+    const auto meets = [&](const Values& q) {
+      state.q[0] = q;
+      return checker.find_contact(state, scratch).has_value();
+    };
+    const auto meets_between = [&](const Trajectory& t) {
+      bool out = false;
+      for (std::size_t i = 0; i + 1 < t.samples(); ++i) {
+        const Instant a = t.instant(i), b = t.instant(i + 1);
+        for (int part = 0; part <= 50; ++part) {
+          const double u = part / 50.0;
+          Values cubic(3), quintic(3);
+          for (std::size_t j = 0; j < 3; ++j)
+            std::tie(cubic[j], quintic[j]) = splines(a, b, j, u, 1 / t.rate());
+          out = out || meets(t.at((static_cast<double>(i) + u) / t.rate()).q);
+          // Elsewhere they are on the path, and may be a little ahead or behind.
+          for (const auto& [first, last] : t.bends())
+            if (i >= first && i < last) out = out || meets(cubic) || meets(quintic);
+        }
+      }
+      return out;
+    };
+    EXPECT_FALSE(meets_between(made->trajectory)) << k;
+    // Of blends of which the samples alone are free, some meet it between them.
+    for (double share = 0.5; share > 0.02; share *= 0.9) {
+      const Trajectory t(path, {0, share, 0}, made->limits, options.rate);
+      robot::Path samples;
+      for (std::size_t i = 0; i < t.samples(); ++i) samples.push_back(t.sample(i));
+      state.q[0] = path[0];
+      if (check_motion(checker, state, 0, samples, {}).outcome !=
+          world::MotionAnswer::Outcome::Free)
+        continue;
+      met += meets_between(t) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(blends, 10U);
+  EXPECT_GT(met, 3U);
 }
 
 TEST_F(RoundAPlate, OptionsThatContradictAreRefused) {

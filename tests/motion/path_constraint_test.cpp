@@ -280,6 +280,57 @@ TEST_P(EachRelation, IsKeptJustAboveTheLargestDeviationAndBrokenJustBelow) {
   EXPECT_GT(broken, 20);
 }
 
+// Wherever the joints are within `around` of a segment that keeps a constraint with it, it is kept.
+TEST_P(EachRelation, IsKeptAroundASegment) {
+  const Combination& combination = kCombinations[GetParam()];
+  std::mt19937_64 random(GetParam() + 100);
+  int kept = 0, refused = 0;
+  for (int round = 0; round < 40; ++round) {
+    const world::RobotModel robot = random_robot(random);
+    std::vector<double> from, to;
+    world::MotionOptions options;
+    for (std::size_t i = 0; i < robot.kinematics.variables.size(); ++i) {
+      from.push_back(between(random, -1.5, 1.5));
+      to.push_back(from.back() + between(random, -0.1, 0.1));
+      options.around.push_back(random() % 4 == 0 ? 0 : between(random, 0, 0.02));
+    }
+    PathConstraint c;
+    c.name = "one";
+    c.relation = combination.relation;
+    c.link = static_cast<std::uint32_t>(robot.kinematics.links.size() - 1);
+    c.moving = random_feature(combination.moving, random);
+    c.resting = random_feature(combination.resting, random);
+    if (c.relation == Relation::Distance) c.value = between(random, 0, 1);
+    if (c.relation == Relation::Angle) c.value = between(random, 0.1, 1.5);
+    const int sense = sense_of(c, pose_of(robot, values_at(from, to, 0), c.link));
+    Deviation seen;
+    for (int k = 0; k < 2000; ++k) {
+      auto q = values_at(from, to, between(random, 0, 1));
+      for (std::size_t i = 0; i < q.size(); ++i)
+        q[i] += options.around[i] * (k % 2 == 0          ? between(random, -1, 1)
+                                     : random() % 2 == 0 ? 1.0
+                                                         : -1.0);
+      const Deviation d = deviation_of(c, pose_of(robot, q, c.link), sense);
+      seen.length = std::max(seen.length, d.length);
+      seen.angle = std::max(seen.angle, d.angle);
+    }
+    if (seen.angle > 1.4) continue;
+    const auto ask = [&](double factor) {
+      c.within = std::max(1e-6, factor * static_cast<double>(seen.length));
+      c.within_angle = std::max(1e-6, factor * static_cast<double>(seen.angle));
+      return check_constraints(robot, {from, to}, {&c, 1}, options).outcome == Kept::Kept;
+    };
+    // What was seen breaks a tolerance that is a little smaller.
+    if (seen.length > 1e-5 || seen.angle > 1e-5) {
+      EXPECT_FALSE(ask(0.999)) << "round " << round;
+      ++refused;
+    }
+    kept += ask(3) ? 1 : 0;
+  }
+  EXPECT_GT(refused, 15);
+  EXPECT_GT(kept, 10);
+}
+
 INSTANTIATE_TEST_SUITE_P(Relations, EachRelation,
                          ::testing::Range(std::size_t{0}, kCombinations.size()));
 

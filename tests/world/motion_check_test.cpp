@@ -86,6 +86,57 @@ TEST(CheckMotion, FreeAtEverySampleOrInContactWhereItSays) {
   EXPECT_LT(most, 3000U);
 }
 
+// Wherever the joints are within `around` of a path that is free with it, nothing meets.
+TEST(CheckMotion, FreeAroundAPathIsFreeWithinThat) {
+  const SceneFiles files;
+  const World world = arm_among_boxes(files);
+  const Checker checker(world);
+  Scratch scratch;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> turn(-2.9, 2.9), step(-0.5, 0.5), wide(0, 0.06),
+      share(0, 1), side(-1, 1);
+  int free = 0, narrower = 0, met = 0;
+  for (int i = 0; i < 300; ++i) {
+    WorldState state = initial_state(world);
+    if (i % 3 == 0) {
+      Attachment held;
+      held.link = 3;
+      held.pose.translation = {1.6, 0, 0};
+      state.attachments[3] = held;
+    }
+    robot::Path path(2, std::vector<double>(3));
+    for (double& q : path[0]) q = turn(random);
+    for (int j = 0; j < 3; ++j) path[1][j] = path[0][j] + step(random);
+    MotionOptions options;
+    for (int j = 0; j < 3; ++j) options.around.push_back(i % 5 == j ? 0 : wide(random));
+    const bool on_line = check_motion(checker, state, 0, path, {}).outcome == Outcome::Free;
+    const bool is_free = check_motion(checker, state, 0, path, options).outcome == Outcome::Free;
+    EXPECT_TRUE(on_line || !is_free) << i;
+    free += is_free ? 1 : 0;
+    narrower += on_line && !is_free ? 1 : 0;
+    bool meets = false;
+    for (int k = 0; k < 400; ++k) {
+      std::vector<double> q = at(path, 0, share(random));
+      for (int j = 0; j < 3; ++j)
+        q[j] += options.around[j] * (k % 2 == 0 ? side(random) : side(random) < 0 ? -1 : 1);
+      state.q[0] = q;
+      meets = meets || checker.find_contact(state, scratch).has_value();
+    }
+    ASSERT_FALSE(is_free && meets) << i;
+    met += on_line && meets ? 1 : 0;
+  }
+  EXPECT_GT(free, 60);
+  // Some meet something beside the line, and hardly more are refused than those.
+  EXPECT_GT(met, 5);
+  EXPECT_LT(narrower, 4 * met);
+  MotionOptions wrong;
+  for (const std::vector<double>& around :
+       {std::vector<double>{0.1}, {0, 0, -0.1}, {0, 0, std::nan("")}}) {
+    wrong.around = around;
+    EXPECT_THROW(check_motion(checker, initial_state(world), 0, {{0, 0, 0}}, wrong), Error);
+  }
+}
+
 TEST(CheckMotion, SeesWhatSamplesJumpOver) {
   // A thin plate that the tip passes in a tiny part of the motion.
   SceneFiles files;

@@ -76,6 +76,8 @@ Json report_json(const execution::SimulationReport& r, const plan::RunSummary& s
           {"jumps", r.jumps},
           {"most_velocity", r.most_velocity},
           {"most_acceleration", r.most_acceleration},
+          {"most_jerk", r.most_jerk},
+          {"blends", r.blends},
           {"problems", r.problems}};
 }
 
@@ -187,7 +189,7 @@ int run_plan(const PlanOptions& o) {
     report["driver"] = driver_json(drive);
   else
     report["outcomes"] = o.outcomes;
-  report["rate"] = o.run.simulation.rate;
+  report["rate"] = o.run.simulation.motion.rate;
   report["triangles"] = done.triangles;
   report["notes"] = done.notes;
   report["replans"] = replans_json(replans);

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <kaboum/judge/cell.h>
-#include <kaboum/motion/trajectory.h>
+#include <kaboum/motion/trajectory_options.h>
 #include <kaboum/plan/replay.h>
 #include <kaboum/world/world.h>
 
+#include <array>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,10 +17,9 @@
 namespace kaboum::execution {
 
 struct SimulationOptions {
-  double rate = 1000;         ///< of samples [1/s]
-  double acceleration = 5;    ///< limit of each joint [rad/s², length/s²]
-  double usual_velocity = 1;  ///< of joints whose URDF states none [rad/s, length/s]
-  motion::Profile profile = motion::Profile::Quintic;
+  /// Of all robots; a joint's name is of all that have such a joint. With blends corners are passed
+  /// as far as that is certified (docs/algorithms/motion-planning.md#blended-corners).
+  motion::TrajectoryOptions motion = {};
   /// Is told now and then what is carried out; what it throws ends the work.
   std::function<void(const std::string& stage)> progress = {};
 };
@@ -54,6 +56,8 @@ struct SimulationReport {
   std::uint64_t jumps = 0;  ///< things that are not where the plan says, or held without a grasp
   double seconds = 0;       ///< of motion
   double most_velocity = 0, most_acceleration = 0;  ///< as shares of the limits
+  double most_jerk = 0;                             ///< likewise, of motions with blends
+  std::uint64_t blends = 0;                         ///< corners that were passed without a stop
   std::vector<std::string> problems;                ///< the first twenty, in words
   ExecutedReport executed;
 
@@ -69,18 +73,23 @@ using MotionSink =
     std::function<void(const plan::RunStep& step, std::size_t robot, const motion::Trajectory&)>;
 
 struct MotionPart;  // a motion of a payload
+class NodeMotions;
 
-/// Carries out the nodes of plans: robots follow the paths that payloads state, by polynomials of
-/// degree 5, objects are carried by what holds them, and the exact meshes are looked at in every
-/// sample. Contacts, limits (by differences of samples) and whether things end where the plan says
-/// they do are counted; nothing of the bounding sets or of what made the plan is asked. What a
-/// robot holds can leave the world from its hand, or from where a motion of the node has put it.
+/// Carries out the nodes of plans: robots follow the paths that payloads state, from rest to rest
+/// along their segments or with blended corners, objects are carried by what holds them, and the
+/// exact meshes are looked at in every sample. Contacts, limits (by differences of samples) and
+/// whether things end where the plan says they do are counted; nothing of the bounding sets or of
+/// what made the plan is asked. What a robot holds can leave the world from its hand, or from where
+/// a motion of the node has put it.
 class Simulation {
  public:
   /// All arguments outlive it.
-  /// @throws Error{InvalidArgument} for options that are not above 0.
+  /// @param motions  of the plan, with their blends, as they were told; null: they are certified
+  ///   here
+  /// @throws Error{InvalidArgument} for options that are not above 0, and names of no joint.
   Simulation(const world::World& world, const judge::Cell& cell, const plan::Model& model,
-             const plan::Plan& plan, SimulationOptions options, MotionSink sink = {});
+             const plan::Plan& plan, SimulationOptions options, MotionSink sink = {},
+             std::shared_ptr<NodeMotions> motions = {});
 
   /// One node in one state. Those that were carried out in the same geometric state are skipped.
   /// @param executed  of the node's motions, in their order, where it is known
@@ -100,9 +109,10 @@ class Simulation {
   void look_at_executed(const ExecutedMotion& executed, const MotionPart& part,
                         judge::CellState state);
   void hold(const MotionPart& part, judge::CellState& state);
-  void look(const motion::Trajectory& trajectory, std::size_t robot, judge::CellState& state);
-  void count_limits(std::size_t robot, const std::vector<double>& before,
-                    const std::vector<double>& now, const std::vector<double>* after);
+  void look(const motion::Trajectory& trajectory, const MotionPart& part, judge::CellState& state);
+  /// @param samples  four that follow each other; of the robot is the second
+  void count_limits(std::size_t robot, const motion::SpeedLimits& limits,
+                    const std::array<std::vector<double>, 4>& samples, bool blended);
   void compare(const judge::CellState& state, const judge::CellState& expected);
   void look_at_pushed(const judge::CellState& state);
   [[nodiscard]] double drop_of(std::size_t object) const;
@@ -115,6 +125,7 @@ class Simulation {
   const plan::Plan& plan_;
   SimulationOptions options_;
   MotionSink sink_;
+  std::shared_ptr<NodeMotions> motions_;
   std::set<std::string> done_;                       ///< nodes with geometric states
   std::string where_;                                ///< for messages
   std::vector<std::optional<std::size_t>> mounted_;  ///< what each object is on, in a node

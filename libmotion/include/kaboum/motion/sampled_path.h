@@ -5,6 +5,7 @@
 #include <kaboum/world/motion_check.h>
 
 #include <functional>
+#include <optional>
 #include <span>
 
 namespace kaboum::motion {
@@ -17,9 +18,10 @@ struct SampledPath {
   /// Share of its segments that each waypoint's blend takes (BlendedPath), as far as it was
   /// certified; 0: it stops there. Empty without blends.
   std::vector<double> blends;
-  /// Farthest that each variable may be from the straight line between two samples that follow each
-  /// other, on the curve that they are taken of: its acceleration's limit / (8 rate²); 0 without
-  /// blends. [rad or length]
+  /// How far each variable may be from the straight line between two samples that follow each
+  /// other, where corners are blended: all within that was certified. 3/16 of its acceleration's
+  /// limit / rate²: neither the curve nor what a controller makes of its samples by polynomials of
+  /// degree 3 or 5 is farther. 0 without blends. [rad or length]
   std::vector<double> between_samples;
 };
 
@@ -47,9 +49,26 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
                   const std::string& what,
                   const std::function<void(const std::string&)>& progress = {});
 
-/// Samples a path in time. The samples, as they are read from the text, were decided free. A blend
-/// that is not is halved, and after five times left out; so is one, of several, that is nearest in
-/// time to samples that are not.
+/// Shares of its segments that blends of a path's corners take, of each waypoint: not above those
+/// that are asked for, and such that the trajectory is free at every instant and keeps the
+/// constraints: the straight lines between its samples and, where it is bent, all within
+/// `between_samples` of them (docs/algorithms/motion-planning.md#blended-corners). A blend that is
+/// not is halved, and after five times left out; so is one, of several, that is nearest in time to
+/// where the whole is not.
+/// @param asked  0 to 1/2, of each waypoint
+/// @param resolution  as of require_free
+/// @return nullopt: without blends it is not free either, for certain
+/// @throws as Trajectory, check_motion; Error{LimitReached} for more than 5,000,000 samples
+std::optional<std::vector<double>> certified_blends(
+    const MovingRobot& moving, const robot::Path& path, const SpeedLimits& limits,
+    const std::vector<double>& asked, double rate, double resolution,
+    const std::function<void(const std::string&)>& progress = {});
+
+/// SampledPath::between_samples of a trajectory with blends.
+std::vector<double> room_between_samples(const SpeedLimits& limits, double rate);
+
+/// Samples a path in time. The samples, as they are read from the text, were decided free,
+/// with the room between them (certified_blends).
 /// @throws as speed_limits, Trajectory, require_free; Error{LimitReached} for more than 5,000,000
 ///   samples
 SampledPath sample_path(const MovingRobot& moving, const robot::Path& path,

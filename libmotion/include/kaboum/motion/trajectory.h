@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kaboum::motion {
@@ -61,6 +62,10 @@ class Trajectory {
   [[nodiscard]] std::vector<double> sample(std::size_t k) const;
   /// Sample k with its derivatives, which are 0 at both ends.
   [[nodiscard]] Instant instant(std::size_t k) const;
+  /// First and last sample of each stretch in which the curve is not on the straight lines between
+  /// samples: those of blends. Ascending, apart from each other; none where it stops at all
+  /// waypoints. Elsewhere two samples that follow each other are on one segment of the path.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> bends() const;
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] const robot::Path& path() const { return path_; }
 

@@ -4,7 +4,10 @@
 #include <kaboum/world/checker.h>
 
 #include <functional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace kaboum::world {
 
@@ -17,9 +20,20 @@ struct MotionOptions {
   /// is seen ends the search, which takes less time: `share` is 0 then.
   bool where = true;
   Scratch* scratch = nullptr;  ///< that is used; null: one of its own
+  /// How far each variable of the robot may be from the straight line of a segment, at any instant:
+  /// what is free is free wherever it is within that, at every combination of the variables. Empty:
+  /// it is on the line. Each ≥ 0; of check_motion only, and not of substitutes. [rad or length]
+  std::vector<double> around = {};
   /// Is told now and then what is done; what it throws ends the work.
   std::function<void(const std::string& stage)> progress = {};
 };
+
+/// Of each variable the end of a segment that is farther from 0, and that moved away from 0 by at
+/// least MotionOptions::around. sweep::MotionBounds of the motion between the two bound the way
+/// from any point of the segment to any point within that (docs/scene.md, "Room about a path").
+std::pair<std::vector<double>, std::vector<double>> outward(std::span<const double> from,
+                                                            std::span<const double> to,
+                                                            std::span<const double> around);
 
 struct MotionAnswer {
   enum class Outcome {
@@ -36,7 +50,9 @@ struct MotionAnswer {
   /// Place of the contact: in `segment`, it was found at this share. Not below `share`.
   std::size_t contact_segment = 0;
   double contact_share = 0;
-  bool meets = false;  ///< outer sets meet then; false: they are nearer than the resolution
+  /// Outer sets meet then, or do so within MotionOptions::around; false: they are nearer than the
+  /// resolution.
+  bool meets = false;
   std::size_t intervals = 0, queries = 0;
   /// Instants that a substitute was asked about (Checker); 0: all were decided.
   std::size_t samples = 0;
@@ -60,7 +76,7 @@ struct RobotPath {
 ///
 /// @param path  a value per variable at each waypoint; the state's own values are not looked at.
 /// @throws as Checker::find_contact; Error{InvalidArgument} for a path that is empty or does not
-///   fit, and a resolution that is not above 0.
+///   fit, `around` that does not fit or is not from 0 on, and a resolution that is not above 0.
 MotionAnswer check_motion(const Checker& checker, const WorldState& state, std::size_t robot,
                           const robot::Path& path, const MotionOptions& options);
 

@@ -1,0 +1,265 @@
+"""Robot drivers: what `kaboum-plan run --robot COMMAND` tells and is answered, as methods of a class.
+
+    from kaboum.driver import Driver, Failure
+
+    class Arm(Driver):
+        def move(self, robot, motion):
+            for time, q, velocity, acceleration in self.follow(motion, rate=250):
+                self.bus.send(q)
+        def close(self, robot, link): ...
+        def open(self, robot, link): ...
+        def sense(self, fact, values): ...
+
+    Arm().run()
+
+The file needs nothing but Python's own library: it works as `kaboum.driver`, and beside a driver that has no kaboum.
+docs/planning/drivers.md says what the lines are.
+"""
+
+import bisect
+import json
+import math
+import sys
+import time
+
+__all__ = ["Driver", "Failure", "Motion"]
+
+
+class Failure(Exception):
+    """What a robot says why it could not; nothing in the world has changed."""
+
+
+class Motion:
+    """A trajectory as a driver is told it, from rest to rest, or from rest to rest through blended corners.
+
+    `joint_names`; `times` [s], from 0 on; `positions`, `velocities`, `accelerations`: for each time a value per joint.
+    """
+
+    def __init__(self, trajectory):
+        """Raises ValueError for what is no trajectory."""
+        self.joint_names = list(trajectory["joint_names"])
+        points = trajectory["points"]
+        self.times = [p["time_from_start"] for p in points]
+        self.positions, self.velocities, self.accelerations = ([p[key] for p in points] for key in ("positions", "velocities", "accelerations"))
+        if not points or self.times[0] != 0 or any(not a < b for a, b in zip(self.times, self.times[1:])):
+            raise ValueError("times of a trajectory grow from 0 on")
+        for row in (*self.positions, *self.velocities, *self.accelerations):
+            if len(row) != len(self.joint_names) or not all(map(math.isfinite, row)):
+                raise ValueError("a trajectory has a number for each joint at each time")
+        if any(self.velocities[0]) or any(self.velocities[-1]):
+            raise ValueError("a trajectory begins and ends at rest")
+
+    @property
+    def duration(self):
+        """[s]"""
+        return self.times[-1]
+
+    def at(self, when):
+        """Values, velocities and accelerations at a time [s], by the polynomials of degree 5 through the points: certified, as straight
+        lines between them are. Before the start and after the end: there, at rest."""
+        if when <= 0 or when >= self.duration:
+            rest = [0.0] * len(self.joint_names)
+            return list(self.positions[0 if when <= 0 else -1]), rest, list(rest)
+        k = bisect.bisect_right(self.times, when) - 1
+        step = self.times[k + 1] - self.times[k]
+        u = (when - self.times[k]) / step
+        q, v, a = [], [], []
+        for j in range(len(self.joint_names)):
+            begin, change = self.positions[k][j], self.positions[k + 1][j] - self.positions[k][j]
+            v0, v1 = self.velocities[k][j] * step, self.velocities[k + 1][j] * step
+            a0, a1 = self.accelerations[k][j] * step * step, self.accelerations[k + 1][j] * step * step
+            c3 = 10 * change - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1
+            c4 = -15 * change + 8 * v0 + 7 * v1 + 1.5 * a0 - a1
+            c5 = 6 * change - 3 * (v0 + v1) + 0.5 * (a1 - a0)
+            q.append(begin + u * (v0 + u * (0.5 * a0 + u * (c3 + u * (c4 + u * c5)))))
+            v.append((v0 + u * (a0 + u * (3 * c3 + u * (4 * c4 + u * 5 * c5)))) / step)
+            a.append((a0 + u * (6 * c3 + u * (12 * c4 + u * 20 * c5))) / (step * step))
+        return q, v, a
+
+
+class Driver:
+    """A robot driver: subclass it, and call `run`.
+
+    Methods that a robot needs: `move`; `take` and `release`, or `close`, `open`, `attach`, `detach`, which these call; `sense`; `where`, if the
+    robot knows where it is; `stop`. Each may raise Failure. Here they do nothing, and `sense` fails.
+
+    `robots`: joint names of each robot. `q`: where each robot is, by what it was told last or by `where`. `held`: for each held object its
+    robot and link. `timing`: for each kind of message how many there were, and their seconds, all and the longest.
+    """
+
+    def __init__(self):
+        self.robots, self.q, self.held, self.timing = {}, {}, {}, {}
+
+    # --- what a robot does ---
+
+    def begin(self, robots, objects):
+        """Called first. `robots`: {NAME: {"joint_names": [...], "q": [...]}}; `objects`: {NAME: {"pose": three rows} or {"held_by": ROBOT} or
+        {"away": True}}."""
+
+    def act(self, action):
+        """What follows belongs to this action: "grasp(arm, o1)"."""
+
+    def move(self, robot, motion):
+        """Moves a robot along a Motion, and comes back when it stands. May return how the joints really moved: rows [TIME, VALUE, ...]."""
+
+    def take(self, robot, object, link):
+        """Holds an object by a link. Another robot may hold it until it releases it; what is mounted on a held object comes with it."""
+        if not any(by == (robot, link) for by in self.held.values()):
+            self.close(robot, link)
+        self.attach(robot, object, link)
+
+    def release(self, robot, object):
+        """Lets an object go."""
+        by = self.held[object, robot]
+        self.detach(robot, object)
+        if not any(other == by for hold, other in self.held.items() if hold != (object, robot)):
+            self.open(robot, by[1])
+
+    def close(self, robot, link):
+        """Closes the gripper of a link, or switches its suction on."""
+
+    def open(self, robot, link):
+        """Opens the gripper of a link, or switches its suction off."""
+
+    def attach(self, robot, object, link):
+        """An object moves with a link from now on."""
+
+    def detach(self, robot, object):
+        """It does not any more."""
+
+    def sense(self, fact, values):
+        """Says which of the values a fact has: "isSpillable(o1)", ["true", "false"]."""
+        raise Failure("nothing here senses " + fact)
+
+    def where(self, robot):
+        """Values of a robot's joints, as they are; None: not known."""
+
+    def finish(self, objects):
+        """The plan has ended; `objects` as of `begin`, where the plan has them now."""
+
+    def stop(self):
+        """Called last, however the run ends: robots are to stand still."""
+
+    # --- time ---
+
+    def follow(self, motion, rate):
+        """Times, values, velocities and accelerations of a motion `rate` times a second, each when it is due, the end included."""
+        start, k = time.monotonic(), 0
+        while True:
+            when = min(k / rate, motion.duration)
+            time.sleep(max(0.0, start + when - time.monotonic()))
+            yield (when, *motion.at(when))
+            if when >= motion.duration:
+                return
+            # What was missed is left out: a late value is not sent.
+            k = max(k + 1, math.floor((time.monotonic() - start) * rate))
+
+    # --- the protocol ---
+
+    def run(self, reader=None, writer=None):
+        """Speaks with kaboum-plan on standard input and output until the run ends. What is printed meanwhile goes to standard error."""
+        reader, writer = reader or sys.stdin, writer or sys.stdout
+        printed, sys.stdout = sys.stdout, sys.stderr
+        try:
+            self._write(writer, json.dumps({"kaboum_driver": 1}))
+            for line in reader:  # its end: kaboum-plan has ended
+                message = json.loads(line)
+                if message["do"] == "stop":
+                    break
+                for answer in self.lines(message):
+                    self._write(writer, answer)
+        finally:
+            sys.stdout = printed
+            self.stop()
+
+    @staticmethod
+    def _write(writer, line):
+        writer.write(line + "\n")
+        writer.flush()
+
+    def lines(self, message):
+        """What is answered to a message: one line."""
+        return [json.dumps(self.answer(message))]
+
+    def answer(self, message):
+        """The answer to a message, which is what a method does of it."""
+        begun, do = time.monotonic(), message["do"]
+        try:
+            handle = {"begin": self._begin, "act": self._act, "move": self._move, "take": self._take, "release": self._release,
+                      "sense": self._sense, "finish": self._finish}.get(do)
+            if handle is None:
+                raise Failure(f"nothing is known of '{do}' here")
+            out = handle(message)
+        except Failure as failure:
+            out = {"failed": str(failure)}
+            if do == "move" and message["robot"] in self.robots and (q := self.where(message["robot"])) is not None:
+                out["q"] = list(q)
+        seconds = time.monotonic() - begun
+        kept = self.timing.setdefault(do, {"count": 0, "seconds": 0.0, "longest": 0.0})
+        kept.update(count=kept["count"] + 1, seconds=kept["seconds"] + seconds, longest=max(kept["longest"], seconds))
+        return {**out, "id": message["id"]}
+
+    def _begin(self, message):
+        self.robots = {name: list(robot["joint_names"]) for name, robot in message["robots"].items()}
+        self.q = {name: list(robot["q"]) for name, robot in message["robots"].items()}
+        self.held = {(name, o["held_by"]): (o["held_by"], None) for name, o in message["objects"].items() if "held_by" in o}
+        self.begin(message["robots"], message["objects"])
+        known = {name: list(q) for name in self.robots if (q := self.where(name)) is not None}
+        self.q.update(known)
+        return {"done": True, "q": known} if known else {"done": True}
+
+    def _act(self, message):
+        self.act(message["action"])
+        return {"done": True}
+
+    def _move(self, message):
+        robot = self._robot(message)
+        try:
+            motion = Motion(message["trajectory"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise Failure(f"this is no trajectory: {error}") from None
+        if motion.joint_names != self.robots[robot]:
+            raise Failure("joints in another order than when it began")
+        at = self.where(robot)
+        if at is None and motion.positions[0] != self.q[robot]:
+            raise Failure("the trajectory begins elsewhere")
+        executed = self.move(robot, motion)
+        q = self.where(robot)
+        self.q[robot] = list(motion.positions[-1] if q is None else q)
+        out = {"done": True}
+        if q is not None:
+            out["q"] = list(q)
+        if executed is not None:
+            out["executed"] = executed
+        return out
+
+    def _take(self, message):
+        robot, thing = self._robot(message), message["object"]
+        if (thing, robot) in self.held:
+            raise Failure(thing + " is held already")
+        self.take(robot, thing, message["link"])
+        self.held[thing, robot] = (robot, message["link"])
+        return {"done": True}
+
+    def _release(self, message):
+        robot, thing = self._robot(message), message["object"]
+        if (thing, robot) not in self.held:
+            raise Failure(thing + " is not held by it")
+        self.release(robot, thing)
+        del self.held[thing, robot]
+        return {"done": True}
+
+    def _sense(self, message):
+        said = self.sense(message["fact"], message["values"])
+        if said is True or said is False:
+            said = "true" if said else "false"
+        return {"sensed": str(said)}
+
+    def _finish(self, message):
+        self.finish(message.get("objects", {}))
+        return {"done": True}
+
+    def _robot(self, message):
+        if message["robot"] not in self.robots:
+            raise Failure(f"there is no robot '{message['robot']}'")
+        return message["robot"]
