@@ -361,6 +361,8 @@ py::dict counts_of(const execution::PlanRunReport& r) {
   out["jumps"] = s.jumps;
   out["most_velocity"] = s.most_velocity;
   out["most_acceleration"] = s.most_acceleration;
+  out["most_jerk"] = s.most_jerk;
+  out["blends"] = s.blends;
   out["triangles"] = r.triangles;
   return out;
 }
