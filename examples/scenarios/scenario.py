@@ -126,6 +126,7 @@ def options(name, n, least, most, more=lambda parser: None):
     parser.add_argument("--plan-only", action="store_true", help="plan and check; execute and draw nothing")
     parser.add_argument("--physics", type=int, nargs="?", const=1, default=0, metavar="RUNS",
                         help="carry the plan out in MuJoCo as well, so many times; needs scripts/setup --engines [1]")
+    parser.add_argument("--blend", type=float, default=0.0, metavar="SHARE", help="robots go through corners without a stop, 0 to 0.5 [0]")
     parser.add_argument("--film", action="store_true", help="pictures of the first of these runs")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
     parser.add_argument("--detail", type=int, default=1, choices=range(1, 9), metavar="K", help="K² times as many triangles, 1 to 8 [1]")
@@ -197,7 +198,7 @@ def in_physics(o, cell, files, plan, driver_options):
         robot = [*command, "--seed", str(seed), "--report", str(report), *driver_options(random.Random(seed))]
         if o.film and k == 0:
             robot += ["--film", str(out / "film")]
-        done = subprocess.run([tool("kaboum-plan"), "run", *files, "--plan", plan, "--robot", shlex.join(robot), "--journal", str(out / f"run-{seed}.jsonl"),
+        done = subprocess.run([tool("kaboum-plan"), "run", *files, "--plan", plan, "--blend", str(o.blend), "--robot", shlex.join(robot), "--journal", str(out / f"run-{seed}.jsonl"),
                                "--report", str(out / f"run-{seed}.json"), "--robot-timeout", "120", "--quiet"], capture_output=True, text=True, check=False)
         if not report.exists():
             why.append(f"seed {seed}: exit code {done.returncode}: {(done.stderr.strip().splitlines() or [''])[-1]}")
@@ -255,7 +256,7 @@ def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {
         if o.plan_only:
             print(json.dumps(result))
             return checked
-        executed, report = call("run", "--plan", plan, "--outcomes", "all")
+        executed, report = call("run", "--plan", plan, "--outcomes", "all", "--blend", str(o.blend))
         result.update(executed_branches=report.get("branches", 0), samples=report.get("samples", 0),
                       collisions=report.get("collisions", 0), limit_violations=report.get("limit_violations", 0),
                       jumps=report.get("jumps", 0))

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "node_events.h"
 #include "node_motions.h"
 #include "simulation_state.h"
 
@@ -106,13 +107,6 @@ class Drive {
     std::vector<std::string> sensed = {};                              ///< in their order
   };
 
-  /// What holds an object: a link of a robot.
-  struct Holder {
-    std::size_t robot;
-    std::uint32_t link;
-    bool operator==(const Holder&) const = default;
-  };
-
   /// Has all motions that the plan may come to certified before the first one is told: a step does
   /// not wait for that then.
   void certify(Done& done) const {
@@ -120,10 +114,14 @@ class Drive {
     if (request_.simulation.progress) request_.simulation.progress("certifying blends");
     plan::RunOptions every;
     every.unplanned = [](const plan::Unplanned&) {};
-    plan::run(done.model, done.plan, every, [&](const plan::RunStep& step) {
-      if (const auto state = state_of(world_, done.model, step.before))
-        done.motions->of(step.node, *state);
-    });
+    try {
+      plan::run(done.model, done.plan, every, [&](const plan::RunStep& step) {
+        if (const auto state = state_of(world_, done.model, step.before))
+          done.motions->of(step.node, *state);
+      });
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::LimitReached) throw;  // others are certified when it comes to them
+    }
   }
 
   [[nodiscard]] StatedState known_state(const plan::KnownState& known) const {
@@ -145,8 +143,7 @@ class Drive {
       begun_ = true;
       q_ = state.q;
       driver_.begin(state);
-      for (std::size_t o = 0; o < state.objects.size(); ++o)
-        if (const auto& hold = state.objects[o].hold) held_[o] = {hold->robot, hold->link};
+      held_ = held_in(state);
     }
     const plan::Plan::Node& n = plan_->nodes[node];
     if (!n.acts) return;
@@ -155,64 +152,46 @@ class Drive {
     ++report_.actions;
     driver_.act(action);
     const std::vector<MotionPart>& parts = done_.back().motions->of(node, known);
-    std::vector<ExecutedMotion>& executed = done_.back().executed[node];
-    for (std::size_t i = 0; i < parts.size(); ++i) move(parts, i, action, executed.emplace_back());
-  }
-
-  /// The robot that holds an object in a later motion of the node, if it is another one.
-  static std::optional<Holder> next_holder(const std::vector<MotionPart>& parts, std::size_t i,
-                                           std::size_t object) {
-    for (std::size_t k = i + 1; k < parts.size(); ++k)
-      if (const auto link = parts[k].holds.find(object); link != parts[k].holds.end())
-        return parts[k].robot == parts[i].robot
-                   ? std::nullopt
-                   : std::optional(Holder{parts[k].robot, link->second});
-    return std::nullopt;
-  }
-
-  void move(const std::vector<MotionPart>& parts, std::size_t i, const std::string& action,
-            ExecutedMotion& executed) {
-    const MotionPart& part = parts[i];
-    if (part.path.empty() || part.path.front() != q_[part.robot])
-      throw DriverStop(Kind::Uncertified, action + ": a path of " + world_.robots[part.robot].name +
-                                              " does not begin where it is");
-    for (auto held = held_.begin(); held != held_.end();) {
-      const auto [object, by] = *held++;
-      if (by.robot == part.robot && !part.holds.contains(object))
-        hold(object, next_holder(parts, i, object));
+    require_joined(parts, action);
+    for (const NodeEvent& event : motion_events(parts, held_)) {
+      if (event.kind != NodeEvent::Kind::Move) {
+        hold(event);
+        continue;
+      }
+      const MotionPart& part = parts[event.motion];
+      driver_.move(part.robot, trajectory_of(part, world_, told_options_),
+                   done_.back().executed[node].emplace_back());
+      q_[part.robot] = part.path.back();
     }
-    for (const auto& [object, link] : part.holds) hold(object, Holder{part.robot, link});
-    driver_.move(part.robot, trajectory_of(part, world_, told_options_), executed);
-    q_[part.robot] = part.path.back();
+  }
+
+  /// Each motion begins where the robot is then.
+  void require_joined(const std::vector<MotionPart>& parts, const std::string& action) const {
+    std::vector<std::vector<double>> q = q_;
+    for (const MotionPart& part : parts) {
+      if (part.path.empty() || part.path.front() != q[part.robot])
+        throw DriverStop(Kind::Uncertified, action + ": a path of " +
+                                                world_.robots[part.robot].name +
+                                                " does not begin where it is");
+      q[part.robot] = part.path.back();
+    }
   }
 
   /// Takes and lets go what the state after a node says.
   void settle(const plan::KnownState& after) {
     end_ = known_state(after).state;
-    const judge::CellState& state = *end_;
-    for (std::size_t o = 0; o < state.objects.size(); ++o)
-      if (!state.objects[o].hold) hold(o, std::nullopt);
-    for (std::size_t o = 0; o < state.objects.size(); ++o)
-      if (const auto& now = state.objects[o].hold) hold(o, Holder{now->robot, now->link});
+    for (const NodeEvent& event : settling_events(*end_, held_)) hold(event);
   }
 
-  /// Has an object held by this alone. What is handed over is taken before it is let go: it never
-  /// falls. From one link to another of the same robot there is no such order.
-  void hold(std::size_t object, std::optional<Holder> by) {
-    const auto held = held_.find(object);
-    const std::optional<Holder> before =
-        held != held_.end() ? std::optional(held->second) : std::nullopt;
-    if (before == by) return;
-    if (before && by && before->robot == by->robot)
-      throw DriverStop(Kind::Uncertified, world_.objects[object].name +
+  void hold(const NodeEvent& event) {
+    if (event.other_link)
+      throw DriverStop(Kind::Uncertified, world_.objects[event.object].name +
                                               " goes from one link to another of " +
-                                              world_.robots[by->robot].name);
-    if (by) driver_.take(object, by->robot, by->link);
-    if (before) driver_.release(object, before->robot);
-    if (by)
-      held_[object] = *by;
+                                              world_.robots[event.by.robot].name);
+    if (event.kind == NodeEvent::Kind::Take)
+      driver_.take(event.object, event.by.robot, event.by.link);
     else
-      held_.erase(object);
+      driver_.release(event.object, event.by.robot);
   }
 
   const world::World& world_;
@@ -226,7 +205,7 @@ class Drive {
   std::optional<plan::Index> told_;  ///< the node whose motions were told last
   bool begun_ = false;
   std::vector<std::vector<double>> q_;
-  std::map<std::size_t, Holder> held_;
+  Held held_;
   std::optional<judge::CellState> end_;  ///< of what was carried out last
   std::deque<Done> done_;
 };

@@ -461,9 +461,9 @@ void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
   for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
   for (std::size_t k = 0; k < trajectory.samples(); ++k) {
     const double time = static_cast<double>(k) / trajectory.rate();
-    const motion::Instant now = trajectory.at(time);
+    const motion::Instant now = trajectory.instant(k);
     points.push_back({{"time_from_start", time},
-                      {"positions", trajectory.sample(k)},
+                      {"positions", now.q},
                       {"velocities", now.velocity},
                       {"accelerations", now.acceleration}});
   }

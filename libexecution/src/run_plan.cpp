@@ -2,36 +2,14 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/run_plan.h>
-#include <kaboum/io/mesh_io.h>
 
-#include <cstdio>
 #include <deque>
 #include <memory>
+#include <optional>
+
+#include "timeline.h"
 
 namespace kaboum::execution {
-namespace fs = std::filesystem;
-namespace {
-
-/// Writes a file for each motion: N-nodeM-ROBOT.csv, in the order in which they are carried out.
-MotionSink csv_sink(const world::World& world, const fs::path& folder) {
-  if (folder.empty()) return {};
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw Error(ErrorCode::OutputFailed,
-                folder.string() + ": cannot be created: " + error.message());
-  // Every plan that is carried out counts on.
-  return [&world, folder, number = std::make_shared<int>(0)](
-             const plan::RunStep& step, std::size_t robot, const motion::Trajectory& trajectory) {
-    char name[64];
-    std::snprintf(name, sizeof name, "%05d-node%u-", ++*number, step.node);
-    io::write_file(folder / (name + world.robots[robot].name + ".csv"),
-                   to_csv(trajectory, world.robots[robot].kinematics));
-  };
-}
-
-}  // namespace
-
 PlanRunReport run_plan(const PlanningTask& task, const plan::Model& model, const plan::Plan& plan,
                        const PlanRunRequest& request) {
   if (task.scene() == nullptr)
@@ -40,14 +18,26 @@ PlanRunReport run_plan(const PlanningTask& task, const plan::Model& model, const
   PlanRunReport out;
   const judge::Cell cell = exact_cell(world, task.files().scene, request.packages, out.notes);
   out.triangles = cell.triangles();
-  const MotionSink sink = csv_sink(world, request.trajectories);
+  std::optional<Timeline> timeline;
+  MotionSink sink;
+  if (!request.trajectories.empty()) {
+    timeline.emplace(world, request.trajectories, request.motion_format,
+                     request.simulation.motion.rate);
+    sink = [&](const plan::RunStep& step, std::size_t robot, const motion::Trajectory& motion) {
+      timeline->add_motion(step.node, robot, motion);
+    };
+  }
   std::deque<Simulation> simulations;  // of each plan
   const plan::StepsOf steps = [&](const plan::Model& m, const plan::Plan& p) {
-    Simulation& simulation = simulations.emplace_back(world, cell, m, p, request.simulation, sink);
+    const auto motions = std::make_shared<NodeMotions>(world, m, p, request.simulation);
+    Simulation& simulation =
+        simulations.emplace_back(world, cell, m, p, request.simulation, sink, motions);
+    if (timeline) timeline->begin(m, p, motions);
     return [&](const plan::RunStep& step) {
       if (request.simulation.progress)
         request.simulation.progress("node " + std::to_string(step.node));
       simulation.carry_out(step);
+      if (timeline) timeline->add(step);
     };
   };
   if (request.replan.most == 0) {
@@ -61,6 +51,7 @@ PlanRunReport run_plan(const PlanningTask& task, const plan::Model& model, const
       };
     out.plans = plan::run_and_replan(task.texts(), model, plan, options, steps);
   }
+  if (timeline) timeline->write();
   for (const Simulation& simulation : simulations) out.simulation += simulation.report();
   return out;
 }

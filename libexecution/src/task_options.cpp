@@ -84,6 +84,13 @@ const std::vector<Option<PlanRunRequest>>& run_options() {
     for (Option<R>& each : options_of_part<R>(
              motion::trajectory_options(), [](auto& r) -> auto& { return r.simulation.motion; }))
       made.push_back(std::move(each));
+    static constexpr std::array<std::pair<const char*, MotionFormat>, 3> kFormats{
+        {{"csv", MotionFormat::Csv}, {"json", MotionFormat::Json}, {"yaml", MotionFormat::Yaml}}};
+    made.push_back(choice<R>(
+        {.name = "trajectory-format",
+         .text = "Of the files of motions ({trajectories}); json and yaml: a "
+                 "trajectory_msgs/JointTrajectory of ROS 2"},
+        [](auto& r) -> auto& { return r.motion_format; }, kFormats));
     made.push_back(option<R>(
         option_named(robot::shape_options(), "package-path"),
         [](auto& r) -> auto& { return r.packages; }));

@@ -46,7 +46,7 @@ class Motion:
         for row in (*self.positions, *self.velocities, *self.accelerations):
             if len(row) != len(self.joint_names) or not all(map(math.isfinite, row)):
                 raise ValueError("a trajectory has a number for each joint at each time")
-        if any(self.velocities[0]) or any(self.velocities[-1]):
+        if any(abs(v) > 1e-9 for row in (self.velocities[0], self.velocities[-1]) for v in row):
             raise ValueError("a trajectory begins and ends at rest")
 
     @property

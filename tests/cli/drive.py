@@ -3,6 +3,7 @@
 
 usage: drive.py BIN
 """
+import csv
 import json
 import os
 import pathlib
@@ -10,9 +11,13 @@ import subprocess
 import sys
 import tempfile
 
+import jsonschema
+import yaml
+
 TOOLS = pathlib.Path(sys.argv[1]).absolute()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DRIVER = f"{sys.executable} {ROOT / 'examples/drivers/driver.py'}"
+SCHEMA = json.loads((ROOT / "docs/driver.schema.json").read_text())
 RUNS = int(os.environ.get("KABOUM_TEST_DRIVERS", "25"))  # with faults at random
 
 # A driver in front of another one that answers the end of the plan twice.
@@ -26,6 +31,18 @@ for line in sys.stdin:
 """
 
 
+# A driver as the example is, but for what it answers to motions.
+LIAR = """class Liar(NoRobot):
+    def answer(self, message):
+        reply = super().answer(message)
+        if message["do"] == "move":
+            STATEMENT
+        return reply
+
+
+def main"""
+
+
 def fail(what):
     raise SystemExit(f"drive.py: {what}")
 
@@ -35,7 +52,8 @@ def run(folder, robot, *more):
     command = [TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet",
                *files, *(["--robot", robot] if robot else []), *more]
     (folder / "report.json").unlink(missing_ok=True)
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    environment = dict(os.environ, PYTHONPATH=str(ROOT / "python/kaboum"))  # for drivers that are written here
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300, env=environment)
     if done.returncode < 0:
         fail(f"{robot}: signal {-done.returncode}")
     report = folder / "report.json"
@@ -44,6 +62,142 @@ def run(folder, robot, *more):
 
 def journal(folder, name="journal.jsonl"):
     return [json.loads(line) for line in (folder / name).read_text().splitlines()]
+
+
+def lie(folder, statement):
+    """The command of a driver that says something else of motions."""
+    file = folder / "liar.py"
+    text = (ROOT / "examples/drivers/driver.py").read_text()
+    file.write_text(text.replace("def main", LIAR.replace("STATEMENT", statement)).replace("    NoRobot(parser", "    Liar(parser"))
+    return f"{sys.executable} {file}"
+
+
+def keeps_schema(folder):
+    """Every line of a run keeps to the schema; one that lacks something, or has a word of another kind, does not."""
+    def validator(part):
+        return jsonschema.Draft202012Validator({**SCHEMA, "anyOf": [{"$ref": f"#/$defs/{part}"}]})
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    kinds = set()
+    for number, entry in enumerate(journal(folder)[1:]):
+        for key, part in (("told", "told"), ("heard", "answered" if number else "ready")):
+            if key not in entry:
+                continue
+            line = json.loads(entry[key])
+            for points in ([line["trajectory"]["points"]] if "trajectory" in line else []):
+                del points[2:-2]
+            check = validator(part)
+            for error in check.iter_errors(line):
+                fail(f"{entry[key][:200]}: {error.message[:200]}")
+            kind = line.get("do", part)
+            if kind in kinds:
+                continue
+            kinds.add(kind)
+            for field in line:
+                if (kind, field) not in (("finish", "objects"), ("answered", "q")) and check.is_valid({k: v for k, v in line.items() if k != field}):
+                    fail(f"{entry[key][:200]} would do without '{field}'")
+    if not kinds >= {"ready", "begin", "act", "move", "take", "release", "sense", "finish", "answered"}:
+        fail(f"what was looked at: {kinds}")
+
+
+def told_motions(folder):
+    return [m["trajectory"]["points"] for m in (json.loads(e["told"]) for e in journal(folder) if "told" in e) if m["do"] == "move"]
+
+
+def within_limits(points, velocity, acceleration, jerk):
+    """By differences of the points, which are equally far apart; and velocities and accelerations are those of the curve, as far as the jerk
+    lets them be otherwise between."""
+    h = points[1]["time_from_start"] - points[0]["time_from_start"]
+    q = [p["positions"] for p in points]
+    for k in range(len(points) - 1):
+        for j in range(len(q[0])):
+            if abs(q[k + 1][j] - q[k][j]) > velocity * h * (1 + 1e-6):
+                fail("a motion is too fast")
+            a, b = points[k], points[k + 1]
+            if abs(b["velocities"][j] - a["velocities"][j]) > acceleration * h * (1 + 1e-6) or abs(a["accelerations"][j]) > acceleration * (1 + 1e-6):
+                fail("a motion accelerates too much")
+            if abs(b["accelerations"][j] - a["accelerations"][j]) > jerk * h * (1 + 1e-6):
+                fail("an acceleration jumps")
+            if abs(q[k + 1][j] - q[k][j] - h / 2 * (a["velocities"][j] + b["velocities"][j])) > jerk * h**3 / 12 * (1 + 1e-6) + 1e-12:
+                fail("velocities are not those of the points")
+
+
+def folder_of_files(folder, *more):
+    """--trajectories has what a robot is told: motions with their points, what is taken, let go and sensed, in this order."""
+    done, report = run(folder, DRIVER, "--robot-rate", "200", *more)
+    if done.returncode != 0:
+        fail(f"{done.stderr}")
+    told = [json.loads(e["told"]) for e in journal(folder) if "told" in e]
+    heard = {m["id"]: m for m in (json.loads(e["heard"]) for e in journal(folder) if "heard" in e) if "id" in m}
+    sensed = {m["fact"]: heard[m["id"]]["sensed"] for m in told if m["do"] == "sense"}
+    for form in ("csv", "json", "yaml"):
+        done = subprocess.run([TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet", "--rate", "200",
+                               "--trajectories", f"files-{form}", "--trajectory-format", form, *more], cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            fail(f"files: exit code {done.returncode}: {done.stderr}")
+        plan = json.loads((folder / f"files-{form}/plan.json").read_text())
+        schema = json.loads((ROOT / "docs/plan-run.schema.json").read_text())
+        places = schema["properties"]["plans"]["items"]["properties"]["start"]["properties"]
+        places["objects"] = SCHEMA["$defs"]["places"]
+        check = jsonschema.Draft202012Validator(schema)
+        for error in check.iter_errors(plan):
+            fail(f"plan.json: {error.message[:200]}")
+        for field in schema["required"]:
+            if check.is_valid({k: v for k, v in plan.items() if k != field}):
+                fail(f"plan.json would do without '{field}'")
+        begin = next(m for m in told if m["do"] == "begin")
+        if plan["plans"][0]["start"]["robots"] != {name: r["q"] for name, r in begin["robots"].items()} or \
+                plan["plans"][0]["start"]["objects"] != begin["objects"]:
+            fail("the start is not that of the robot")
+        events, number = [], plan["plans"][0]["first"]
+        while number is not None:
+            step = plan["steps"][number]
+            events.append(("act", step["action"]))
+            # With what was sensed: other ways are there, too.
+            way, = [w for w in step["ways"] if all(sensed[f] == v for f, v in w["sensed"].items())]
+            time = 0
+            for event in [*step["events"], *way["events"]]:
+                if event["time"] != time:
+                    fail(f"{event} at another time than {time}")
+                time += event.get("duration", 0)
+                events.append(seen_in_files(folder / f"files-{form}", event))
+            number = way["next"]
+        wanted = []
+        for m in told:
+            if m["do"] == "move":
+                points = m["trajectory"]["points"]
+                wanted.append(("move", m["robot"], points[-1]["time_from_start"], points[len(points) // 2]["positions"]))
+            elif m["do"] in ("take", "release"):
+                wanted.append((m["do"], m["robot"], m["object"]))
+            elif m["do"] == "sense":
+                wanted.append(("sense", m["fact"], sensed[m["fact"]]))
+            elif m["do"] == "act":
+                wanted.append(("act", m["action"]))
+        if [e for e in events if e != ("act", "")] != wanted:
+            fail(f"files and robot: {[x for x in zip(events, wanted) if x[0] != x[1]][:2]}, {len(events)} and {len(wanted)}")
+        lines = (folder / f"files-{form}/events.csv").read_text().splitlines()
+        count = sum(len(s["events"]) + sum(len(w["events"]) + 1 for w in s["ways"]) for s in plan["steps"])
+        if len(lines) != count + 1 or lines[0] != "step,way,action,time,event,robot,object,link,file,duration,fact,value,next":
+            fail(f"events.csv has {len(lines)} lines, for {count} events")
+        rows = list(csv.DictReader(lines))
+        if sum(r["event"] == "take" and r["link"] == "hand" for r in rows) != sum(
+                e["event"] == "take" for s in plan["steps"] for e in [*s["events"], *(x for w in s["ways"] for x in w["events"])]):
+            fail("what is taken is not in events.csv")
+
+
+def seen_in_files(folder, event):
+    """An event as a robot is told it."""
+    if event["event"] == "sense":
+        return ("sense", event["fact"], event["value"])
+    if event["event"] != "move":
+        return (event["event"], event["robot"], event["object"])
+    text = (folder / event["file"]).read_text()
+    if event["file"].endswith(".csv"):
+        points = [[float(x) for x in line.split(",")][1:] for line in text.splitlines()[1:]]
+    else:
+        points = [p["positions"] for p in (json.loads(text) if event["file"].endswith(".json") else yaml.safe_load(text))["points"]]
+    if abs((len(points) - 1) / 200 - event["duration"]) > 1e-9:
+        fail(f"{event} has {len(points)} samples")
+    return ("move", event["robot"], event["duration"], points[len(points) // 2])
 
 
 def judge(folder, finished):
@@ -110,6 +264,7 @@ def main():
             if report["collisions"] + report["limit_violations"] + report["jumps"] or report["samples"] < 1000:
                 fail(f"seed {seed}: {report}")
             judge(scenario, True)
+        keeps_schema(scenario)
         sensed = {json.loads(e["told"])["fact"] for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "sense"}
         if len(sensed) != 2:
             fail(f"sensed: {sensed}")
@@ -126,26 +281,51 @@ def main():
             if not float(stray) <= executed["margin"] + 1e-9 <= 12 * float(stray) + 1e-6:
                 fail(f"executed {stray} beside: {executed}")
         # Where it ends elsewhere, or fails, is looked at, too.
-        for what, end in (('"q": [x + 0.5 for x in self.q[message["robot"]]]', "elsewhere"), ('"failed": "pushed"', "failed")):
-            liar = folder / "liar.py"
-            liar.write_text((ROOT / "examples/drivers/driver.py").read_text().replace(
-                "        return reply\n\n    def take", "        del reply['done']\n        return {" + ("'done': True, " if end == "elsewhere" else "") +
-                "**reply, " + what + "}\n\n    def take"))
-            done, report = run(scenario, f"{sys.executable} {liar} --stray 0.9", "--robot-retries", "0")
+        for what, end in (('reply["q"] = [x + 0.5 for x in reply["q"]]', "elsewhere"), ('del reply["done"]; reply["failed"] = "pushed"', "failed")):
+            liar = lie(folder, what)
+            done, report = run(scenario, f"{liar} --stray 0.9", "--robot-retries", "0")
             executed = report["driver"]["executed"]
             if done.returncode != 1 or report["driver"]["end"] != end or executed["motions"] != 1 or executed["most_strayed"] < 0.89:
                 fail(f"{end}: exit code {done.returncode}: {report['driver']}")
         for rows in ("[[0, 1]]", "7", "[[1] + 6 * [0], 7 * [0]]", "[6 * [0] + ['x']]"):
-            liar = folder / "liar.py"
-            liar.write_text((ROOT / "examples/drivers/driver.py").read_text().replace(
-                "        return reply\n\n    def take", f'        return {{**reply, "executed": {rows}}}\n\n    def take'))
-            done, report = run(scenario, f"{sys.executable} {liar}")
+            done, report = run(scenario, lie(folder, f'reply["executed"] = {rows}'))
             if done.returncode != 1 or report["driver"]["end"] != "nonsense":
                 fail(f"executed is {rows}: exit code {done.returncode}: {done.stderr}")
         done, report = run(scenario, DRIVER)
         (end,) = [json.loads(e["told"]) for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "finish"]
         if set(end["objects"]) != {o["name"] for o in json.loads((scenario / "cell.json").read_text())["objects"]} or "pose" not in end["objects"]["o1"]:
             fail(f"where things are at the end: {end}")
+
+        # Through corners: faster, within all limits, judged as ever, and repeated byte for byte.
+        rests = sum(points[-1]["time_from_start"] for points in told_motions(scenario))
+        for more, jerk in (((), 100), (("--max-jerk", "40"), 40)):
+            done, report = run(scenario, f"{DRIVER} --stray 0", "--blend", "0.5", *more)
+            if done.returncode != 0 or report["blends"] < 5 or report["limit_violations"] + report["collisions"] + report["driver"]["executed"]["collisions"]:
+                fail(f"through corners: exit code {done.returncode}: {report}: {done.stderr}")
+            if not 0.9 < report["most_jerk"] <= 1.001 or report["driver"]["executed"]["most_strayed"] > 1e-9:
+                fail(f"through corners: {report}")
+            judge(scenario, True)
+            keeps_schema(scenario)
+            for points in told_motions(scenario):
+                within_limits(points, 2, 5, jerk)
+        if not sum(points[-1]["time_from_start"] for points in told_motions(scenario)) < 0.9 * rests:
+            fail("through corners it is not faster")
+        (scenario / "blended.jsonl").write_text((scenario / "journal.jsonl").read_text())
+        done, again = run(scenario, None, "--replay-journal", "blended.jsonl", "--blend", "0.5", "--max-jerk", "40")
+        if done.returncode != 0 or again["blends"] != report["blends"]:
+            fail(f"through corners, repeated: exit code {done.returncode}: {done.stderr}")
+        done, _ = run(scenario, None, "--replay-journal", "blended.jsonl")
+        if done.returncode != 3 or "something else" not in done.stderr:
+            fail(f"repeated from rest to rest: exit code {done.returncode}: {done.stderr}")
+        for wrong, word in ((("--blend", "0.6"), "blend"), (("--max-jerk", "5"), "max-jerk"), (("--blend", "0.5", "--time-optimal"), "time-optimal"),
+                            (("--max-velocity", "j99=1"), "no robot of the scene has a joint")):
+            done, _ = run(scenario, DRIVER, *wrong)
+            if done.returncode != 2 or word not in done.stderr:
+                fail(f"{wrong}: exit code {done.returncode}: {done.stderr}")
+        done, report = run(scenario, DRIVER)
+
+        # A plan's files say what the robot is told, in the same order; with what was sensed then.
+        folder_of_files(scenario, "--blend", "0.5")
 
         # What is handed over is taken before it is let go.
         handed = folder / "handed"
@@ -226,7 +406,7 @@ def main():
         # Faults at random: each run ends stopped or at the goal.
         ends = {}
         for seed in range(1, RUNS + 1):
-            done, report = run(scenario, f"{DRIVER} --seed {seed} --faults 0.03 --late 30", "--robot-timeout", "1")
+            done, report = run(scenario, f"{DRIVER} --seed {seed} --faults 0.03 --late 30", "--robot-timeout", "1", *(["--blend", "0.5"] if seed % 2 else []))
             if done.returncode not in (0, 1) or report is None:
                 fail(f"faults, seed {seed}: exit code {done.returncode}: {done.stderr}")
             end = report["driver"]["end"]

@@ -47,13 +47,15 @@ def carry_out(folder, name, *driver):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for what, n, runs in (("force-sensing", 2, 2), ("stacked", 3, 1), ("bimanual-assembly", 4, 1)):
-            done, said = scenario(folder, what, str(n), "--physics", str(runs))
+        for what, n, runs, blend in (("force-sensing", 2, 2, "0.5"), ("stacked", 3, 1, "0"), ("bimanual-assembly", 4, 1, "0.5")):
+            done, said = scenario(folder, what, str(n), "--physics", str(runs), "--blend", blend)
             physics = said.get("physics", {})
             check(done.returncode == 0 and physics.get("good") == runs, f"{what}: {physics}, {done.stderr[-500:]}")
             check(0 < physics.get("most_below", 0) < 0.03, f"{what}: nothing has settled: {physics}")
             for file in sorted((folder / what / "physics").glob("run-*.json")):
-                executed = json.loads(file.read_text())["driver"]["executed"]
+                report = json.loads(file.read_text())
+                executed = report["driver"]["executed"]
+                check((report["blends"] > 5) == (blend != "0"), f"{what}: {report['blends']} blends")
                 check(executed["samples"] > 500 and executed["collisions"] == 0, f"{what}: {executed}")
                 check(0 < executed["margin"] < 0.003, f"{what}: margin {executed['margin']}")
 

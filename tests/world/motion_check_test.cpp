@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "worlds.h"
 
@@ -84,6 +85,32 @@ TEST(CheckMotion, FreeAtEverySampleOrInContactWhereItSays) {
   EXPECT_GT(contact, 20);
   EXPECT_GT(later, 10);
   EXPECT_LT(most, 3000U);
+}
+
+// The arm stretched out beside a box, and turned towards it as far as it may be off its line.
+TEST(CheckMotion, FreeAroundAPathIsFreeAtTheFarthest) {
+  int free = 0, met = 0;
+  for (int k = 0; k < 40; ++k) {
+    const SceneFiles files;
+    std::ostringstream text;
+    text << R"("objects": [{"name": "box", "pose": {"position": [2.4, )" << 0.55 + 0.0075 * k
+         << R"(, 0]}, "outer": )" << files.ref("box.glb") << "}]";
+    const World world = files.world(files.scene(text.str()));
+    const Checker checker(world);
+    Scratch scratch;
+    WorldState state = initial_state(world);
+    MotionOptions options;
+    options.around = {0.03, 0.02, 0.04};
+    const bool is_free = check_motion(checker, state, 0, {{-0.1, 0, 0}, {0, 0, 0}}, options)
+                             .outcome == Outcome::Free;
+    state.q[0] = options.around;
+    const bool meets = checker.find_contact(state, scratch).has_value();
+    EXPECT_FALSE(is_free && meets) << k;
+    free += is_free ? 1 : 0;
+    met += meets ? 1 : 0;
+  }
+  EXPECT_GT(met, 15);
+  EXPECT_GT(free, 5);
 }
 
 // Wherever the joints are within `around` of a path that is free with it, nothing meets.

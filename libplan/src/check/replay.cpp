@@ -100,6 +100,7 @@ class Run {
       if (used != n.calls.size()) missing(n);
       after = transitions_.after(model_.actions[n.action.schema], slots, k, &sensed);
     }
+    std::erase_if(sensed, [&](const Fact& f) { return values_of(f, after).size() < 2; });
     if (options_.outcomes == RunOptions::Outcomes::Asked)
       ask(after, sensed, node, k);
     else if (options_.outcomes != RunOptions::Outcomes::All && !after.empty())
@@ -109,7 +110,9 @@ class Run {
           n.branches ? follow(n.branch, then) : std::pair(std::optional(n.next), std::string());
       const NamedKnowledge before_names(model_, evaluator_, k),
           after_names(model_, evaluator_, then);
-      step_({node, before_names, after_names, next.value_or(kNone), outcome, actions});
+      RunStep step{node, before_names, after_names, next.value_or(kNone), outcome, actions};
+      for (const Fact& f : sensed) step.sensed.push_back({fact_text(f), value_of(f, then)});
+      step_(step);
       const std::uint64_t done = actions + (n.acts ? 1 : 0);
       if (!next) {
         options_.unplanned({outcome, named(then), done});
@@ -208,17 +211,10 @@ class Run {
            const RuntimeKnowledge& before) const {
     const NamedKnowledge names(model_, evaluator_, before);
     for (const Fact& f : sensed) {
-      const auto value = [&](const RuntimeKnowledge& k) -> std::string {
-        if (f[0] == 1) return evaluator_.name(*k.value(f));
-        return k.knows(f, true) ? "true" : "false";
-      };
-      SensedFact question{node, names, fact_text(f), {}};
-      for (const RuntimeKnowledge& k : all)
-        if (std::ranges::find(question.values, value(k)) == question.values.end())
-          question.values.push_back(value(k));
+      const SensedFact question{node, names, fact_text(f), values_of(f, all)};
       if (question.values.size() < 2) continue;
       const std::string said = options_.sense(question);
-      std::erase_if(all, [&](const RuntimeKnowledge& k) { return value(k) != said; });
+      std::erase_if(all, [&](const RuntimeKnowledge& k) { return value_of(f, k) != said; });
       if (!all.empty()) continue;
       std::string values;
       for (const std::string& v : question.values) values += (values.empty() ? "" : ", ") + v;
@@ -226,6 +222,22 @@ class Run {
                                                "', and by what is known it is one of " + values);
     }
     if (all.size() > 1) all.erase(all.begin() + 1, all.end());
+  }
+
+  /// @pre it is known
+  [[nodiscard]] std::string value_of(const Fact& f, const RuntimeKnowledge& k) const {
+    if (f[0] == 1) return evaluator_.name(*k.value(f));
+    return k.knows(f, true) ? "true" : "false";
+  }
+
+  /// That a fact has in some states, each once.
+  [[nodiscard]] std::vector<std::string> values_of(const Fact& f,
+                                                   const std::vector<RuntimeKnowledge>& all) const {
+    std::vector<std::string> out;
+    for (const RuntimeKnowledge& k : all)
+      if (std::string value = value_of(f, k); std::ranges::find(out, value) == out.end())
+        out.push_back(std::move(value));
+    return out;
   }
 
   /// "isSpillable(o1)".

@@ -4,11 +4,19 @@
 #include <kaboum/execution/planning_task.h>
 #include <kaboum/execution/simulation.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace kaboum::execution {
+
+/// Formats of the files of a plan's motions.
+enum class MotionFormat : std::uint8_t {
+  Csv,   ///< motion::to_csv
+  Json,  ///< trajectory_msgs/JointTrajectory of ROS 2 (motion::to_joint_trajectory)
+  Yaml   ///< the same
+};
 
 /// Options of carrying out a plan.
 struct PlanRunRequest {
@@ -17,9 +25,11 @@ struct PlanRunRequest {
   /// Its progress is told of new plans, too, unless these have their own.
   SimulationOptions simulation;
   std::vector<std::string> packages = {};  ///< folders that package:// URIs are looked up in
-  /// Each motion's samples are written into this folder as CSV, in the order in which they are
-  /// carried out; empty: none.
+  /// Each motion's samples are written into this folder, in the order in which they are carried
+  /// out, and what happens when: plan.json and events.csv (docs/planning/trajectories.md). Empty:
+  /// none.
   std::filesystem::path trajectories = {};
+  MotionFormat motion_format = MotionFormat::Csv;
 };
 
 /// The report on a plan that was carried out.

@@ -22,6 +22,11 @@ class KnownState {
       const std::string& function, const std::vector<std::string>& arguments) const = 0;
 };
 
+/// What an action has sensed of several values that were possible: "isSpillable(o1)", "true".
+struct SensedValue {
+  std::string fact, value;
+};
+
 /// A node of a plan as it is carried out in one state.
 struct RunStep {
   Index node = 0;
@@ -31,6 +36,7 @@ struct RunStep {
   Index next = kNone;         ///< a node; kNone: the end
   std::string outcome;        ///< "isSpillable(o1)", "!isSpillable(o1)"; empty: no branch
   std::uint64_t actions = 0;  ///< before this node on the way here
+  std::vector<SensedValue> sensed = {};
 };
 
 /// Sensing has turned out as the plan has no branch for.
