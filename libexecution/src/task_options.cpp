@@ -88,7 +88,7 @@ const std::vector<Option<PlanRunRequest>>& run_options() {
         {{"csv", MotionFormat::Csv}, {"json", MotionFormat::Json}, {"yaml", MotionFormat::Yaml}}};
     made.push_back(choice<R>(
         {.name = "trajectory-format",
-         .text = "Of the files of motions ({trajectories}); json and yaml: a "
+         .text = "Of the files of motions that are written; json and yaml: a "
                  "trajectory_msgs/JointTrajectory of ROS 2"},
         [](auto& r) -> auto& { return r.motion_format; }, kFormats));
     made.push_back(option<R>(

@@ -212,6 +212,7 @@ std::size_t Trajectory::segment_of(double step) const {
 Instant Trajectory::instant(std::size_t k) const {
   Instant out = at_step(static_cast<double>(k));
   out.q = sample(k);
+  if (k == 0) out.velocity = out.acceleration = std::vector<double>(out.q.size(), 0);  // not −0
   return out;
 }
 

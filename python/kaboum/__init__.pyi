@@ -1243,9 +1243,13 @@ def run_plan(
     replan: int = 100,
     timeout: float | None = None,
     seed: int = 1,
-    rate: float = 1000.0,
-    max_acceleration: float = 5.0,
     time_optimal: bool = False,
+    rate: float = 1000.0,
+    blend: float = 0.0,
+    max_velocity: float | Mapping[str, float] | None = None,
+    max_acceleration: float | Mapping[str, float] | None = None,
+    max_jerk: float | Mapping[str, float] | None = None,
+    trajectory_format: Literal["csv", "json", "yaml"] = "csv",
     package_path: _Path | Sequence[_Path] | None = None,
     # end of options
     # options of task

@@ -498,7 +498,8 @@ outcomes : str, int, dict or path
     How sensing turns out: 'all': every branch; a number: one run, at random, of this seed; a dict,
     {'isSpillable(o1)': True}, or a file of it: as it says.
 trajectories : path, optional
-    A folder that each motion's samples are written into, as CSV.
+    A folder that each motion's samples are written into, and what happens between motions:
+    plan.json and events.csv (docs/planning/trajectories.md).
 {keywords}
 
 Returns

@@ -326,6 +326,22 @@ def main():
 
         # A plan's files say what the robot is told, in the same order; with what was sensed then.
         folder_of_files(scenario, "--blend", "0.5")
+        done, report = run(scenario, DRIVER)
+
+        # The example in C++ is told the same, and answers like the one in Python.
+        compiled = TOOLS / "example-driver"
+        if compiled.exists():
+            done, report = run(scenario, str(compiled), "--blend", "0.5")
+            if done.returncode != 0 or report["driver"]["executed"]["most_strayed"] > 1e-9 or report["driver"]["executed"]["motions"] != report["motions"]:
+                fail(f"the driver in C++: exit code {done.returncode}: {done.stderr}")
+            judge(scenario, True)
+            keeps_schema(scenario)
+            sensed = {m["fact"]: m["values"][0] for m in (json.loads(e["told"]) for e in journal(scenario) if "told" in e) if m["do"] == "sense"}
+            told = [[e["told"] for e in journal(scenario) if "told" in e]]
+            done, report = run(scenario, f"{DRIVER} {' '.join(f'--sense {chr(39)}{f}={v}{chr(39)}' for f, v in sensed.items())}", "--blend", "0.5")
+            if done.returncode != 0 or told[0] != [e["told"] for e in journal(scenario) if "told" in e]:
+                fail(f"the drivers in C++ and Python are told different things: {done.stderr}")
+            done, report = run(scenario, DRIVER)
 
         # What is handed over is taken before it is let go.
         handed = folder / "handed"

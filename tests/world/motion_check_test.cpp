@@ -101,8 +101,9 @@ TEST(CheckMotion, FreeAroundAPathIsFreeAtTheFarthest) {
     WorldState state = initial_state(world);
     MotionOptions options;
     options.around = {0.03, 0.02, 0.04};
-    const bool is_free = check_motion(checker, state, 0, {{-0.1, 0, 0}, {0, 0, 0}}, options)
-                             .outcome == Outcome::Free;
+    const bool is_free =
+        check_motion(checker, state, 0, {{-0.1, 0, 0}, {0, 0, 0}}, options).outcome ==
+        Outcome::Free;
     state.q[0] = options.around;
     const bool meets = checker.find_contact(state, scratch).has_value();
     EXPECT_FALSE(is_free && meets) << k;

@@ -146,7 +146,8 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
   add_request_options(*r, execution::run_options(), o.run, o.stated);
   add_request_options(*r, execution::driver_options(), o.driver, o.stated);
   r->add_option("--trajectories", o.trajectories,
-                "Write each motion's samples into this folder, as CSV")
+                "Write each motion's samples into this folder, and what happens between them: "
+                "plan.json, events.csv")
       ->type_name("DIR");
   add_common_options(*r, o.common);
   return r;

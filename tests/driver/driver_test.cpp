@@ -1,0 +1,226 @@
+// Robot drivers: what functions are called for what is told, what is answered, how a run ends.
+
+#include <gtest/gtest.h>
+#include <kaboum/driver/driver.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace kaboum::driver {
+namespace {
+
+using nlohmann::json;
+using Values = std::vector<double>;
+
+/// Two joints at a time from 0 to 1, from rest to rest.
+Instant curve(double t) {
+  const double s = t * t * t * (10 - 15 * t + 6 * t * t), v = 30 * t * t * (1 - t) * (1 - t),
+               a = 60 * t * (1 - t) * (1 - 2 * t);
+  return {{s, 1 - 2 * s}, {v, -2 * v}, {a, -2 * a}};
+}
+
+json trajectory(int count = 10) {
+  json points = json::array();
+  for (int k = 0; k <= count; ++k) {
+    const double t = static_cast<double>(k) / count;
+    const Instant at = curve(t);
+    points.push_back({{"time_from_start", t},
+                      {"positions", at.q},
+                      {"velocities", at.velocity},
+                      {"accelerations", at.acceleration}});
+  }
+  return {{"joint_names", {"a", "b"}}, {"points", points}};
+}
+
+const json kBegin = {{"do", "begin"},
+                     {"robots", {{"arm", {{"joint_names", {"a", "b"}}, {"q", {0.0, 1.0}}}}}},
+                     {"objects",
+                      {{"o1", {{"pose", {{1, 0, 0, 0.5}, {0, 1, 0, 0}, {0, 0, 1, 0}}}}},
+                       {"o2", {{"held_by", "arm"}}},
+                       {"o3", {{"away", true}}}}}};
+
+class Recorder : public Driver {
+ public:
+  std::vector<std::string> calls;
+  bool stuck = false, broken = false;
+  std::optional<Values> at;
+  std::map<std::string, Place> places;
+
+ protected:
+  void begin(const std::map<std::string, Robot>& robots,
+             const std::map<std::string, Place>& objects) override {
+    calls.push_back("begin " + std::to_string(robots.size()));
+    places = objects;
+  }
+  void act(const std::string& action) override {
+    if (broken) throw std::logic_error("a mistake of the driver");
+    calls.push_back(action);
+  }
+  std::vector<ExecutedSample> move(const std::string& robot, const Motion& motion) override {
+    if (stuck) throw Failure("a fuse has blown");
+    calls.push_back("move " + robot);
+    if (!at) return {};
+    at = Values{0.999, -1};
+    return {{0, {0, 1}}, {motion.duration(), *at}};
+  }
+  void close(const std::string&, const std::string& link) override {
+    calls.push_back("close " + link);
+  }
+  void open(const std::string&, const std::string& link) override {
+    calls.push_back("open " + link);
+  }
+  void attach(const std::string&, const std::string& object, const std::string&) override {
+    calls.push_back("attach " + object);
+  }
+  void detach(const std::string&, const std::string& object) override {
+    calls.push_back("detach " + object);
+  }
+  std::optional<Values> where(const std::string&) override { return at; }
+  void stop() override { calls.emplace_back("stop"); }
+};
+
+std::vector<json> speak(Driver& driver, std::vector<json> messages) {
+  std::stringstream in, out;
+  int id = 0;
+  for (json& m : messages) {
+    m["id"] = ++id;
+    in << m.dump() << '\n';
+  }
+  driver.run(in, out);
+  std::string line;
+  std::getline(out, line);
+  EXPECT_EQ(json::parse(line), json({{"kaboum_driver", 1}}));
+  std::vector<json> answers;
+  while (std::getline(out, line)) answers.push_back(json::parse(line));
+  return answers;
+}
+
+json move_of(const json& told) { return {{"do", "move"}, {"robot", "arm"}, {"trajectory", told}}; }
+
+TEST(Driver, EachMessageIsAFunction) {
+  Recorder driver;
+  const auto answers = speak(
+      driver,
+      {kBegin, {{"do", "act"}, {"action", "fetch"}}, move_of(trajectory()), {{"do", "finish"}}});
+  ASSERT_EQ(answers.size(), 4U);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(answers[k], json({{"done", true}, {"id", k + 1}}));
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"begin 1", "fetch", "move arm", "stop"}));
+  ASSERT_TRUE(driver.places.at("o1").pose);
+  EXPECT_EQ((*driver.places.at("o1").pose)[0][3], 0.5);
+  EXPECT_EQ(driver.places.at("o2").held_by, "arm");
+  EXPECT_TRUE(driver.places.at("o3").away);
+}
+
+TEST(Driver, AGripperClosesAndOpensOnce) {
+  Recorder driver;
+  json begin = kBegin;
+  begin["objects"] = json::object();
+  const auto take = [](const char* object) {
+    return json{{"do", "take"}, {"robot", "arm"}, {"object", object}, {"link", "hand"}};
+  };
+  const auto release = [](const char* object) {
+    return json{{"do", "release"}, {"robot", "arm"}, {"object", object}};
+  };
+  const auto answers = speak(driver, {begin, take("o1"), take("lid"), take("lid"), release("lid"),
+                                      release("o1"), release("o1")});
+  EXPECT_EQ(driver.calls,
+            (std::vector<std::string>{"begin 1", "close hand", "attach o1", "attach lid",
+                                      "detach lid", "detach o1", "open hand", "stop"}));
+  for (const std::size_t k : {3U, 6U}) EXPECT_TRUE(answers.at(k).contains("failed")) << k;
+}
+
+TEST(Driver, WhereItIsAndHowItMovedAreSaid) {
+  Recorder driver;
+  driver.at = Values{0, 1};
+  const auto answers = speak(driver, {kBegin, move_of(trajectory())});
+  EXPECT_EQ(answers.at(0)["q"], json({{"arm", {0.0, 1.0}}}));
+  EXPECT_EQ(answers.at(1)["q"], json({0.999, -1.0}));
+  EXPECT_EQ(answers.at(1)["executed"], json({{0.0, 0.0, 1.0}, {1.0, 0.999, -1.0}}));
+}
+
+TEST(Driver, FailuresSayWhyAndWhere) {
+  Recorder driver;
+  driver.at = Values{0, 1};
+  driver.stuck = true;
+  const auto answers =
+      speak(driver, {kBegin,
+                     move_of(trajectory()),
+                     {{"do", "sense"}, {"fact", "p"}, {"values", {"true"}}},
+                     {{"do", "dance"}},
+                     {{"do", "move"}, {"robot", "leg"}, {"trajectory", trajectory()}}});
+  EXPECT_EQ(answers.at(1), json({{"failed", "a fuse has blown"}, {"q", {0.0, 1.0}}, {"id", 2}}));
+  for (const std::size_t k : {2U, 3U, 4U}) EXPECT_TRUE(answers.at(k).contains("failed")) << k;
+}
+
+TEST(Driver, WhatIsNoTrajectoryIsNotFollowed) {
+  std::vector<json> wrong(8, trajectory());
+  wrong[0]["points"].clear();
+  wrong[1]["points"][3]["positions"] = {1.0};
+  wrong[2]["points"][0]["velocities"] = {1.0, 0.0};
+  wrong[3]["points"][10]["velocities"] = {0.0, 1e-3};
+  wrong[4]["points"][0]["time_from_start"] = 0.01;
+  wrong[5]["points"][4]["time_from_start"] = 0.3;
+  wrong[6]["joint_names"] = {"b", "a"};
+  wrong[7]["points"][0]["positions"] = {0.0, 1.001};
+  for (const json& told : wrong) {
+    Recorder driver;
+    EXPECT_TRUE(speak(driver, {kBegin, move_of(told)}).at(1).contains("failed")) << told;
+    EXPECT_EQ(driver.calls, (std::vector<std::string>{"begin 1", "stop"})) << told;
+  }
+}
+
+TEST(Driver, ItStopsHoweverItEnds) {
+  Recorder told;
+  speak(told, {kBegin, {{"do", "stop"}}, {{"do", "act"}, {"action", "never"}}});
+  EXPECT_EQ(told.calls, (std::vector<std::string>{"begin 1", "stop"}));
+  Recorder broken;
+  broken.broken = true;
+  EXPECT_THROW(speak(broken, {{{"do", "act"}, {"action", "x"}}}), std::logic_error);
+  EXPECT_EQ(broken.calls, (std::vector<std::string>{"stop"}));
+  Recorder none;
+  std::stringstream in("{\n"), out;
+  EXPECT_THROW(none.run(in, out), std::runtime_error);
+  EXPECT_EQ(none.calls, (std::vector<std::string>{"stop"}));
+}
+
+/// What a motion is to be followed with.
+class Follower : public Recorder {
+ public:
+  std::vector<double> times;
+  Instant last;
+
+ protected:
+  std::vector<ExecutedSample> move(const std::string&, const Motion& motion) override {
+    for (int k = 0; k <= 100; ++k) {
+      const Instant is = motion.at(k / 100.0), wanted = curve(k / 100.0);
+      for (std::size_t j = 0; j < 2; ++j) {
+        EXPECT_NEAR(is.q[j], wanted.q[j], 1e-12);
+        EXPECT_NEAR(is.velocity[j], wanted.velocity[j], 1e-12);
+        EXPECT_NEAR(is.acceleration[j], wanted.acceleration[j], 1e-11);
+      }
+    }
+    EXPECT_EQ(motion.at(-1).q, (Values{0, 1}));
+    EXPECT_EQ(motion.at(2).velocity, (Values{0, 0}));
+    follow(motion, 200, [&](double time, const Instant& now) {
+      times.push_back(time);
+      last = now;
+    });
+    return {};
+  }
+};
+
+TEST(Driver, IsFollowedInItsTimeByThePolynomialOfDegree5) {
+  Follower driver;
+  speak(driver, {kBegin, move_of(trajectory(4))});
+  ASSERT_GT(driver.times.size(), 5U);
+  EXPECT_LE(driver.times.size(), 201U);
+  EXPECT_EQ(driver.times.front(), 0);
+  EXPECT_EQ(driver.times.back(), 1);
+  for (std::size_t k = 0; k + 1 < driver.times.size(); ++k)
+    EXPECT_LT(driver.times[k], driver.times[k + 1]);
+  EXPECT_EQ(driver.last.q, (Values{1, -1}));
+}
+
+}  // namespace
+}  // namespace kaboum::driver
