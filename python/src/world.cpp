@@ -972,8 +972,8 @@ void bind_trajectory(py::module_& module) {
           "without blends.")
       .def_property_readonly(
           "between_samples", [](const TrajectoryValue& t) { return t.made.between_samples; },
-          "Farthest that the curve may be from the straight lines between its samples, of each "
-          "joint; 0 without blends. [rad or length]")
+          "How far from the straight lines between its samples all is certified, of each joint, "
+          "where it is bent: the curve is nearer; 0 without blends. [rad or length]")
       .def("__repr__", [](const TrajectoryValue& t) {
         return "<kaboum.Trajectory of " + std::to_string(t.made.trajectory.samples()) + " samples>";
       });

@@ -55,7 +55,7 @@ def main():
             for file in sorted((folder / what / "physics").glob("run-*.json")):
                 report = json.loads(file.read_text())
                 executed = report["driver"]["executed"]
-                check((report["blends"] > 5) == (blend != "0"), f"{what}: {report['blends']} blends")
+                check((report["blends"] > 3) == (blend != "0"), f"{what}: {report['blends']} blends")
                 check(executed["samples"] > 500 and executed["collisions"] == 0, f"{what}: {executed}")
                 check(0 < executed["margin"] < 0.003, f"{what}: margin {executed['margin']}")
 

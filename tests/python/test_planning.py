@@ -511,7 +511,7 @@ def test_trajectories_are_those_of_the_program(cell, tmp_path):
     assert faster.duration < made.duration
     assert made.blends == [] and made.between_samples == [0] * len(home)
     blended = found.trajectory(rate=50, blend=0.5, max_velocity=0.5, max_acceleration=2.0, max_jerk=30.0)
-    assert len(blended.blends) == len(found) and blended.between_samples == [2 / (8 * 50**2)] * len(home)
+    assert len(blended.blends) == len(found) and blended.between_samples == pytest.approx([3 * 2 / (16 * 50**2)] * len(home), rel=1e-12)
     assert (blended.velocities[[0, -1]] == 0).all() and (blended.accelerations[[0, -1]] == 0).all()
     for limit, order in ((0.5, 1), (2, 2), (30, 3)):
         assert np.abs(np.diff(blended.positions, order, axis=0) * 50**order).max() <= limit * (1 + 1e-6)
