@@ -87,7 +87,7 @@ struct Driver::Answers {
   Driver& driver;
 
   [[nodiscard]] std::string robot_of(const json& message) const {
-    const std::string name = message.at("robot");
+    std::string name = message.at("robot");
     if (!driver.robots_.contains(name)) throw Failure("there is no robot '" + name + "'");
     return name;
   }

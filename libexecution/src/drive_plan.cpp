@@ -39,7 +39,7 @@ class Drive {
         !checked.valid)
       throw DriverStop(Kind::Uncertified, "the plan does not hold: " + checked.violation);
     done_.emplace_back(world_, model, plan, told_options_);
-    certify(done_.back());
+    prepare(done_.back());
     model_ = &done_.back().model;
     plan_ = &done_.back().plan;
     told_.reset();
@@ -94,6 +94,12 @@ class Drive {
   }
 
  private:
+  /// A motion as it is told.
+  struct ToldMotion {
+    motion::Trajectory trajectory;
+    std::string text;
+  };
+
   /// A plan as far as it was carried out.
   struct Done {
     Done(const world::World& world, const plan::Model& m, const plan::Plan& p,
@@ -102,25 +108,41 @@ class Drive {
     plan::Model model;
     plan::Plan plan;
     std::shared_ptr<NodeMotions> motions;  ///< of the plan here
+    std::map<const MotionPart*, ToldMotion> told = {};
     std::set<plan::Index> nodes = {};
     std::map<plan::Index, std::vector<ExecutedMotion>> executed = {};  ///< by node
     std::vector<std::string> sensed = {};                              ///< in their order
   };
 
-  /// Has all motions that the plan may come to certified before the first one is told: a step does
-  /// not wait for that then.
-  void certify(Done& done) const {
-    if (!(told_options_.motion.blend > 0)) return;
-    if (request_.simulation.progress) request_.simulation.progress("certifying blends");
+  const ToldMotion& told(Done& done, const MotionPart& part) const {
+    const auto found = done.told.find(&part);
+    if (found != done.told.end()) return found->second;
+    motion::Trajectory trajectory = trajectory_of(part, world_, told_options_);
+    std::string text = told_trajectory(world_.robots[part.robot].kinematics, trajectory);
+    return done.told.emplace(&part, ToldMotion{std::move(trajectory), std::move(text)})
+        .first->second;
+  }
+
+  /// Has the motions that the plan may come to certified, and put into words, before the first one
+  /// is told: a step does not wait for that then. Where there are many, the others follow when it
+  /// comes to them.
+  void prepare(Done& done) const {
+    constexpr std::uint64_t kMostStates = 10'000;
+    constexpr std::size_t kMostBytes = 256'000'000;
+    if (request_.simulation.progress) request_.simulation.progress("certifying motions");
     plan::RunOptions every;
     every.unplanned = [](const plan::Unplanned&) {};
+    every.most_states = kMostStates;
+    std::size_t bytes = 0;
     try {
       plan::run(done.model, done.plan, every, [&](const plan::RunStep& step) {
-        if (const auto state = state_of(world_, done.model, step.before))
-          done.motions->of(step.node, *state);
+        const auto state = state_of(world_, done.model, step.before);
+        if (!state) return;
+        for (const MotionPart& part : done.motions->of(step.node, *state))
+          if (!part.path.empty() && bytes < kMostBytes) bytes += told(done, part).text.size();
       });
     } catch (const Error& e) {
-      if (e.code() != ErrorCode::LimitReached) throw;  // others are certified when it comes to them
+      if (e.code() != ErrorCode::LimitReached) throw;
     }
   }
 
@@ -159,7 +181,8 @@ class Drive {
         continue;
       }
       const MotionPart& part = parts[event.motion];
-      driver_.move(part.robot, trajectory_of(part, world_, told_options_),
+      const ToldMotion& motion = told(done_.back(), part);
+      driver_.move(part.robot, motion.trajectory, motion.text,
                    done_.back().executed[node].emplace_back());
       q_[part.robot] = part.path.back();
     }

@@ -284,12 +284,17 @@ struct RobotDriver::Data {
   }
 
   /// Tells it something, and reads what it answers: "done", "failed" or "sensed".
-  json ask(json message, double seconds) {
+  /// @param trajectory  in JSON, the message's last member; empty: it has none
+  json ask(json message, double seconds, const std::string& trajectory = {}) {
     if (over) throw DriverStop(Kind::Ended, "the driver is told nothing any more");
     require_silence();
     message["id"] = ++messages;
-    const std::string text = dump(message);
-    note({{"told", text}});
+    std::string text = dump(message);
+    if (!trajectory.empty()) {
+      text.pop_back();
+      text += R"(,"trajectory":)" + trajectory + '}';
+    }
+    if (journal.is_open()) note({{"told", text}});
     if (answered && messages > 1)
       between += std::chrono::duration<double>(Clock::now() - *answered).count();
     if (const auto refused = side->tell(text)) {
@@ -453,28 +458,29 @@ void RobotDriver::act(const std::string& action) {
   data_->ask_again({{"do", "act"}, {"action", action}}, data_->options.most_seconds, "done");
 }
 
-void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
-                       ExecutedMotion& executed) {
-  executed.rate = trajectory.rate();
-  const world::RobotModel& model = data_->world.robots[robot];
+std::string told_trajectory(const robot::Robot& robot, const motion::Trajectory& trajectory) {
   json names = json::array(), points = json::array();
-  for (const robot::Variable& v : model.kinematics.variables) names.push_back(v.name);
+  for (const robot::Variable& v : robot.variables) names.push_back(v.name);
   for (std::size_t k = 0; k < trajectory.samples(); ++k) {
-    const double time = static_cast<double>(k) / trajectory.rate();
     const motion::Instant now = trajectory.instant(k);
-    points.push_back({{"time_from_start", time},
+    points.push_back({{"time_from_start", static_cast<double>(k) / trajectory.rate()},
                       {"positions", now.q},
                       {"velocities", now.velocity},
                       {"accelerations", now.acceleration}});
   }
-  const json message = {{"do", "move"},
-                        {"robot", model.name},
-                        {"trajectory", {{"joint_names", names}, {"points", std::move(points)}}}};
+  return dump({{"joint_names", std::move(names)}, {"points", std::move(points)}});
+}
+
+void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
+                       const std::string& told, ExecutedMotion& executed) {
+  executed.rate = trajectory.rate();
+  const world::RobotModel& model = data_->world.robots[robot];
+  const json message = {{"do", "move"}, {"robot", model.name}};
   const std::vector<double> from = trajectory.sample(0),
                             to = trajectory.sample(trajectory.samples() - 1);
   for (std::size_t tried = 0;; ++tried) {
     const json answer =
-        data_->ask(message, data_->options.most_seconds + kSlower * trajectory.duration());
+        data_->ask(message, data_->options.most_seconds + kSlower * trajectory.duration(), told);
     for (ExecutedSample& sample : data_->executed(answer, to.size()))
       executed.samples.push_back(std::move(sample));
     if (answer.contains("done")) {

@@ -48,6 +48,9 @@ class DriverStop : public std::runtime_error {
 };
 const char* name_of(DriverStop::Kind kind);
 
+/// A trajectory as a driver is told it, in JSON: what takes the time of telling a motion.
+std::string told_trajectory(const robot::Robot& robot, const motion::Trajectory& trajectory);
+
 /// A robot driver: another program that moves robots, real or simulated ones, and senses. It is
 /// told one thing at a time by a line of JSON, and answers by one (docs/planning/drivers.md).
 ///
@@ -72,7 +75,9 @@ class RobotDriver {
   ///   driver says that the robot is where it began.
   /// @param executed  gets what the driver says that it has done, tries that failed included, also
   ///   where the motion stops all
-  void move(std::size_t robot, const motion::Trajectory& trajectory, ExecutedMotion& executed);
+  /// @param told  told_trajectory of it
+  void move(std::size_t robot, const motion::Trajectory& trajectory, const std::string& told,
+            ExecutedMotion& executed);
   void take(std::size_t object, std::size_t robot, std::uint32_t link);
   void release(std::size_t object, std::size_t robot);
   /// @return one of the values, or whatever else was sensed
