@@ -56,10 +56,10 @@ std::vector<NodeEvent> motion_events(const std::vector<MotionPart>& parts, Held&
   Events events(held);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const MotionPart& part = parts[i];
-    const Held before = held;
-    for (const auto& [object, by] : before)
-      if (by.robot == part.robot && !part.holds.contains(object))
-        events.hold(object, next_holder(parts, i, object));
+    std::vector<std::size_t> let_go;
+    for (const auto& [object, by] : held)
+      if (by.robot == part.robot && !part.holds.contains(object)) let_go.push_back(object);
+    for (const std::size_t object : let_go) events.hold(object, next_holder(parts, i, object));
     for (const auto& [object, link] : part.holds) events.hold(object, Holder{part.robot, link});
     events.out.push_back({NodeEvent::Kind::Move, i});
   }

@@ -332,8 +332,10 @@ def main():
         compiled = TOOLS / "example-driver"
         if compiled.exists():
             done, report = run(scenario, str(compiled), "--blend", "0.5")
-            if done.returncode != 0 or report["driver"]["executed"]["most_strayed"] > 1e-9 or report["driver"]["executed"]["motions"] != report["motions"]:
-                fail(f"the driver in C++: exit code {done.returncode}: {done.stderr}")
+            executed = report["driver"]["executed"]
+            # By its polynomials, which are within the room that is certified.
+            if done.returncode != 0 or not 0 < executed["most_strayed"] < 3 * 5 / (16 * 100**2) or executed["motions"] != report["motions"]:
+                fail(f"the driver in C++: exit code {done.returncode}, {executed}: {done.stderr}")
             judge(scenario, True)
             keeps_schema(scenario)
             sensed = {m["fact"]: m["values"][0] for m in (json.loads(e["told"]) for e in journal(scenario) if "told" in e) if m["do"] == "sense"}

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/execution/simulation.h>
+#include <kaboum/manipulation/externals.h>
+#include <kaboum/manipulation/kept_constraints.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/plan/load.h>
 
@@ -234,6 +236,30 @@ TEST(Simulation, WhatIsLeftBehindIsNotTakenAway) {
   // Carried, put down, and left there.
   EXPECT_TRUE(
       taken_away("[" + holding + R"(,{\"robot\":\"arm\",\"path\":[[0.5],[0.4],[0.5]]}])").good());
+}
+
+// What a motion keeps is known from the function that made it.
+TEST(KeptConstraints, AreThoseOfTheFunction) {
+  const Case c;
+  world::WorldState state = initial_state(c.world);
+  const robot::Path path{{0.0}, {0.5}};
+  const auto kept = [&](const char* function, const std::vector<std::string>& arguments) {
+    return manipulation::kept_constraints(c.world, state, 0, path, function, arguments);
+  };
+  ASSERT_TRUE(kept("move", {"arm", "home"}));
+  EXPECT_TRUE(kept("move", {"arm", "home"})->empty());
+  EXPECT_FALSE(kept("follow", {"arm", "volume"}));
+  EXPECT_FALSE(kept("ofAUser", {"arm"}));
+  const std::vector<std::string> put{"arm", "block", "wall", "home"};
+  EXPECT_TRUE(kept("putUpright", put)->empty());  // it holds nothing any more
+  state.attachments[0] = world::Attachment{0, 1, {}, {}};
+  EXPECT_TRUE(kept("put", put)->empty());
+  ASSERT_EQ(kept("putUpright", put)->size(), 1U);
+  EXPECT_EQ(kept("putUpright", put)->front().link, 1U);
+  EXPECT_EQ(kept("putUpright", put)->front().within_angle, manipulation::ExternalOptions().upright);
+  EXPECT_THROW(kept("putUpright", {"arm", "nothing", "wall", "home"}), Error);
+  // What was never pushed: it has no point to stand on.
+  EXPECT_THROW(kept("push", put), Error);
 }
 
 }  // namespace
