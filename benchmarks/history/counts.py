@@ -15,6 +15,7 @@ import argparse
 import csv
 import datetime
 import math
+import os
 import pathlib
 import re
 import subprocess
@@ -108,7 +109,9 @@ def count(tools, words, folder):
     """Millions of instructions."""
     out = folder / "callgrind.out"
     command = ["taskset", "-c", "0", "valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(tools / words[0]), *words[1:]]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False)
+    # Nothing is taken from earlier runs.
+    environment = {**os.environ, "KABOUM_CACHE": str(folder / "cache")}
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False, env=environment)
     if done.returncode != 0:
         sys.exit(f"counts.py: {' '.join(words)}: exit code {done.returncode}\n{done.stderr[-2000:]}")
     total = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.M)

@@ -499,9 +499,10 @@ class SimpleBodySearch {
       if (held.known < points_.size()) incomplete.emplace_back(&held, &body);
     }
     std::ranges::sort(incomplete);
-    const auto same = std::ranges::unique(
-        incomplete, [](const auto& a, const auto& b) { return a.first == b.first; });
-    incomplete.erase(same.begin(), same.end());
+    const auto same =
+        std::unique(incomplete.begin(), incomplete.end(),
+                    [](const auto& one, const auto& other) { return one.first == other.first; });
+    incomplete.erase(same, incomplete.end());
     kaboum::parallel_for(std::size_t{0}, incomplete.size(), [&](std::size_t i) {
       const auto& [held, body] = incomplete[i];
       for (auto p = static_cast<std::uint32_t>(held->known); p < points_.size(); ++p)

@@ -159,8 +159,9 @@ void PosedSet::place(const geom::Transform& pose, double error) {
   const Vec3& t = pose.translation;
   if (!is_near(t[0]) || !is_near(t[1]) || !is_near(t[2]))
     throw Error(ErrorCode::InvalidArgument, "a pose with numbers beyond 1e60");
+  const double wrong = require_length(error, "an error of its place");
   pose_ = pose;
-  error_ = require_length(error, "an error of its place");
+  error_ = wrong;
   defect_ = bound_of_defect(pose.linear, defect.square);
 }
 
@@ -175,10 +176,17 @@ std::vector<Box3> PosedSet::boxes() const {
 
 Box3 PosedSet::box() const {
   if (set_->size() == 0) return {};
-  const std::vector<Vec3> ends{set_->box().min, set_->box().max};
-  // Radii may be stretched by what the box is not.
-  const double stretched = 2 * defect_ * (ends[1] - ends[0]).sum();
-  return Posed(Polytope(ends), pose_).box((error_ + stretched) * kSumUp);
+  const Vec3 middle = 0.5 * set_->box().min + 0.5 * set_->box().max;
+  const Vec3 half = 0.5 * set_->box().max - 0.5 * set_->box().min;
+  // Radii may be stretched by what the box is not; and what all of this rounds by.
+  const double rounding =
+      0x1p-48 * (middle.cwiseAbs().sum() + half.sum() + pose_.translation.cwiseAbs().sum());
+  const double grown = (error_ + 4 * defect_ * half.sum()) * kSumUp + rounding;
+  const Vec3 at = pose_ * middle, reach = pose_.linear.cwiseAbs() * half + Vec3::Constant(grown);
+  Box3 out;
+  out.extend(Vec3(at - reach));
+  out.extend(Vec3(at + reach));
+  return out;
 }
 
 }  // namespace kaboum::collide

@@ -49,8 +49,19 @@ FloatBox Facings::moved(const PosedSet& set, std::size_t body, const Relation& r
     center[static_cast<int>(k)] = 0.5 * low + 0.5 * high;
     half[static_cast<int>(k)] = 0.5 * high - 0.5 * low;
   }
+  // Beyond floats nothing is known of it.
+  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr double kLargestInRows = 1e37;
+  const double largest = std::max(center.cwiseAbs().maxCoeff(), half.maxCoeff());
   MovedBox out;
   move_box(relation, center, half, reach_, kDefect * size_, out);
+  for (int k = 0; k < 3; ++k) {
+    const bool is_known =
+        largest <= kLargestInRows && out.box.low[k] <= kMost && out.box.high[k] >= -kMost;
+    if (is_known) continue;
+    out.box.low[k] = -std::numeric_limits<float>::infinity();
+    out.box.high[k] = std::numeric_limits<float>::infinity();
+  }
   return out.box;
 }
 

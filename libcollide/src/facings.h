@@ -78,7 +78,7 @@ class Facings {
 
   static bool overlap(const FloatBox& a, const geom::Box3& b) {
     for (int k = 0; k < 3; ++k)
-      if (!(a.low[k] <= b.max[k] && b.min[k] <= a.high[k])) return false;
+      if (a.low[k] > b.max[k] || b.min[k] > a.high[k]) return false;  // NaN: not known
     return true;
   }
   [[nodiscard]] BoxRows rows_of(std::size_t level) const {

@@ -270,7 +270,7 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
     void filter(std::size_t first, std::span<Answer> answers) const {
       const detail::Model& model = impl.model;
       const std::size_t n = model.variables;
-      bool usable = detail::decides_motions(model, options.resolution);
+      bool usable = options.around.empty() && detail::decides_motions(model, options.resolution);
       for (std::size_t i = first; usable && i < first + answers.size(); ++i)
         usable = detail::is_within(model, row(from, i)) && detail::is_within(model, row(to, i));
       if (usable)

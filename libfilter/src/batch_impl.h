@@ -31,8 +31,9 @@ inline float slack_of(double resolution, double size) {
 /// values.
 inline bool decides_motions(const Model& model, double resolution) {
   constexpr double kLargestResolution = 1e6;  // lengths that errors of floats are bounded for
-  return !model.unusable && !model.always_contact && model.variables > 0 &&
-         resolution < kLargestResolution;
+  return !model.unusable && !model.always_contact && model.variables > 0 && resolution > 0 &&
+         resolution < kLargestResolution &&
+         slack_of(resolution, model.size) <= kReachSlack * model.size;
 }
 
 inline bool is_within(const Model& model, std::span<const double> row) {

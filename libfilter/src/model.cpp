@@ -676,7 +676,8 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
     const double reach = placed(chain, link, model.shapes[pair.shape].outer.ball().center).reach;
     const Vec3 center(group.center[0], group.center[1], group.center[2]);
     return center.norm() * (1 - 1e-6) >
-           (reach + shape.whole.radius + group.radius + pair.margin) * (1 + 1e-6);
+           (reach + shape.whole.radius + group.radius + pair.margin + kReachSlack * out.size) *
+               (1 + 1e-6);
   });
   return out;
 }

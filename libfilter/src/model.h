@@ -118,6 +118,10 @@ struct ShapePair {
   Range witnesses;
 };
 
+/// Share of the robot's size: things that a link is farther from than that are not looked at, so no
+/// motion is decided with a larger resolution.
+inline constexpr double kReachSlack = 1e-2;
+
 /// All that the vector code reads. Coordinates are the world's, from the robot's base on.
 struct Model {
   std::size_t variables = 0;

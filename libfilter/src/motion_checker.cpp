@@ -56,6 +56,8 @@ struct MotionChecker::Impl {
   std::vector<detail::Share> shares, next;
   std::vector<Answer> answers;
   std::vector<std::array<double, 2>> open;
+  std::vector<double> asked_from, asked_to;  ///< of the last motion
+  double asked_resolution = 0;
   std::optional<world::StretchChecker> exactly;
   world::Scratch scratch;
   robot::Path path{{}, {}};
@@ -76,6 +78,9 @@ MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
                                             std::span<const double> to, double resolution) {
   Impl& s = *impl_;
   s.open.clear();
+  s.asked_from.assign(from.begin(), from.end());
+  s.asked_to.assign(to.begin(), to.end());
+  s.asked_resolution = resolution;
   const detail::Model& model = s.batch.model;
   if (!detail::decides_motions(model, resolution) || !detail::is_within(model, from) ||
       !detail::is_within(model, to))
@@ -121,7 +126,10 @@ MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
 bool MotionChecker::are_open_free(std::span<const double> from, std::span<const double> to,
                                   const world::MotionOptions& options, std::size_t& intervals) {
   Impl& s = *impl_;
-  if (s.open.empty()) return false;
+  if (!std::ranges::equal(from, s.asked_from) || !std::ranges::equal(to, s.asked_to) ||
+      options.resolution != s.asked_resolution)
+    throw Error(ErrorCode::InvalidArgument, "open stretches of another motion than the last one");
+  if (s.open.empty() || !options.around.empty()) return false;
   ++s.exact;
   if (!s.exactly) s.exactly.emplace(*s.batch.checker, s.batch.state, s.batch.robot);
   const auto answer = s.exactly->is_apart(from, to, s.open,
@@ -133,8 +141,11 @@ bool MotionChecker::are_open_free(std::span<const double> from, std::span<const 
 
 bool MotionChecker::is_free(std::span<const double> from, std::span<const double> to,
                             const world::MotionOptions& options) {
-  const Answer answer = filter(from, to, options.resolution);
-  if (answer != Answer::Open) return answer == Answer::Free;
+  // Vector code knows nothing of room about a motion.
+  if (options.around.empty()) {
+    const Answer answer = filter(from, to, options.resolution);
+    if (answer != Answer::Open) return answer == Answer::Free;
+  }
   Impl& s = *impl_;
   ++s.exact;
   s.path[0].assign(from.begin(), from.end());

@@ -20,6 +20,12 @@ enum class Known : std::uint8_t {
 class DecidedMotions {
  public:
   void clear() {
+    // What a hard question needed is given back, so that easy ones do not pay for it.
+    constexpr std::size_t kKept = 4096;
+    if (slots_.size() > kKept) {
+      *this = {};
+      return;
+    }
     values_.clear();
     known_.clear();
     slots_.assign(slots_.size(), 0);

@@ -67,6 +67,11 @@ bool PathQuery::look_at_goals() {
 }
 
 bool PathQuery::accept(const robot::Path& path, std::size_t goal) {
+  // Whatever made it: a roadmap's file may state any nodes.
+  if (std::ranges::any_of(path, [&](const Values& q) {
+        return find_out_of_limits(space_.kinematics(), q).has_value();
+      }))
+    return false;
   if (space_.check(path).outcome != Certain::Free || space_.find_broken(path)) return false;
   answer_.deviations = space_.deviations();
   answer_.path = path;
@@ -100,6 +105,8 @@ void require_query(const world::Checker& checker, const world::WorldState& state
   if (goals.empty()) throw Error(ErrorCode::InvalidArgument, "a path without a goal");
   if (!(options.most_work > 0) || !(options.most_seconds > 0) || options.most_nodes == 0)
     throw Error(ErrorCode::InvalidArgument, "limits of a search must be above 0");
+  if (!(options.check.resolution > 0))
+    throw Error(ErrorCode::InvalidArgument, "the resolution of motions must be above 0");
   require_fits(checker, state, robot, start);
   for (const Values& goal : goals) require_fits(checker, state, robot, goal);
   for (const PathConstraint& constraint : options.constraints)

@@ -26,9 +26,11 @@ namespace {
 using nlohmann::json;
 using Certain = world::MotionAnswer::Outcome;
 
-constexpr std::size_t kDrawnPerNode = 100;    ///< at most
-constexpr std::size_t kNearest = 30;          ///< nodes that an end of a query may be joined to
-constexpr std::size_t kJoined = 4;            ///< so many are enough
+constexpr std::size_t kDrawnPerNode = 100;  ///< at most
+constexpr std::size_t kNearest = 30;        ///< nodes that an end of a query may be joined to
+constexpr std::size_t kJoined = 4;          ///< so many are enough
+constexpr std::size_t kMostNodes = 1'000'000;
+constexpr double kLargestValue = 1e9;         ///< of a variable, as in paths
 constexpr std::size_t kMotionsAtOnce = 4096;  ///< between calls of a progress
 
 class Hashed {
@@ -144,6 +146,7 @@ class RoadmapSearch {
     std::vector<std::size_t> before(count, kNone);
     using Entry = std::pair<double, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    std::size_t seen = count;
     const auto reach = [&](std::size_t node, double l, std::size_t from) {
       if (l >= length[node]) return;
       length[node] = l;
@@ -160,8 +163,10 @@ class RoadmapSearch {
     while (!open.empty()) {
       const auto [l, node] = open.top();
       open.pop();
+      ++seen;
       if (l >= best) break;
       if (l > length[node]) continue;
+      seen += first_[node + 1] - first_[node];
       const double* q = values_.data() + node * n;
       for (const std::size_t g : goal_edges_[node])
         if (const double whole = l + distance(q, goals_[g].data()); whole < best) {
@@ -177,6 +182,7 @@ class RoadmapSearch {
         reach(other, l + distance(q, values_.data() + other * n), node);
       }
     }
+    space_.count_nodes(seen);
     std::vector<std::size_t> out;
     for (; last != kNone; last = before[last]) out.push_back(last);
     std::ranges::reverse(out);
@@ -237,6 +243,9 @@ std::string identity_of(const world::Checker& checker, const world::WorldState& 
 Roadmap::Roadmap(const PathFinder& finder, const RoadmapOptions& options) {
   if (options.nodes == 0 || options.neighbours == 0)
     throw Error(ErrorCode::InvalidArgument, "a roadmap has nodes and neighbours");
+  if (options.nodes > kMostNodes)
+    throw Error(ErrorCode::InvalidArgument,
+                "a roadmap of more than " + std::to_string(kMostNodes) + " nodes");
   const PathFinder::Impl& f = *finder.impl_;
   const robot::Robot& robot = f.checker->world().robots[f.robot].kinematics;
   scene_ = identity_of(*f.checker, f.state, f.robot);
@@ -279,6 +288,7 @@ Roadmap::Roadmap(const PathFinder& finder, const RoadmapOptions& options) {
   std::set<std::array<std::uint32_t, 2>> wanted;
   std::vector<std::pair<double, std::uint32_t>> near;
   for (std::uint32_t i = 0; i < nodes(); ++i) {
+    if (i % 256 == 0) tell("neighbours of " + std::to_string(i) + " nodes");
     near.clear();
     for (std::uint32_t k = 0; k < nodes(); ++k)
       if (k != i) near.emplace_back(distance(i, k), k);
@@ -360,7 +370,8 @@ Roadmap Roadmap::from_json(std::string_view text, const std::string& name,
   };
   PathFinder::Impl& f = *finder.impl_;
   Roadmap out;
-  out.variables_ = f.checker->world().robots[f.robot].kinematics.variables.size();
+  const robot::Robot& robot = f.checker->world().robots[f.robot].kinematics;
+  out.variables_ = robot.variables.size();
   const json read = json::parse(text, nullptr, false);
   if (!read.is_object() || !read.contains("roadmap") || read["roadmap"] != 1)
     throw fail("this is no roadmap");
@@ -375,6 +386,12 @@ Roadmap Roadmap::from_json(std::string_view text, const std::string& name,
       if (!x.is_number()) throw fail("'nodes': a node has a value that is no number");
       out.values_.push_back(x.get<double>());
     }
+    const auto last = std::span(out.values_).last(out.variables_);
+    if (const auto bad = find_out_of_limits(robot, last))
+      throw fail("'nodes': node " + std::to_string(out.nodes() - 1) + " has '" +
+                 robot.variables[*bad].name + "' outside its limits");
+    if (std::ranges::any_of(last, [](double x) { return !(std::abs(x) <= kLargestValue); }))
+      throw fail("'nodes': node " + std::to_string(out.nodes() - 1) + " has a value beyond 1e9");
   }
   if (!read.contains("edges") || !read["edges"].is_array()) throw fail("'edges' are missing");
   for (const json& edge : read["edges"]) {

@@ -57,7 +57,9 @@ void require_fits(const world::Checker& checker, const world::WorldState& state,
 
 Values between(const Values& a, const Values& b, double share) {
   Values out = a;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] += share * (b[i] - a[i]);
+  // Between them, whatever is rounded: limits are kept.
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = std::clamp(a[i] + share * (b[i] - a[i]), std::min(a[i], b[i]), std::max(a[i], b[i]));
   return out;
 }
 
@@ -233,16 +235,17 @@ bool SearchSpace::is_certain(const Values& from, const Values& to) {
 
 bool SearchSpace::looks_free_where_open(const Values& from, const Values& to) {
   const auto open = memory_.motions->open();
-  std::size_t most = 1;
-  while (most < open.size()) most *= 2;
+  if (open.empty()) return looks_free_at_places(from, to);
+  std::size_t most = 2;
+  while (most <= open.size()) most *= 2;
   std::size_t looks = 0;
   // Far apart first: the middle one, then those at quarters, and so on.
   for (std::size_t step = most; step > 1; step /= 2)
-    for (std::size_t at = step / 2; at < open.size(); at += step) {
+    for (std::size_t at = step / 2; at <= open.size(); at += step) {
       if (looks++ == kMostLooks) return true;
       ++spent_.configurations;
       spent_.work += kConfiguration;
-      state_.q[robot_] = between(from, to, 0.5 * (open[at][0] + open[at][1]));
+      state_.q[robot_] = between(from, to, 0.5 * (open[at - 1][0] + open[at - 1][1]));
       if (!checker_.is_free(state_, scratch_)) return false;
     }
   return true;
@@ -250,6 +253,10 @@ bool SearchSpace::looks_free_where_open(const Values& from, const Values& to) {
 
 bool SearchSpace::looks_free(const Values& from, const Values& to) {
   if (decides_motions()) return look(from, to, true) != Known::NotFree;
+  return looks_free_at_places(from, to);
+}
+
+bool SearchSpace::looks_free_at_places(const Values& from, const Values& to) {
   if (find_contact(to)) return false;
   const auto parts = static_cast<std::size_t>(std::ceil(distance(from, to) / (kSpacing * range())));
   // Far apart first: halves, then quarters between them, and so on.

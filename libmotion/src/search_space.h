@@ -55,7 +55,9 @@ class SearchSpace {
   /// The contact at a configuration.
   std::optional<world::Contact> find_contact(const Values& q);
   /// True if a motion checker looks at motions: what looks free is then mostly certain.
-  [[nodiscard]] bool decides_motions() const { return memory_.motions.has_value(); }
+  [[nodiscard]] bool decides_motions() const {
+    return memory_.motions.has_value() && check_.around.empty();
+  }
   /// Whether a motion looks free, which is cheap, and certifies nothing: the end and configurations
   /// on the way, not far from each other; by a motion checker, what vector code leaves open.
   bool looks_free(const Values& from, const Values& to);
@@ -101,6 +103,8 @@ class SearchSpace {
   bool is_certain(const Values& from, const Values& to);
   filter::MotionChecker::Answer filter(const Values& from, const Values& to);
   bool looks_free_where_open(const Values& from, const Values& to);
+  /// Whether nothing is in contact at places of the motion, evenly.
+  bool looks_free_at_places(const Values& from, const Values& to);
   world::MotionAnswer check_exactly(const robot::Path& path);
   [[nodiscard]] const world::RobotModel& kinematic_model() const;
   bool keeps(const Values& from, const Values& to);

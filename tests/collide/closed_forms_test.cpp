@@ -364,5 +364,34 @@ TEST(ClosedForms, TheFirstPairIsFoundWhicheverSetIsLarger) {
   EXPECT_LT(found, 400);
 }
 
+// Beyond floats, closed forms and boxes of bodies in floats know nothing.
+TEST(ClosedForms, NumbersBeyondFloats) {
+  const auto balls = [](double scale, double radius) {
+    std::vector<geom::ConvexBody> out;
+    for (int i = 0; i < 20; ++i)
+      out.push_back({"ball", {{Vec3(5.0 * i * scale, scale, 0)}, {}}, radius});
+    return out;
+  };
+  const geom::Transform here;
+  for (const auto& [scale, radius] : std::vector<std::pair<double, double>>{{1, 1},
+                                                                            {1e37, 1e37},
+                                                                            {1e38, 1e38},
+                                                                            {1e39, 1e39},
+                                                                            {1e50, 1e50},
+                                                                            {1e58, 1e58},
+                                                                            {1, 1e39},
+                                                                            {1, 1e100}}) {
+    const BoundingSet set(balls(scale, radius), Direction::Outer, 0),
+        one({balls(scale, radius).back()}, Direction::Outer, 0);
+    const PosedSet a(set, here), b(set, here), c(one, here);
+    EXPECT_TRUE(find_collision(a, b)) << scale << ' ' << radius;
+    EXPECT_TRUE(find_collision(a, c)) << scale << ' ' << radius;
+    EXPECT_TRUE(find_collision(c, a)) << scale << ' ' << radius;
+    EXPECT_TRUE(certainly_collide(a, b)) << scale << ' ' << radius;
+    EXPECT_TRUE(certainly_collide(a, c)) << scale << ' ' << radius;
+    EXPECT_TRUE(certainly_collide(c, a)) << scale << ' ' << radius;
+  }
+}
+
 }  // namespace
 }  // namespace kaboum::collide

@@ -631,7 +631,7 @@ TEST(MotionChecker, AnswersAsCheckMotionDoes) {
   for (const BatchChecker& batch : batches) checkers.emplace_back(batch);
   std::array<std::size_t, 3> answers{};
   std::size_t open_free = 0, open_not_free = 0;
-  for (const double resolution : {1e-5, 0.02}) {
+  for (const double resolution : {1e-5, 0.005}) {
     world::MotionOptions options;
     options.resolution = resolution;
     options.where = false;
@@ -667,6 +667,45 @@ TEST(MotionChecker, AnswersAsCheckMotionDoes) {
   for (const std::size_t some : answers) EXPECT_GT(some, 30U);
   EXPECT_GT(open_free, 10U);
   EXPECT_GT(open_not_free, 10U);
+}
+
+TEST(MotionChecker, WhatVectorCodeKnowsNothingOf) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const world::WorldState state = initial_state(world);
+  const BatchChecker batch(checker, state, 0, {});
+  MotionChecker motions(batch);
+  const std::size_t n = world.robots[0].kinematics.variables.size();
+  const std::vector<double> rows = random_rows(world, 200, 63);
+  std::size_t narrower = 0;
+  world::MotionOptions roomy;
+  roomy.where = false;
+  roomy.around.assign(n, 0.3);
+  for (std::size_t i = 0; i < 200; ++i) {
+    const std::vector<double> a(rows.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+    std::vector<double> b = a;
+    b[0] += 0.05;
+    // A resolution of nothing, or less, makes nothing free.
+    for (const double resolution : {0.0, -0.05, -1.0})
+      EXPECT_EQ(motions.filter(a, b, resolution), Answer::Open);
+    // Nor is one so coarse that things out of reach matter.
+    EXPECT_EQ(motions.filter(a, b, 10), Answer::Open);
+    const bool free = check_motion(checker, state, 0, {a, b}, roomy).outcome ==
+                      world::MotionAnswer::Outcome::Free;
+    EXPECT_EQ(motions.is_free(a, b, roomy), free) << i;
+    std::vector<std::uint8_t> decided(1);
+    batch.decide_motions(a, b, decided, roomy);
+    EXPECT_EQ(decided[0] != 0, free) << i;
+    world::MotionOptions usual;
+    usual.where = false;
+    narrower += !free && motions.is_free(a, b, usual) ? 1 : 0;
+    // What is open of one motion says nothing of another.
+    if (motions.filter(a, b, 1e-5) != Answer::Open) continue;
+    std::size_t intervals = 0;
+    EXPECT_THROW(motions.are_open_free(b, a, usual, intervals), Error);
+  }
+  EXPECT_GT(narrower, 5U);
 }
 
 /// Points on a table and on a ball, and some that are apart from all others.

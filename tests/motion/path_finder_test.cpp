@@ -199,6 +199,27 @@ TEST(Roadmap, PathsAreCertifiedAlsoByOneThatLies) {
   EXPECT_GT(shorter_work, round / 2);  // by the roadmap alone, without trees
 }
 
+TEST_F(BetweenBoxes, ARoadmapThatLeavesTheLimitsIsRefused) {
+  const world::World world = plate_at(2.7);
+  const world::Checker checker(world);
+  const PathFinder finder(checker, initial_state(world), 0);
+  const std::string map = Roadmap(finder, {.nodes = 50}).to_json();
+  const std::size_t begin = map.find("\"nodes\":[") + 9, end = map.find("]]", begin) + 1;
+  for (const char* nodes :
+       {"[-3.3,0,-1],[-3.3,0,2.5]", "[0,0,1e10],[0,0,1]", "[0,0,1],[-3e10,0,0]"}) {
+    std::string lies = map;
+    lies.replace(begin, end - begin, nodes);
+    lies.replace(lies.find("\"edges\":["), std::string::npos, "\"edges\":[[0,1]]}");
+    EXPECT_THROW(Roadmap::from_json(lies, "lies", finder), Error) << nodes;
+  }
+  PathOptions options;
+  for (const double resolution : {0.0, -0.1}) {
+    options.check.resolution = resolution;
+    const std::vector<Values> goals{{0.5, 0, 0}};
+    EXPECT_THROW(finder.find({-0.5, 0, 0}, goals, options), Error);
+  }
+}
+
 TEST(Roadmap, IsTheSameForAllInstructions) {
   const RandomScene scene = random_scene(3, 14);
   const world::Checker checker(scene.world);

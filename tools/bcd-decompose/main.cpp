@@ -62,7 +62,7 @@ int decompose_mesh(const DecomposeOptions& o) {
   const certify::SetCertificate& certificate = made.found.set.certificate();
   log(o.common.quiet,
       page::summary_of(certificate) + (made.found.cached ? " (from the cache)" : ""));
-  const std::optional<Length>& epsilon = o.set.request.epsilon;
+  const std::optional<Length> epsilon = o.set.request.wanted_epsilon();
   for (const certify::SetCertificate::Region& one : certificate.regions) {
     const bool is_idle = epsilon && epsilon->of(certificate.diagonal) <= one.epsilon;
     log(o.common.quiet,

@@ -218,7 +218,7 @@ class RobotVerifier {
       notes_.add(o_.result,
                  "links with a mesh have spheres, boxes, cylinders or capsules here: whether these "
                  "hold the link together is decided by bound-verify robot " +
-                     o_.original + " --bodies " + o_.result);
+                     o_.original + " --bodies " + o_.result + (visual() ? " --visual" : ""));
   }
 
   /// Whether some link has shapes that are no meshes in place of a mesh.
@@ -227,7 +227,8 @@ class RobotVerifier {
     return std::ranges::any_of(original_.robot.links, [&](const robot::Link& link) {
       const auto other = result_.robot.find_link(link.name);
       if (!other || std::ranges::none_of(shapes_of(link), is_mesh)) return false;
-      const std::vector<Geometry>& shapes = shapes_of(result_.robot.links[*other]);
+      // Results have what holds them as collision shapes.
+      const std::vector<Geometry>& shapes = result_.robot.links[*other].collision;
       return !shapes.empty() && std::ranges::none_of(shapes, is_mesh);
     });
   }
