@@ -8,7 +8,7 @@
 namespace kaboum::certify::cache_words {
 
 /// What libverify decides, for all that is kept with a claim.
-inline constexpr std::string_view kDecisions = "decisions 3";
+inline constexpr std::string_view kDecisions = "decisions 4";
 /// Bodies of sets.
 inline constexpr std::string_view kSets = "planes 30";
 /// Sets of spheres, beside it.

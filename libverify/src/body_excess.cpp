@@ -31,7 +31,7 @@ constexpr double kCornerDigits = 0x1p-21;
 constexpr double kOrthonormal = 0x1p-46;
 constexpr double kMostCoordinate = 1e100;                       ///< squares do not overflow
 constexpr std::size_t kMostCells = std::size_t{1} << 19U;       ///< of one body
-constexpr std::size_t kMostTetrahedra = std::size_t{1} << 16U;  ///< of one body
+constexpr std::size_t kMostTetrahedra = std::size_t{1} << 19U;  ///< of one body
 constexpr std::size_t kBodiesAtOnce = 32;  ///< between looks at whether it is decided
 
 /// Points m + A t with |tᵢ| ≤ halfᵢ, and all within the radius of them.
@@ -612,7 +612,8 @@ bool have_cells(const ConvexSet& set) {
 }
 
 DistanceClaim verify_body_excess(const ConvexSet& set, const geom::Mesh& original, double epsilon,
-                                 const Region* region, double region_rounding) {
+                                 const Region* region, double region_rounding,
+                                 std::vector<std::size_t>* open) {
   const MeshPair meshes(geom::Mesh{}, original);
   DistanceClaim out;
   out.answer = Answer::Undecided;
@@ -636,8 +637,13 @@ DistanceClaim verify_body_excess(const ConvexSet& set, const geom::Mesh& origina
       claims[i] = with_search(meshes, set.bodies[i], epsilon, in,
                               [](auto&& search) { return search.decide(); });
     });
-    for (std::size_t i = first; i < last; ++i) all.take(i, claims[i]);
-    if (all.all().answer != Answer::Verified) break;
+    for (std::size_t i = first; i < last; ++i) {
+      all.take(i, claims[i]);
+      if (open != nullptr && !(claims[i] && claims[i]->answer != Answer::Undecided))
+        open->push_back(i);
+    }
+    if (all.all().answer == Answer::Refuted) break;
+    if (all.all().answer != Answer::Verified && open == nullptr) break;
   }
   out = all.all();
   if (ends.all().largest > out.largest) {

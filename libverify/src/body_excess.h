@@ -4,6 +4,9 @@
 #include <kaboum/geom/region.h>
 #include <kaboum/verify/distance.h>
 
+#include <cstddef>
+#include <vector>
+
 namespace kaboum::verify {
 
 /// True if each body is a convex polytope without a radius, a ball, a capsule, or nearly a box,
@@ -21,11 +24,15 @@ bool have_cells(const geom::ConvexSet& set);
 /// @param region  nullptr: all of space
 /// @param region_rounding  what is no farther than that from the region's border counts as outside
 ///   where it would refute, as inside where it would verify [length]
+/// @param open  gets the bodies that are not decided, unless the claim is refuted; else what is
+/// said
+///   ends at the first ones
 /// @pre have_cells(set); epsilon > 0; the original is a closed chain with a triangle of some
 ///   area
 /// @throws Error{InvalidInput} on indices out of range or coordinates that are not finite.
 DistanceClaim verify_body_excess(const geom::ConvexSet& set, const geom::Mesh& original,
                                  double epsilon, const geom::Region* region = nullptr,
-                                 double region_rounding = 0);
+                                 double region_rounding = 0,
+                                 std::vector<std::size_t>* open = nullptr);
 
 }  // namespace kaboum::verify

@@ -226,15 +226,44 @@ Inclusion verify_within(const geom::ConvexSet& set, const geom::Mesh& original,
   return out;
 }
 
+namespace {
+
+/// verify_excess of bodies that parts of them do not decide.
+DistanceClaim verify_open_excess(const geom::ConvexSet& set, const geom::Mesh& original,
+                                 double epsilon, bool to_solid, const InclusionOptions& limits);
+
+}  // namespace
+
 DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& original, double epsilon,
                             bool to_solid, const InclusionOptions& limits) {
   const std::optional<double> one_radius = geom::margin_of(set);
   if (to_solid && have_cells(set)) {
-    DistanceClaim claim = verify_body_excess(set, original, epsilon);
+    std::vector<std::size_t> open;
+    DistanceClaim claim = verify_body_excess(set, original, epsilon, nullptr, 0, &open);
     if (claim.answer == Answer::Refuted) claim.triangle = triangle_near(sum_of(set), claim.at);
     // Of bodies with one radius more can be said where there is no slack.
     if (claim.answer != Answer::Undecided || !(one_radius && epsilon > *one_radius)) return claim;
+    if (!open.empty() && open.size() < set.bodies.size()) {
+      geom::ConvexSet rest;
+      for (const std::size_t i : open) rest.bodies.push_back(set.bodies[i]);
+      DistanceClaim of_rest = verify_open_excess(rest, original, epsilon, to_solid, limits);
+      if (of_rest.answer == Answer::Refuted)
+        of_rest.triangle = triangle_near(sum_of(set), of_rest.at);
+      if (of_rest.largest < claim.largest) {
+        of_rest.largest = claim.largest;
+        of_rest.at = claim.at;
+      }
+      return of_rest;
+    }
   }
+  return verify_open_excess(set, original, epsilon, to_solid, limits);
+}
+
+namespace {
+
+DistanceClaim verify_open_excess(const geom::ConvexSet& set, const geom::Mesh& original,
+                                 double epsilon, bool to_solid, const InclusionOptions& limits) {
+  const std::optional<double> one_radius = geom::margin_of(set);
   if (!one_radius) {
     // To the triangles alone it is the bodies' surfaces that count, which are within the gap of
     // those of both polytopes; to the solid, all points do, and what is inside is no farther.
@@ -309,5 +338,7 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
       "outside is, too, is not decided";
   return claim;
 }
+
+}  // namespace
 
 }  // namespace kaboum::verify
