@@ -1,6 +1,7 @@
 // Motions one by one: the stretches of one fill the lanes. docs/algorithms/batches.md, "One by
 // one".
 
+#include <kaboum/base/error.h>
 #include <kaboum/filter/motion_checker.h>
 #include <kaboum/world/stretch_check.h>
 

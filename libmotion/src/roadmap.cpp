@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/sha256.h>
 #include <kaboum/motion/roadmap.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/world/margins.h>
 
 #include <algorithm>

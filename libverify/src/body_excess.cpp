@@ -282,8 +282,12 @@ class RoundedBoxSearch : private Search {
       look(away);
       look(-away);
     }
-    for (int i = 0; i < 27 && out_.answer == Answer::Verified; ++i)
-      if (const Vec3 direction(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1); i != 13) look(direction);
+    for (const double x : {-1.0, 0.0, 1.0})
+      for (const double y : {-1.0, 0.0, 1.0})
+        for (const double z : {-1.0, 0.0, 1.0})
+          if (const Vec3 direction(x, y, z);
+              out_.answer == Answer::Verified && !direction.isZero(0))
+            look(direction);
     return out_;
   }
 
@@ -472,7 +476,7 @@ class PolytopeSearch : private Search {
 
   DistanceClaim decide() {
     // There are three times as many, or more.
-    if (!(area() < epsilon_ * epsilon_ * kMostTetrahedra / 3)) {
+    if (!(area() < epsilon_ * epsilon_ * (static_cast<double>(kMostTetrahedra) / 3))) {
       out_.answer = Answer::Undecided;
       return out_;
     }
