@@ -9,6 +9,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "time_law.h"
 
@@ -45,6 +47,20 @@ void require_positive(const std::vector<double>& values, std::size_t count, cons
                                              [](double x) { return x > 0 && std::isfinite(x); }))
     throw Error(ErrorCode::InvalidArgument,
                 std::string("a limit of ") + what + " above 0 is needed for each variable");
+}
+
+/// How far it is from an end of a straight line, and its derivatives by the share of a step.
+struct AlongEnd {
+  double distance = 0, first = 0, second = 0;
+};
+
+/// Whether the cubic or quintic polynomial between two samples may go beyond the end: not where all
+/// its Bézier ordinates are on the same side of it, but for the rounding of a place.
+bool may_overshoot(const AlongEnd& a, const AlongEnd& b, double length) {
+  return std::min({a.distance + a.first / 3, b.distance - b.first / 3, a.distance + a.first / 5,
+                   a.distance + 0.4 * a.first + a.second / 20,
+                   b.distance - 0.4 * b.first + b.second / 20, b.distance - b.first / 5}) <
+         -0x1p-46 * length;
 }
 
 void append(std::string& out, double value) {
@@ -131,6 +147,34 @@ Trajectory::Trajectory(robot::Path path, const SpeedLimits& limits, double rate,
   }
 }
 
+/// Adds the steps next to both ends of the last leg in which a controller's polynomials may go
+/// beyond the end (docs/algorithms/motion-planning.md#blended-corners).
+void Trajectory::add_overshoots(const TimeLaw& law, std::span<const PathPiece> pieces,
+                                double stretch, const SpeedLimits& limits,
+                                std::vector<std::pair<std::size_t, std::size_t>>& bends) const {
+  const std::size_t begin = first_[first_.size() - 2], end = first_.back();
+  for (const bool from_end : {false, true}) {
+    const std::size_t piece = from_end ? pieces.size() - 1 : 0;
+    const std::vector<double> direction = pieces[piece].at(0).first;
+    double most = std::numeric_limits<double>::infinity();  // acceleration along the piece
+    for (std::size_t j = 0; j < direction.size(); ++j)
+      most = std::min(most, limits.acceleration[j] / std::abs(direction[j]));
+    AlongEnd last;
+    for (std::size_t k = 1; begin + k <= end; ++k) {
+      const std::size_t step = from_end ? end - begin - k : k;
+      const Progress now = law.at(static_cast<double>(step) / rate_ / stretch);
+      if (now.piece != piece) break;  // in a blend, or behind it
+      const double share = 1 / (stretch * rate_), sign = from_end ? -1 : 1;
+      const AlongEnd next{from_end ? pieces[piece].length - now.place : now.place,
+                          now.speed * share, sign * now.acceleration * share * share};
+      if (may_overshoot(last, next, pieces[piece].length))
+        bends.emplace_back(from_end ? end - k : begin + k - 1, from_end ? end - k + 1 : begin + k);
+      if (next.distance >= 0.1875 * most / (rate_ * rate_)) break;
+      last = next;
+    }
+  }
+}
+
 Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
                        const SpeedLimits& limits, double rate)
     : path_(std::move(path)), rate_(rate), first_{0} {
@@ -149,6 +193,7 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
     append_steps(law.duration());
     const double whole = static_cast<double>(first_.back()) / rate_ - begin,
                  stretch = whole / law.duration();
+    std::vector<std::pair<std::size_t, std::size_t>> bends;
     for (std::size_t k = first; k < end; ++k) {
       if (!made->pieces[k].is_blend) continue;
       const double enters = law.begin_of(k - first),
@@ -162,10 +207,16 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
                         after = std::min(first_.back(),
                                          first_[i] + static_cast<std::size_t>(
                                                          std::ceil(step(leaves) + kRounding)));
-      if (!made->bends.empty() && made->bends.back().second >= before)
-        made->bends.back().second = after;
+      bends.emplace_back(before, after);
+    }
+    add_overshoots(law, std::span(made->pieces).subspan(first, end - first), stretch, limits,
+                   bends);
+    std::ranges::sort(bends);
+    for (const auto& bend : bends) {
+      if (made->bends.empty() || made->bends.back().second < bend.first)
+        made->bends.push_back(bend);
       else
-        made->bends.emplace_back(before, after);
+        made->bends.back().second = std::max(made->bends.back().second, bend.second);
     }
     made->passed[made->stopping[i + 1]] = begin + whole;
     made->legs.push_back({std::move(law), first, stretch});
@@ -212,7 +263,9 @@ std::size_t Trajectory::segment_of(double step) const {
 Instant Trajectory::instant(std::size_t k) const {
   Instant out = at_step(static_cast<double>(k));
   out.q = sample(k);
-  if (k == 0) out.velocity = out.acceleration = std::vector<double>(out.q.size(), 0);  // not −0
+  // At a stop trapezoids have two accelerations; 0 leads along neither of the segments.
+  if (std::ranges::binary_search(first_, k))
+    out.velocity = out.acceleration = std::vector<double>(out.q.size(), 0);
   return out;
 }
 

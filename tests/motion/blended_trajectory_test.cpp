@@ -384,6 +384,20 @@ std::pair<double, double> splines(const Instant& a, const Instant& b, std::size_
   return {cubic, p + u * (v + u * (0.5 * x + u * (c3 + u * (c4 + u * c5))))};
 }
 
+/// Whether a segment of a path has two samples and what is between them in its box.
+bool is_within_a_segment(const robot::Path& path, const std::vector<const Values*>& points) {
+  for (std::size_t i = 0; i + 1 < path.size(); ++i)
+    if (std::ranges::all_of(points, [&](const Values* q) {
+          for (std::size_t j = 0; j < q->size(); ++j) {
+            const auto [low, high] = std::minmax(path[i][j], path[i + 1][j]);
+            if ((*q)[j] < low - 1e-13 || (*q)[j] > high + 1e-13) return false;
+          }
+          return true;
+        }))
+      return true;
+  return false;
+}
+
 TEST(BlendedTrajectory, BetweenSamplesItIsOnASegmentOrWithinItsRoom) {
   std::size_t bent = 0, straight = 0;
   double nearest = 0, farthest_spline = 0;
@@ -402,6 +416,16 @@ TEST(BlendedTrajectory, BetweenSamplesItIsOnASegmentOrWithinItsRoom) {
         for (int part = 1; part < 8; ++part) {
           const double u = part / 8.0;
           const Values q = t.at((static_cast<double>(k) + u) / rate).q;
+          if (!is_bent) {
+            Values cubics, quintics;
+            for (std::size_t j = 0; j < q.size(); ++j) {
+              const auto [cubic, quintic] = splines(a, b, j, u, 1 / rate);
+              cubics.push_back(cubic);
+              quintics.push_back(quintic);
+            }
+            ASSERT_TRUE(is_within_a_segment(c.path, {&a.q, &b.q, &cubics, &quintics}))
+                << seed << ", sample " << k << " at " << rate << " goes beyond a stop";
+          }
           for (std::size_t j = 0; j < q.size(); ++j) {
             const double chord = a.q[j] + u * (b.q[j] - a.q[j]);
             const auto [cubic, quintic] = splines(a, b, j, u, 1 / rate);

@@ -165,6 +165,46 @@ TEST(Trajectory, TrapezoidsAreTheFastest) {
   }
 }
 
+/// Of a controller that goes by polynomials of degree 5 through the samples.
+Values quintic_between(const Instant& a, const Instant& b, double u, double h) {
+  Values out;
+  for (std::size_t j = 0; j < a.q.size(); ++j) {
+    const double d = b.q[j] - a.q[j], v = a.velocity[j] * h, w = b.velocity[j] * h,
+                 x = a.acceleration[j] * h * h, y = b.acceleration[j] * h * h;
+    const double c3 = 10 * d - 6 * v - 4 * w - 1.5 * x + 0.5 * y,
+                 c4 = -15 * d + 8 * v + 7 * w + 1.5 * x - y,
+                 c5 = 6 * d - 3 * (v + w) + 0.5 * (y - x);
+    out.push_back(a.q[j] + u * (v + u * (0.5 * x + u * (c3 + u * (c4 + u * c5)))));
+  }
+  return out;
+}
+
+TEST(Trajectory, PolynomialsThroughSamplesStayOnTheSegments) {
+  std::vector<Case> cases{{{{0, 0}, {1, 0}, {1, 1}}, {{2, 2}, {5, 5}}}};
+  for (std::uint32_t seed = 0; seed < 100; ++seed) cases.push_back(random_case(seed));
+  for (const Case& c : cases)
+    for (const Profile profile : {Profile::Quintic, Profile::Trapezoid})
+      for (const double rate : {1.0, 10.0, 100.0}) {
+        const Trajectory t(c.path, c.limits, rate, profile);
+        std::size_t stop = 0;
+        for (std::size_t k = 0; k + 1 < t.samples(); ++k) {
+          const auto time = static_cast<double>(k) / rate;
+          while (stop + 2 < c.path.size() && t.time_at(stop + 1) <= time) ++stop;
+          for (int part = 0; part <= 10; ++part)
+            ASSERT_LE(
+                distance_to(quintic_between(t.instant(k), t.instant(k + 1), part / 10.0, 1 / rate),
+                            c.path[stop], c.path[stop + 1]),
+                1e-12)
+                << "sample " << k << " of " << t.samples() << " at " << rate;
+        }
+        for (std::size_t i = 0; i < c.path.size(); ++i) {
+          const Instant at = t.instant(static_cast<std::size_t>(std::lround(t.time_at(i) * rate)));
+          EXPECT_EQ(at.velocity, Values(at.q.size(), 0));
+          EXPECT_EQ(at.acceleration, Values(at.q.size(), 0));
+        }
+      }
+}
+
 TEST(Trajectory, IsReadBackAsItIs) {
   robot::Robot robot;
   robot.variables = {{"a", {}, {}}, {"b", {}, {}}};

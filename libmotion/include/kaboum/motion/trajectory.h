@@ -4,11 +4,15 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace kaboum::motion {
+
+class TimeLaw;
+struct PathPiece;
 
 /// Bounds on the speed of each variable. Above 0. [rad/s or length/s; the same per s, and per s²]
 struct SpeedLimits {
@@ -60,11 +64,14 @@ class Trajectory {
   [[nodiscard]] Instant at(double time) const { return at_step(time * rate_); }
   /// Values of sample k; waypoints exactly where it stops.
   [[nodiscard]] std::vector<double> sample(std::size_t k) const;
-  /// Sample k with its derivatives, which are 0 at both ends.
+  /// Sample k with its derivatives, which are 0 where it stops: at the ends and, without blends, at
+  /// all waypoints.
   [[nodiscard]] Instant instant(std::size_t k) const;
-  /// First and last sample of each stretch in which the curve is not on the straight lines between
-  /// samples: those of blends. Ascending, apart from each other; none where it stops at all
-  /// waypoints. Elsewhere two samples that follow each other are on one segment of the path.
+  /// First and last sample of each stretch in which the curve, or cubic and quintic polynomials
+  /// through the samples, may leave the straight lines between samples: those of blends, and next
+  /// to stops those in which such a polynomial may go beyond the stop. Ascending, apart from each
+  /// other; none of trajectories without blends. Elsewhere curve and polynomials between two
+  /// samples that follow each other are on one segment of the path.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> bends() const;
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] const robot::Path& path() const { return path_; }
@@ -74,6 +81,9 @@ class Trajectory {
 
   void require_valid(const SpeedLimits& limits) const;
   void append_steps(double time);
+  void add_overshoots(const TimeLaw& law, std::span<const PathPiece> pieces, double stretch,
+                      const SpeedLimits& limits,
+                      std::vector<std::pair<std::size_t, std::size_t>>& bends) const;
   [[nodiscard]] std::size_t segment_of(double step) const;
   [[nodiscard]] Instant at_step(double step) const;
   [[nodiscard]] Instant blended_at(double step) const;
