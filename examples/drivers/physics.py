@@ -184,7 +184,7 @@ class World:
             for name in self.robots:
                 data.qpos[self.places[name]] = self.target[name][0]
             mujoco.mj_forward(self.model, data)
-        self.time, self.tracking, self.contacts, self.ends = 0.0, 0.0, {}, {}
+        self.time, self.farthest, self.contacts, self.ends = 0.0, 0.0, {}, {}
         self.action, self.samples, self.log, self.renderer, self.frames = "", 0, None, None, 0
         if options.log:
             self.log = open(options.log, "w", encoding="utf-8")
@@ -233,7 +233,7 @@ class World:
             dofs = self.dofs[name]
             off = q - d.qpos[self.places[name]]
             wished[dofs] = a + 2 * STIFF * (v - d.qvel[dofs]) + STIFF ** 2 * off
-            self.tracking = max(self.tracking, float(np.max(np.abs(off), initial=0)))
+            self.farthest = max(self.farthest, float(np.max(np.abs(off), initial=0)))
         mujoco.mj_mulM(m, d, torque, wished)
         d.qfrc_applied[:] = 0
         for dofs in self.dofs.values():
@@ -402,7 +402,7 @@ class World:
 
     def report(self):
         most = {key: max((abs(end[key]) for end in self.ends.values()), default=0.0) for key in ("beside", "below", "turned")}
-        return {"seconds": round(self.time, 3), "steps": self.samples, "tracking": self.tracking, "ends": self.ends, "most": most,
+        return {"seconds": round(self.time, 3), "steps": self.samples, "tracking": self.farthest, "ends": self.ends, "most": most,
                 "contacts": [{"action": k[0], "between": k[1:], "depth": v} for k, v in sorted(self.contacts.items())]}
 
 

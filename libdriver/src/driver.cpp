@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -103,8 +104,8 @@ struct Driver::Answers {
       if (!place.held_by.empty()) driver.held_[{name, place.held_by}] = "";
     driver.begin(driver.robots_, objects);
     json out = {{"done", true}};
-    for (auto& [name, robot] : driver.robots_)
-      if (const auto q = driver.where(name)) out["q"][name] = robot.q = *q;
+    for (const auto& [name, robot] : driver.robots_)
+      if (const auto q = driver.where(name)) out["q"][name] = *q;
     return out;
   }
 
@@ -119,11 +120,17 @@ struct Driver::Answers {
     }
     if (motion.joint_names != robot.joint_names)
       throw Failure("joints in another order than when it began");
-    if (!driver.where(name) && motion.points.front().q != robot.q)
-      throw Failure("the trajectory begins elsewhere");
+    if (motion.points.front().q != robot.q) throw Failure("the trajectory begins elsewhere");
+    if (const auto is = driver.where(name)) {
+      if (is->size() != robot.q.size()) throw Failure("where it is has another number of joints");
+      for (std::size_t j = 0; j < is->size(); ++j)
+        if (!(std::abs((*is)[j] - robot.q[j]) <= driver.tracking))
+          throw Failure("the trajectory begins elsewhere: joint " + robot.joint_names[j] + " is " +
+                        json(std::abs((*is)[j] - robot.q[j])).dump() + " away");
+    }
     const std::vector<ExecutedSample> executed = driver.move(name, motion);
+    robot.q = motion.points.back().q;
     const auto q = driver.where(name);
-    robot.q = q ? *q : motion.points.back().q;
     json out = {{"done", true}};
     if (q) out["q"] = *q;
     for (const ExecutedSample& sample : executed) {
@@ -167,36 +174,51 @@ struct Driver::Answers {
     return {{"done", true}};
   }
 
-  /// With where the robot is, if a motion has failed.
+  /// With where the robot is, if a motion has failed and it knows that.
   json failed(const json& message, const Failure& failure) const {
     json out = {{"failed", failure.what()}};
     const std::string robot = message.value("robot", "");
-    if (message.at("do") == "move" && driver.robots_.contains(robot))
+    if (message.at("do") != "move" || !driver.robots_.contains(robot)) return out;
+    try {
       if (const auto q = driver.where(robot)) out["q"] = *q;
+    } catch (const Failure&) {  // NOLINT(bugprone-empty-catch) it does not know that either
+    }
     return out;
   }
 };
 
 void Driver::run(std::istream& in, std::ostream& out) {
-  struct Stop {
-    Driver& driver;
-    ~Stop() { driver.stop(); }
-  };
-  const Stop at_end{*this};
+#ifdef SIGPIPE
+  std::signal(SIGPIPE, SIG_IGN);  // NOLINT(cert-err33-c) who reads no more is seen by `out`
+#endif
+  try {
+    speak(in, out);
+  } catch (...) {
+    try {
+      stop();
+    } catch (...) {  // NOLINT(bugprone-empty-catch) the first one is told of
+    }
+    throw;
+  }
+  stop();
+}
+
+void Driver::speak(std::istream& in, std::ostream& out) {
   const Answers answers{*this};
   out << R"({"kaboum_driver": 1})" << std::endl;  // NOLINT(performance-avoid-endl)
-  for (std::string line; std::getline(in, line);) {
+  for (std::string line; out && std::getline(in, line);) {
     const json message = json::parse(line, nullptr, false);
     if (!message.is_object() || !message.contains("do"))
       throw std::runtime_error("what kaboum-plan told is no message");
     if (message["do"] == "stop") break;
+    if (!message.contains("id")) throw std::runtime_error("what kaboum-plan told has no id");
     json answer;
     try {
       answer = answers.answer(message);
     } catch (const Failure& failure) {
       answer = answers.failed(message, failure);
     }
-    answer["id"] = message.at("id");
+    answer["id"] = message["id"];
     out << answer.dump(-1, ' ', false, json::error_handler_t::replace)
         << std::endl;  // NOLINT(performance-avoid-endl)
   }
@@ -239,16 +261,23 @@ void Driver::finish(const std::map<std::string, Place>& /*objects*/) {}
 void Driver::stop() {}
 
 void Driver::follow(const Motion& motion, double rate,
-                    const std::function<void(double time, const Instant&)>& send) {
+                    const std::function<void(double time, const Instant&)>& send, double latest) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  for (double k = 0;;) {
-    const double time = std::min(k / rate, motion.duration());
-    std::this_thread::sleep_until(start + std::chrono::duration<double>(time));
+  using Seconds = std::chrono::duration<double>;
+  if (!(rate > 0) || !std::isfinite(rate) || !(latest >= 0))
+    throw std::invalid_argument("a rate is above 0, and a delay not below");
+  Clock::time_point due = Clock::now();
+  for (double k = 0, time = 0;; ++k) {
+    const double next = std::min(k / rate, motion.duration());
+    due += std::chrono::duration_cast<Clock::duration>(Seconds(next - time));
+    time = next;
+    std::this_thread::sleep_until(due);
+    const Clock::time_point now = Clock::now();
+    if (const double late = Seconds(now - due).count(); late > latest)
+      throw Failure("a setpoint was " + json(late).dump() + " s late");
+    due = now;  // what follows is as much later
     send(time, motion.at(time));
     if (time >= motion.duration()) return;
-    const std::chrono::duration<double> passed = Clock::now() - start;
-    k = std::max(k + 1, std::floor(passed.count() * rate));
   }
 }
 

@@ -85,10 +85,13 @@ class Driver:
 
     `robots`: joint names of each robot. `q`: where each robot is, by what it was told last or by `where`. `held`: for each held object its
     robot and link. `timing`: for each kind of message how many there were, and their seconds, all and the longest.
+    `tracking`: how far each joint may be, by `where`, from where a motion begins [rad or length].
     """
 
     def __init__(self):
         self.robots, self.q, self.held, self.timing = {}, {}, {}, {}
+        self.tracking = 0.05
+        self._told = {}  # where each robot was told to be last
 
     # --- what a robot does ---
 
@@ -138,21 +141,34 @@ class Driver:
         """The plan has ended; `objects` as of `begin`, where the plan has them now."""
 
     def stop(self):
-        """Called last, however the run ends: robots are to stand still."""
+        """Called last, however the run ends: robots are to stand still. Not of a process that is killed: a robot has to see by itself that nothing
+        comes any more."""
 
     # --- time ---
 
-    def follow(self, motion, rate):
-        """Times, values, velocities and accelerations of a motion `rate` times a second, each when it is due, the end included."""
-        start, k = time.monotonic(), 0
+    def follow(self, motion, rate, latest=0.05):
+        """Times, values, velocities and accelerations of a motion `rate` times a second, each when it is due, the end included. None is left out:
+        where one is late, all that follow are as much later; by more than `latest` seconds: Failure. Raises ValueError unless rate > 0."""
+        if not (rate > 0 and math.isfinite(rate) and latest >= 0):
+            raise ValueError("a rate is above 0, and a delay not below")
+        return self._follow(motion, rate, latest)
+
+    @staticmethod
+    def _follow(motion, rate, latest):
+        due, when, k = time.monotonic(), 0.0, 0
         while True:
-            when = min(k / rate, motion.duration)
-            time.sleep(max(0.0, start + when - time.monotonic()))
+            step = min(k / rate, motion.duration)
+            due += step - when
+            when = step
+            time.sleep(max(0.0, due - time.monotonic()))
+            now = time.monotonic()
+            if now - due > latest:
+                raise Failure(f"a setpoint was {now - due:g} s late")
+            due = max(due, now)  # what follows is as much later
             yield (when, *motion.at(when))
             if when >= motion.duration:
                 return
-            # What was missed is left out: a late value is not sent.
-            k = max(k + 1, math.floor((time.monotonic() - start) * rate))
+            k += 1
 
     # --- the protocol ---
 
@@ -161,16 +177,27 @@ class Driver:
         reader, writer = reader or sys.stdin, writer or sys.stdout
         printed, sys.stdout = sys.stdout, sys.stderr
         try:
-            self._write(writer, json.dumps({"kaboum_driver": 1}))
-            for line in reader:  # its end: kaboum-plan has ended
-                message = json.loads(line)
-                if message["do"] == "stop":
-                    break
-                for answer in self.lines(message):
-                    self._write(writer, answer)
+            self._speak(reader, writer)
+        except BaseException:
+            try:
+                self.stop()
+            except Exception:  # the first one is told of
+                pass
+            raise
+        else:
+            self.stop()
         finally:
             sys.stdout = printed
-            self.stop()
+
+    def _speak(self, reader, writer):
+        self._write(writer, json.dumps({"kaboum_driver": 1}))
+        for line in reader:  # its end: kaboum-plan has ended
+            message = json.loads(line)
+            if message["do"] == "stop":
+                break
+            message["id"]  # who has none is not answered, so nothing is done
+            for answer in self.lines(message):
+                self._write(writer, answer)
 
     @staticmethod
     def _write(writer, line):
@@ -192,7 +219,7 @@ class Driver:
             out = handle(message)
         except Failure as failure:
             out = {"failed": str(failure)}
-            if do == "move" and message["robot"] in self.robots and (q := self.where(message["robot"])) is not None:
+            if do == "move" and message["robot"] in self.robots and (q := self._known(message["robot"])) is not None:
                 out["q"] = list(q)
         seconds = time.monotonic() - begun
         kept = self.timing.setdefault(do, {"count": 0, "seconds": 0.0, "longest": 0.0})
@@ -202,6 +229,7 @@ class Driver:
     def _begin(self, message):
         self.robots = {name: list(robot["joint_names"]) for name, robot in message["robots"].items()}
         self.q = {name: list(robot["q"]) for name, robot in message["robots"].items()}
+        self._told = {name: list(q) for name, q in self.q.items()}
         self.held = {(name, o["held_by"]): (o["held_by"], None) for name, o in message["objects"].items() if "held_by" in o}
         self.begin(message["robots"], message["objects"])
         known = {name: list(q) for name in self.robots if (q := self.where(name)) is not None}
@@ -220,10 +248,16 @@ class Driver:
             raise Failure(f"this is no trajectory: {error}") from None
         if motion.joint_names != self.robots[robot]:
             raise Failure("joints in another order than when it began")
-        at = self.where(robot)
-        if at is None and motion.positions[0] != self.q[robot]:
+        if motion.positions[0] != self._told[robot]:
             raise Failure("the trajectory begins elsewhere")
+        if (at := self.where(robot)) is not None:
+            if len(at) != len(motion.joint_names):
+                raise Failure("where it is has another number of joints")
+            for name, is_at, begin in zip(motion.joint_names, at, motion.positions[0]):
+                if not abs(is_at - begin) <= self.tracking:
+                    raise Failure(f"the trajectory begins elsewhere: joint {name} is {abs(is_at - begin):g} away")
         executed = self.move(robot, motion)
+        self._told[robot] = list(motion.positions[-1])
         q = self.where(robot)
         self.q[robot] = list(motion.positions[-1] if q is None else q)
         out = {"done": True}
@@ -258,6 +292,12 @@ class Driver:
     def _finish(self, message):
         self.finish(message.get("objects", {}))
         return {"done": True}
+
+    def _known(self, robot):
+        try:
+            return self.where(robot)
+        except Failure:  # it does not know that either
+            return None
 
     def _robot(self, message):
         if message["robot"] not in self.robots:

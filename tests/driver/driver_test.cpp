@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <kaboum/driver/driver.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 namespace kaboum::driver {
 namespace {
@@ -220,6 +223,146 @@ TEST(Driver, IsFollowedInItsTimeByThePolynomialOfDegree5) {
   for (std::size_t k = 0; k + 1 < driver.times.size(); ++k)
     EXPECT_LT(driver.times[k], driver.times[k + 1]);
   EXPECT_EQ(driver.last.q, (Values{1, -1}));
+}
+
+/// Is held up once, in the middle.
+class HeldUp : public Recorder {
+ public:
+  std::chrono::milliseconds pause{0};
+  double rate = 100, most_step = 0, last = 0, before = 0;
+
+ protected:
+  std::vector<ExecutedSample> move(const std::string&, const Motion& motion) override {
+    std::size_t k = 0;
+    follow(motion, rate, [&](double time, const Instant& now) {
+      if (++k == 50) std::this_thread::sleep_for(pause);
+      last = time;
+      most_step = std::max(most_step, std::abs(now.q[0] - before));
+      before = now.q[0];
+    });
+    return {};
+  }
+};
+
+TEST(Driver, NoSetpointIsLeftOut) {
+  HeldUp driver;
+  driver.pause = std::chrono::milliseconds(45);
+  const auto begun = std::chrono::steady_clock::now();
+  const auto answers = speak(driver, {kBegin, move_of(trajectory(4))});
+  EXPECT_TRUE(answers.at(1).contains("done")) << answers.at(1);
+  EXPECT_LE(driver.most_step, 1.875 / 100 * (1 + 1e-6));
+  // What follows is as much later.
+  EXPECT_GT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(),
+            1 + 0.045 - 0.01 - 1e-3);
+  HeldUp late;
+  late.pause = std::chrono::milliseconds(80);
+  const auto told = speak(late, {kBegin, move_of(trajectory(4))});
+  EXPECT_NE(told.at(1).value("failed", "").find("a setpoint was"), std::string::npos);
+  EXPECT_LT(late.last, 0.5);
+  for (const double rate : {0.0, -1.0, std::nan("")}) {
+    HeldUp none;
+    none.rate = rate;
+    EXPECT_THROW(speak(none, {kBegin, move_of(trajectory(4))}), std::invalid_argument);
+    EXPECT_EQ(none.calls.back(), "stop");
+  }
+}
+
+/// Whose end does not go well either.
+class Stubborn : public Recorder {
+ public:
+  bool stuck_at_stop = true;
+  std::size_t acts = 0;
+
+ protected:
+  void act(const std::string& action) override {
+    ++acts;
+    if (action == "break") throw std::logic_error("a mistake of the driver");
+  }
+  void stop() override {
+    calls.emplace_back("stop");
+    if (stuck_at_stop) throw Failure("it does not stop");
+  }
+};
+
+TEST(Driver, AStopThatFailsIsTold) {
+  Stubborn driver;
+  EXPECT_THROW(speak(driver, {{{"do", "act"}, {"action", "break"}}}), std::logic_error);
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"stop"}));
+  Stubborn well;
+  EXPECT_THROW(speak(well, {{{"do", "act"}, {"action", "x"}}}), Failure);
+  EXPECT_EQ(well.calls, (std::vector<std::string>{"stop"}));
+}
+
+TEST(Driver, NothingIsDoneWhereNobodyReads) {
+  Stubborn driver;
+  driver.stuck_at_stop = false;
+  std::stringstream in("{\"id\": 1, \"do\": \"act\", \"action\": \"x\"}\n"), out;
+  out.setstate(std::ios::badbit);
+  driver.run(in, out);
+  EXPECT_EQ(driver.acts, 0U);
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"stop"}));
+  // A pipe of which the other end is closed does not kill.
+  EXPECT_EQ(std::signal(SIGPIPE, SIG_DFL), SIG_IGN);
+}
+
+TEST(Driver, WhatHasNoIdIsNotDone) {
+  Stubborn driver;
+  driver.stuck_at_stop = false;
+  std::stringstream in("{\"do\": \"act\", \"action\": \"x\"}\n"), out;
+  EXPECT_THROW(driver.run(in, out), std::runtime_error);
+  EXPECT_EQ(driver.acts, 0U);
+}
+
+/// Says that it is somewhere, whatever it is told.
+class Displaced : public Recorder {
+ public:
+  explicit Displaced(double by, double allowed = 0.05) {
+    at = Values{0, 1 + by};
+    tracking = allowed;
+  }
+};
+
+TEST(Driver, AMotionBeginsWhereTheRobotIs) {
+  for (const double by : {0.04, -0.06, 0.2, std::nan("")}) {
+    Displaced driver(by);
+    const json answer = speak(driver, {kBegin, move_of(trajectory())}).at(1);
+    EXPECT_EQ(answer.contains("done"), by == 0.04) << answer;
+    if (by != 0.04) {
+      EXPECT_TRUE(answer.value("failed", "").starts_with("the trajectory begins elsewhere"));
+    }
+  }
+  Displaced wide(0.2, 0.3);
+  EXPECT_TRUE(speak(wide, {kBegin, move_of(trajectory())}).at(1).contains("done"));
+  // With what it was told last it is compared exactly, though it says itself where it is.
+  json elsewhere = trajectory();
+  elsewhere["points"][0]["positions"] = {0.0, 1.001};
+  Displaced driver(0);
+  EXPECT_TRUE(speak(driver, {kBegin, move_of(elsewhere)}).at(1).contains("failed"));
+  Displaced again(0);
+  const auto answers = speak(again, {kBegin, move_of(trajectory()), move_of(trajectory())});
+  EXPECT_TRUE(answers.at(2).contains("failed")) << "it has come to the end, as it was told";
+}
+
+/// Does neither move nor know where it is.
+class Lost : public Recorder {
+ protected:
+  std::optional<Values> where(const std::string&) override {
+    if (!calls.empty() && moved_) throw Failure("no encoder answers");
+    return std::nullopt;
+  }
+  std::vector<ExecutedSample> move(const std::string&, const Motion&) override {
+    moved_ = true;
+    throw Failure("a fuse has blown");
+  }
+
+ private:
+  bool moved_ = false;
+};
+
+TEST(Driver, AFailureIsAnsweredThoughItIsNotKnownWhere) {
+  Lost driver;
+  EXPECT_EQ(speak(driver, {kBegin, move_of(trajectory())}).at(1),
+            json({{"failed", "a fuse has blown"}, {"id", 2}}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import time
 
 import pytest
 from kaboum.driver import Driver, Failure, Motion
@@ -175,6 +176,94 @@ def test_it_is_followed_in_its_time():
     times = [t for t, *_ in sent]
     assert times[0] == 0 and times[-1] == 1.0 and times == sorted(set(times)) and 20 < len(times) <= 201
     assert sent[-1][1] == [1.0, -1.0]
+
+
+def test_no_setpoint_is_left_out():
+    def steps(pause):
+        at = []
+        for _, q, *_ in Driver().follow(Motion(trajectory()), rate=100):
+            at.append(q[0])
+            if len(at) == 50:
+                time.sleep(pause)
+        return [b - a for a, b in zip(at, at[1:])]
+
+    begun = time.monotonic()
+    assert max(steps(0.045)) <= 1.875 / 100 * (1 + 1e-6)
+    assert time.monotonic() - begun > 1 + 0.045 - 0.01 - 1e-3, "what follows is as much later"
+    with pytest.raises(Failure, match="a setpoint was .* s late"):
+        steps(0.08)
+    for wrong in (0, -1, float("nan")):
+        with pytest.raises(ValueError):
+            Driver().follow(Motion(trajectory()), rate=wrong)
+
+
+def test_it_stops_though_that_fails():
+    class Stubborn(Recorder):
+        def act(self, action):
+            if action == "break":
+                raise RuntimeError("a mistake of the driver")
+
+        def stop(self):
+            super().stop()
+            raise ValueError("it does not stop")
+
+    for action, error in (("break", RuntimeError), ("x", ValueError)):
+        driver = Stubborn()
+        with pytest.raises(error):
+            speak(driver, {"do": "act", "action": action})
+        assert driver.calls == [("stop",)]
+
+
+def test_nothing_is_done_where_nobody_reads_or_without_an_id():
+    class Closed(io.StringIO):
+        def flush(self):
+            raise BrokenPipeError
+
+    driver = Recorder()
+    with pytest.raises(BrokenPipeError):
+        driver.run(io.StringIO('{"id": 1, "do": "act", "action": "x"}\n'), Closed())
+    assert driver.calls == [("stop",)]
+    with pytest.raises(KeyError):
+        driver.run(io.StringIO('{"do": "act", "action": "x"}\n'), io.StringIO())
+    assert driver.calls == [("stop",), ("stop",)]
+
+
+def test_a_motion_begins_where_the_robot_is():
+    class Displaced(Recorder):
+        def __init__(self, by):
+            super().__init__()
+            self.at = [0.0, 1.0 + by]
+
+        def where(self, robot):
+            return self.at
+
+    move = {"do": "move", "robot": "arm", "trajectory": trajectory()}
+    assert speak(Displaced(0.04), BEGIN, move)[1]["done"]
+    for by in (-0.06, 0.2, float("nan")):
+        assert speak(Displaced(by), BEGIN, move)[1]["failed"].startswith("the trajectory begins elsewhere")
+    wide = Displaced(0.2)
+    wide.tracking = 0.3
+    assert speak(wide, BEGIN, move)[1]["done"]
+    # With what it was told last it is compared exactly, though it says itself where it is.
+    elsewhere = trajectory()
+    elsewhere["points"][0]["positions"] = [0.0, 1.001]
+    assert "failed" in speak(Displaced(0), BEGIN, {**move, "trajectory": elsewhere})[1]
+    assert "failed" in speak(Displaced(0), BEGIN, move, move)[2], "it has come to the end, as it was told"
+
+
+def test_a_failure_is_answered_though_it_is_not_known_where():
+    class Lost(Recorder):
+        lost = False
+
+        def where(self, robot):
+            if self.lost:
+                raise Failure("no encoder answers")
+
+        def move(self, robot, motion):
+            self.lost = True
+            raise Failure("a fuse has blown")
+
+    assert speak(Lost(), BEGIN, {"do": "move", "robot": "arm", "trajectory": trajectory()})[1] == {"failed": "a fuse has blown", "id": 2}
 
 
 def test_the_file_stands_alone(tmp_path):

@@ -67,7 +67,8 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// Speaks with kaboum-plan until the run ends. stop() is called last, however that happens.
+  /// Speaks with kaboum-plan until the run ends, or nobody reads `out`. stop() is called last,
+  /// however that happens. SIGPIPE is ignored from then on.
   /// @throws what a function throws but Failure; std::runtime_error for lines that are none
   void run(std::istream& in, std::ostream& out);
 
@@ -97,16 +98,25 @@ class Driver {
   virtual std::optional<std::vector<double>> where(const std::string& robot);
   /// The plan has ended: where it has the objects now.
   virtual void finish(const std::map<std::string, Place>& objects);
-  /// Robots are to stand still.
+  /// Robots are to stand still. Not called of a process that is killed: a robot has to see by
+  /// itself that nothing comes any more.
   virtual void stop();
 
-  /// Sends a motion `rate` times a second, each instant when it is due, the end included; what was
-  /// missed is left out.
+  /// Sends a motion `rate` times a second, each instant when it is due, the end included. None is
+  /// left out: where one is late, all that follow are as much later.
+  /// @param latest  by which an instant may be late [s]
+  /// @throws Failure beyond that; std::invalid_argument unless rate > 0 and latest ≥ 0
   static void follow(const Motion& motion, double rate,
-                     const std::function<void(double time, const Instant&)>& send);
+                     const std::function<void(double time, const Instant&)>& send,
+                     double latest = 0.05);
+
+  /// How far each joint may be, by where(), from where a motion begins. [rad or length]
+  double tracking = 0.05;
 
  private:
   struct Answers;
+
+  void speak(std::istream& in, std::ostream& out);
 
   std::map<std::string, Robot> robots_;  ///< and where each was told to be last
   /// Links that hold an object, by object and robot; an empty one is not known.
