@@ -51,7 +51,7 @@ PlanRunReport run_plan(const PlanningTask& task, const plan::Model& model, const
       };
     out.plans = plan::run_and_replan(task.texts(), model, plan, options, steps);
   }
-  if (timeline) timeline->write();
+  if (timeline) timeline->write(out.plans.replans);
   for (const Simulation& simulation : simulations) out.simulation += simulation.report();
   return out;
 }

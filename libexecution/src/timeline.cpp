@@ -52,8 +52,8 @@ std::string field(const Json& value) {
 }
 
 /// What is the same in plan.json and in a row of events.csv.
-constexpr const char* kColumns[] = {"time", "event",    "robot", "object", "link",
-                                    "file", "duration", "fact",  "value",  "next"};
+constexpr const char* kColumns[] = {"time",     "event", "robot", "object", "link", "file",
+                                    "duration", "fact",  "value", "next",   "plan"};
 
 }  // namespace
 
@@ -106,6 +106,8 @@ void Timeline::add_motion(plan::Index node, std::size_t robot,
 }
 
 void Timeline::add(const plan::RunStep& step) {
+  const std::size_t unplanned = unplanned_;
+  if (step.unplanned) ++unplanned_;
   const auto before = state_of(world_, *model_, step.before),
              after = state_of(world_, *model_, step.after);
   if (!before || !after) return;  // the simulation has said so
@@ -145,13 +147,15 @@ void Timeline::add(const plan::RunStep& step) {
     Json added = Json::array();
     if (data_->file.contains("added")) added = std::move(data_->file["added"]);
     double time = 0;
+    std::size_t next = 0;
     Json events = Json::array();
     for (const NodeEvent& event : moving) {
       if (event.kind != NodeEvent::Kind::Move) {
         events.push_back(event_json(event, time));
         continue;
       }
-      const Json& motion = added.at(event.motion);
+      if (parts[event.motion].path.empty()) continue;  // the simulation has said so
+      const Json& motion = added.at(next++);
       events.push_back({{"time", time},
                         {"event", "move"},
                         {"robot", world_.robots[parts[event.motion].robot].name},
@@ -167,7 +171,10 @@ void Timeline::add(const plan::RunStep& step) {
   }
   data_->file.erase("added");
   const double end = out["duration"].get<double>();
-  Json way = {{"sensed", Json::object()}, {"events", Json::array()}, {"next", nullptr}};
+  Json way = {
+      {"if", nullptr}, {"sensed", Json::object()}, {"events", Json::array()}, {"next", nullptr}};
+  if (step.decides) way["if"] = {{"fact", step.decides->fact}, {"value", step.decides->value}};
+  if (step.unplanned) way["plan"] = unplanned;  // until it is known which plan is made
   for (const plan::SensedValue& s : step.sensed) {
     way["sensed"][s.fact] = s.value;
     way["events"].push_back(
@@ -181,9 +188,21 @@ void Timeline::add(const plan::RunStep& step) {
   if (std::ranges::find(ways, way) == ways.end()) ways.push_back(std::move(way));
 }
 
-void Timeline::write() const {
+void Timeline::write(const std::vector<plan::Replan>& replans) const {
   Json file = data_->file;
-  file["steps"] = data_->steps;
+  Json& steps = file["steps"] = data_->steps;
+  for (Json& step : steps) {
+    if (!step.contains("ways")) continue;
+    Json ways = Json::array();
+    for (Json& way : step["ways"]) {
+      if (way.contains("plan")) {
+        const unsigned plan = replans.at(way["plan"].get<std::size_t>()).plan;
+        way["plan"] = plan > 0 ? Json(plan) : Json(nullptr);
+      }
+      if (std::ranges::find(ways, way) == ways.end()) ways.push_back(std::move(way));
+    }
+    step["ways"] = std::move(ways);
+  }
   io::write_file(folder_ / "plan.json", file.dump(1) + "\n");
   std::string table = "step,way,action";
   for (const char* column : kColumns) table += std::string(",") + column;
@@ -194,13 +213,16 @@ void Timeline::write() const {
       table += ',' + (event.contains(column) ? field(event[column]) : std::string());
     table += '\n';
   };
-  for (const Json& step : data_->steps) {
+  for (const Json& step : steps) {
     if (!step.contains("events")) continue;
     for (const Json& event : step["events"]) row(step, nullptr, event);
     std::size_t number = 0;
     for (const Json& way : step["ways"]) {
       for (const Json& event : way["events"]) row(step, number, event);
-      row(step, number++, {{"time", step["duration"]}, {"event", "end"}, {"next", way["next"]}});
+      Json end = {{"time", step["duration"]}, {"event", "end"}, {"next", way["next"]}};
+      if (!way["if"].is_null()) end.update(way["if"]);
+      if (way.contains("plan")) end["plan"] = way["plan"];
+      row(step, number++, end);
     }
   }
   io::write_file(folder_ / "events.csv", table);

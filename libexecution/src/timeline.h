@@ -35,7 +35,8 @@ class Timeline {
   /// A node in a state. @pre its motions were added, if it was not in that state before
   void add(const plan::RunStep& step);
   /// Writes plan.json and events.csv. @throws Error{OutputFailed}
-  void write() const;
+  /// @param replans  what was done for each step that was unplanned, in their order
+  void write(const std::vector<plan::Replan>& replans) const;
 
  private:
   struct Data;
@@ -47,7 +48,7 @@ class Timeline {
   const plan::Model* model_ = nullptr;
   const plan::Plan* plan_ = nullptr;
   std::shared_ptr<NodeMotions> motions_;
-  std::size_t plans_ = 0, files_ = 0;
+  std::size_t plans_ = 0, files_ = 0, unplanned_ = 0;
   std::map<std::pair<plan::Index, std::string>, std::size_t> steps_;  ///< of this plan
   std::unique_ptr<Data> data_;
 };

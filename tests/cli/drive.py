@@ -153,7 +153,7 @@ def folder_of_files(folder, *more):
             step = plan["steps"][number]
             events.append(("act", step["action"]))
             # With what was sensed: other ways are there, too.
-            way, = [w for w in step["ways"] if all(sensed[f] == v for f, v in w["sensed"].items())]
+            way = way_of(step, sensed)
             time = 0
             for event in [*step["events"], *way["events"]]:
                 if event["time"] != time:
@@ -176,12 +176,41 @@ def folder_of_files(folder, *more):
             fail(f"files and robot: {[x for x in zip(events, wanted) if x[0] != x[1]][:2]}, {len(events)} and {len(wanted)}")
         lines = (folder / f"files-{form}/events.csv").read_text().splitlines()
         count = sum(len(s["events"]) + sum(len(w["events"]) + 1 for w in s["ways"]) for s in plan["steps"])
-        if len(lines) != count + 1 or lines[0] != "step,way,action,time,event,robot,object,link,file,duration,fact,value,next":
+        if len(lines) != count + 1 or lines[0] != "step,way,action,time,event,robot,object,link,file,duration,fact,value,next,plan":
             fail(f"events.csv has {len(lines)} lines, for {count} events")
         rows = list(csv.DictReader(lines))
         if sum(r["event"] == "take" and r["link"] == "hand" for r in rows) != sum(
                 e["event"] == "take" for s in plan["steps"] for e in [*s["events"], *(x for w in s["ways"] for x in w["events"])]):
             fail("what is taken is not in events.csv")
+
+
+def way_of(step, sensed):
+    """The way of a step by what is sensed, found as docs/planning/trajectories.md says."""
+    if len({json.dumps([w["if"], w["sensed"]]) for w in step["ways"]}) < len(step["ways"]):
+        fail(f"ways that nothing tells apart: {step}")
+    fitting = [w for w in step["ways"] if (w["if"] is None or sensed[w["if"]["fact"]] == w["if"]["value"]) and all(sensed[f] == v for f, v in w["sensed"].items())]
+    if len(fitting) != 1:
+        fail(f"{len(fitting)} ways fit in {step}")
+    return fitting[0]
+
+
+def planned_again_in_files(folder, *more):
+    """Where a plan lacks a branch its files name the plan that goes on; only the goal has neither a next step nor a plan."""
+    done = subprocess.run([TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet",
+                           "--trajectories", "files-again", "--report", "again.json", *more], cwd=folder, capture_output=True, text=True)
+    plan, report = (json.loads((folder / f).read_text()) for f in ("files-again/plan.json", "again.json"))
+    schema = json.loads((ROOT / "docs/plan-run.schema.json").read_text())
+    schema["properties"]["plans"]["items"]["properties"]["start"]["properties"]["objects"] = SCHEMA["$defs"]["places"]
+    check = jsonschema.Draft202012Validator(schema)
+    for error in check.iter_errors(plan):
+        fail(f"plan.json: {error.message[:200]}")
+    missing = [(w["if"], w["plan"]) for s in plan["steps"] for w in s["ways"] if "plan" in w]
+    rows = list(csv.DictReader((folder / "files-again/events.csv").read_text().splitlines()))
+    if [(r["fact"], r["plan"]) for r in rows if r["plan"]] != [(i["fact"], str(p)) for i, p in missing if p is not None]:
+        fail("events.csv names other plans")
+    if any(w["next"] is not None for s in plan["steps"] for w in s["ways"] if "plan" in w):
+        fail("a way that is not planned for goes on")
+    return done, plan, report, missing
 
 
 def seen_in_files(folder, event):
@@ -448,9 +477,35 @@ def main():
         if done.returncode != 0 or [r["outcome"] for r in report["replans"]] != ["isSpillable(o1)"] or report["driver"]["end"] != "goal":
             fail(f"planned again: exit code {done.returncode}: {report and report['replans']}: {done.stderr}")
         judge(scenario, True)
+        done, files, again, missing = planned_again_in_files(scenario)
+        if done.returncode != 0 or {i["fact"] for i, _ in missing} != {"isSpillable(o1)"} or {i["value"] for i, _ in missing} != {"true"}:
+            fail(f"files of plans made again: exit code {done.returncode}: {missing}: {done.stderr}")
+        if sorted({p for _, p in missing}) != list(range(1, len(files["plans"]))) or len(files["plans"]) < 2 or len(files["plans"]) != 1 + sum(
+                not r["reached"] for r in again["replans"]):
+            fail(f"plans that go on: {missing}, of {len(files['plans'])}")
+        for _, number in missing:
+            first = files["steps"][files["plans"][number]["first"]]
+            if first["plan"] != number:
+                fail(f"plan {number} begins with {first}")
         done, report = run(scenario, spillable, "--replan", "0")
         if done.returncode != 1 or report["driver"]["end"] != "uncertified" or report["driver"]["messages"] or "no case" not in done.stderr:
             fail(f"a plan with gaps and nobody to plan again: exit code {done.returncode}: {report and report['driver']}: {done.stderr}")
+
+        # Motions that take too many points: nothing is told.
+        (scenario / "plan.json").write_text(whole)
+        done, report = run(scenario, DRIVER, "--max-velocity", "1e-7")
+        if done.returncode in (0, 1) or "more than 100000000 samples" not in done.stderr or any("told" in e for e in journal(scenario)):
+            fail(f"too many points: exit code {done.returncode}: {done.stderr}")
+
+        # A path without points is reported, with files as well.
+        damaged = json.loads(whole)
+        call = next(c for n in damaged["nodes"] for c in n.get("calls", []) if c.get("payload", "").startswith('[{'))
+        motions = json.loads(call["payload"])
+        call["payload"] = json.dumps([{**motions[0], "path": []}, *motions])
+        (scenario / "plan.json").write_text(json.dumps(damaged))
+        done, files, report, _ = planned_again_in_files(scenario)
+        if done.returncode != 1 or report["jumps"] < 1 or not any("does not begin where it is" in p for p in report["problems"]):
+            fail(f"a path without points: exit code {done.returncode}: {done.stderr}")
 
         # A plan with a motion that nobody certified is not told.
         damaged = json.loads(whole)

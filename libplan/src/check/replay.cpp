@@ -112,6 +112,11 @@ class Run {
           after_names(model_, evaluator_, then);
       RunStep step{node, before_names, after_names, next.value_or(kNone), outcome, actions};
       for (const Fact& f : sensed) step.sensed.push_back({fact_text(f), value_of(f, then)});
+      if (n.branches) {
+        const Fact f = branch_fact(n.branch);
+        step.decides = SensedValue{fact_text(f), value_of(f, then)};
+        step.unplanned = !next;
+      }
       step_(step);
       const std::uint64_t done = actions + (n.acts ? 1 : 0);
       if (!next) {

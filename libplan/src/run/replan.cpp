@@ -54,6 +54,7 @@ class Runs {
       const Replan& then = summary_.replans[known->second - 1];
       made.reached = true;
       made.circle = leads_to(known->second, after);
+      made.plan = then.plan;
       made.result = then.result;
       made.reason = made.circle ? "the plan for this leads back to it" : then.reason;
       made.nodes = then.nodes;
@@ -79,6 +80,7 @@ class Runs {
                   : found.outcome == Outcome::Unsolvable  ? unsolvable_because(found)
                                                           : "";
     made.nodes = found.plan.nodes.size();
+    if (found.outcome == Outcome::Solved) made.plan = static_cast<unsigned>(plans_.size()) + 1;
     summary_.replans.push_back(std::move(made));
     if (found.outcome != Outcome::Solved) return;
     plans_.emplace_back(std::move(model), std::move(found.plan));

@@ -34,6 +34,7 @@ struct Replan {
   std::string reason;     ///< why there is no plan
   std::size_t nodes = 0;  ///< of the new plan
   double seconds = 0;     ///< of planning
+  unsigned plan = 0;      ///< that is carried out then: which new one, from 1; 0: there is none
   bool reached = false;   ///< the same was known before: that plan is carried out
   bool circle = false;    ///< that plan, or one that took over from it, has led here
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct RunStep {
   std::string outcome;        ///< "isSpillable(o1)", "!isSpillable(o1)"; empty: no branch
   std::uint64_t actions = 0;  ///< before this node on the way here
   std::vector<SensedValue> sensed = {};
+  std::optional<SensedValue> decides = {};  ///< how it goes on; nullopt: no branch
+  bool unplanned = false;                   ///< the branch has no case for that: `next` is kNone
 };
 
 /// Sensing has turned out as the plan has no branch for.
