@@ -55,6 +55,21 @@ std::string field(const Json& value) {
 constexpr const char* kColumns[] = {"time",     "event", "robot", "object", "link", "file",
                                     "duration", "fact",  "value", "next",   "plan"};
 
+/// How a step goes on: what decides it and what is sensed, at its end.
+/// @param unplanned  of those that no branch is for, its number: the plan is not known yet
+Json way_json(const plan::RunStep& step, double end, std::size_t unplanned) {
+  Json way = {
+      {"if", nullptr}, {"sensed", Json::object()}, {"events", Json::array()}, {"next", nullptr}};
+  if (step.decides) way["if"] = {{"fact", step.decides->fact}, {"value", step.decides->value}};
+  if (step.unplanned) way["plan"] = unplanned;
+  for (const plan::SensedValue& s : step.sensed) {
+    way["sensed"][s.fact] = s.value;
+    way["events"].push_back(
+        {{"time", end}, {"event", "sense"}, {"fact", s.fact}, {"value", s.value}});
+  }
+  return way;
+}
+
 }  // namespace
 
 struct Timeline::Data {
@@ -171,15 +186,7 @@ void Timeline::add(const plan::RunStep& step) {
   }
   data_->file.erase("added");
   const double end = out["duration"].get<double>();
-  Json way = {
-      {"if", nullptr}, {"sensed", Json::object()}, {"events", Json::array()}, {"next", nullptr}};
-  if (step.decides) way["if"] = {{"fact", step.decides->fact}, {"value", step.decides->value}};
-  if (step.unplanned) way["plan"] = unplanned;  // until it is known which plan is made
-  for (const plan::SensedValue& s : step.sensed) {
-    way["sensed"][s.fact] = s.value;
-    way["events"].push_back(
-        {{"time", end}, {"event", "sense"}, {"fact", s.fact}, {"value", s.value}});
-  }
+  Json way = way_json(step, end, unplanned);
   for (const NodeEvent& event : settling_events(after->state, held))
     way["events"].push_back(event_json(event, end));
   if (step.next != plan::kNone) way["next"] = step_number(step.next, after->words);

@@ -481,7 +481,7 @@ def main():
         if done.returncode != 0 or {i["fact"] for i, _ in missing} != {"isSpillable(o1)"} or {i["value"] for i, _ in missing} != {"true"}:
             fail(f"files of plans made again: exit code {done.returncode}: {missing}: {done.stderr}")
         if sorted({p for _, p in missing}) != list(range(1, len(files["plans"]))) or len(files["plans"]) < 2 or len(files["plans"]) != 1 + sum(
-                not r["reached"] for r in again["replans"]):
+                not r["known_before"] for r in again["replans"]):
             fail(f"plans that go on: {missing}, of {len(files['plans'])}")
         for _, number in missing:
             first = files["steps"][files["plans"][number]["first"]]
