@@ -358,7 +358,7 @@ def main():
         done, report = run(scenario, DRIVER)
 
         # The example in C++ is told the same, and answers like the one in Python.
-        compiled = TOOLS / "example-driver"
+        compiled = TOOLS.parent / "examples/example-driver"
         if compiled.exists():
             done, report = run(scenario, str(compiled), "--blend", "0.5")
             executed = report["driver"]["executed"]
