@@ -65,7 +65,10 @@ json written(const std::string& light, const std::vector<plan::Replan>& replans)
       {"action": "keep", "arguments": ["block"], "next": "goal"},
       {"action": "drop", "arguments": ["block"], "next": "goal"}]})",
                       "test");
-  const auto folder = std::filesystem::path(::testing::TempDir()) / "kaboum-timeline-test";
+  // Tests may run at once.
+  const auto folder = std::filesystem::path(::testing::TempDir()) /
+                      (std::string("kaboum-timeline-") +
+                       ::testing::UnitTest::GetInstance()->current_test_info()->name());
   Timeline timeline(scene, folder, MotionFormat::Csv, 100);
   timeline.begin(model, plan,
                  std::make_shared<NodeMotions>(scene, model, plan, SimulationOptions()));
