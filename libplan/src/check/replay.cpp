@@ -222,7 +222,10 @@ class Run {
       std::erase_if(all, [&](const RuntimeKnowledge& k) { return value_of(f, k) != said; });
       if (!all.empty()) continue;
       std::string values;
-      for (const std::string& v : question.values) values += (values.empty() ? "" : ", ") + v;
+      for (const std::string& v : question.values) {
+        if (!values.empty()) values += ", ";
+        values += v;
+      }
       throw Error(ErrorCode::InvalidInput, question.fact + " was sensed to be '" + said +
                                                "', and by what is known it is one of " + values);
     }
