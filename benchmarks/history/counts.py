@@ -5,10 +5,10 @@ counts.py BUILD-FOLDER [--check | --record NOTE] [--only REGEX] [--folder DIR]
 
 Each run is counted by valgrind (callgrind) on one thread. Counts hardly depend on what else the machine does, so that they can be
 compared over months. counts.csv beside this file has a row for each record, the newest last: date, the commit that it was made
-after, a note, the compiler and the widest vectors of the machine, and millions of instructions for each run.
+after, a note, the compiler and the processor, and millions of instructions for each run.
 
 Prints a line for each run: millions, those of the newest row, and the ratio. --check exits with 1 where a run takes more than 5 %
-more than in the newest row; where compiler or vectors differ from that row's, it says so and compares nothing. --record appends a
+more than in the newest row; where compiler or processor differ from that row's, it says so and compares nothing. --record appends a
 row: to be done on purpose, with a reason, in the commit that changes the counts. --folder keeps what the runs write.
 """
 import argparse
@@ -25,7 +25,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RECORD = HERE / "counts.csv"
-ABOUT = ("date", "after", "note", "compiler", "vectors")
+ABOUT = ("date", "after", "note", "compiler", "processor")
 MOST = 1.05
 
 # Later runs read what earlier ones wrote.
@@ -125,10 +125,10 @@ def compiler_of(build):
     return subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
 
-def vectors_of_machine():
-    """What valgrind may run: nothing wider than AVX2."""
-    flags = pathlib.Path("/proc/cpuinfo").read_text(errors="replace")
-    return "avx2" if re.search(r"\bavx2\b", flags) else "none"
+def processor():
+    """The C library has code of its own for some."""
+    found = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(errors="replace"), re.M)
+    return found.group(1).strip() if found else "unknown"
 
 
 def commit():
@@ -165,7 +165,7 @@ def main():
     options = parser.parse_args()
     if options.record is not None and options.only:
         parser.error("a record has all runs: leave --only out")
-    here = {"compiler": compiler_of(options.build), "vectors": vectors_of_machine()}
+    here = {"compiler": compiler_of(options.build), "processor": processor()}
     last = newest_row()
     alike = last is not None and all(last[key] == here[key] for key in here)
     if last is not None and not alike:
