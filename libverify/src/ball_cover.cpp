@@ -10,8 +10,6 @@
 #include <utility>
 
 #include "ball.h"
-#include "cell_sample.h"
-#include "nearest.h"
 #include "number.h"
 #include "union_cover.h"
 

@@ -243,7 +243,7 @@ DistanceClaim verify_excess(const geom::ConvexSet& set, const geom::Mesh& origin
     if (claim.answer == Answer::Refuted) claim.triangle = triangle_near(sum_of(set), claim.at);
     // Of bodies with one radius more can be said where there is no slack.
     if (claim.answer != Answer::Undecided || !(one_radius && epsilon > *one_radius)) return claim;
-    if (!open.empty() && open.size() < set.bodies.size()) {
+    if (!open.empty()) {
       geom::ConvexSet rest;
       for (const std::size_t i : open) rest.bodies.push_back(set.bodies[i]);
       DistanceClaim of_rest = verify_open_excess(rest, original, epsilon, to_solid, limits);

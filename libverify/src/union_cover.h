@@ -11,6 +11,7 @@
 #include <string>
 
 #include "body_bounds.h"
+#include "cell_sample.h"
 #include "mesh_pair.h"
 #include "nearest.h"
 #include "number.h"
