@@ -21,11 +21,10 @@ struct Segment {
         along(b - a),
         inverse(along.squaredNorm() > 1e-300 ? 1 / along.squaredNorm() : 0) {}
 
-  [[nodiscard]] double distance(const Vec3& p) const {
-    const Vec3 to = p - from;
-    const double share = std::clamp(to.dot(along) * inverse, 0.0, 1.0);
-    return (to - share * along).norm();
+  [[nodiscard]] Vec3 nearest(const Vec3& p) const {
+    return from + std::clamp((p - from).dot(along) * inverse, 0.0, 1.0) * along;
   }
+  [[nodiscard]] double distance(const Vec3& p) const { return (p - nearest(p)).norm(); }
 
   Vec3 from, along;
   double inverse;  ///< of the square of its length; 0 of about a point
@@ -44,14 +43,18 @@ double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& c) 
 }
 
 /// A bound from below of the least value along the segment, by golden section: the function is
-/// convex, and changes by no more than the way.
-double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& from, const Vec3& to) {
+/// convex, and changes by no more than the way. It ends where the least value is known to be more
+/// than `enough`.
+double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& from, const Vec3& to,
+                         double enough) {
   constexpr double kGolden = 0.6180339887498949;
   const double length = (to - from).norm();
   const auto at = [&](double t) { return distance_from_cap(cap, h, from + t * (to - from)); };
   double low = 0, high = 1, a = high - kGolden, b = low + kGolden;
   double at_a = at(a), at_b = at(b);
-  for (int step = 0; step < kSectionSteps && (high - low) * length > 1e-3 * h; ++step) {
+  const auto bound = [&] { return std::min(at_a, at_b) - (high - low) * length; };
+  for (int step = 0; step < kSectionSteps && (high - low) * length > 1e-3 * h && bound() <= enough;
+       ++step) {
     if (at_a < at_b) {
       high = b;
       b = a;
@@ -66,7 +69,7 @@ double distance_from_cap(const ParallelBody::Cap& cap, double h, const Vec3& fro
       at_b = at(b);
     }
   }
-  return std::min(at_a, at_b) - (high - low) * length;
+  return bound();
 }
 
 }  // namespace
@@ -211,8 +214,12 @@ double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, dou
     return std::max(to_ball, to_box) - h - rounding;
   };
   body.visit_caps(best, bound, [&](const ParallelBody::Cap& cap) {
-    if (segment.distance(cap.center) - h >= best) return;
-    best = std::min(best, distance_from_cap(cap, h, from, to) - rounding);
+    const Vec3 near = segment.nearest(cap.center);
+    if ((near - cap.center).norm() - h >= best) return;
+    // No section is needed where one point is nearer than what is asked for.
+    const double at_near = distance_from_cap(cap, h, near);
+    best = std::min(
+        best, at_near < least ? at_near : distance_from_cap(cap, h, from, to, best) - rounding);
   });
   return best < least || !std::isfinite(best) ? 0.0 : std::max(best, 0.0);
 }

@@ -32,9 +32,12 @@ using geom::Mesh;
 /// Shares of ε: what capsules and boxes leave of it, so that polytopes round the bodies are within
 /// it; by which triangles, and by which points, are held with room to spare; the size of caps.
 constexpr double kLeft = 5e-3, kTriangleSpare = 2e-3, kPointSpare = 0.02, kCaps = 0.15;
+/// Cubes of the solid that no body holds are cut until half their edge is this share of ε.
+constexpr double kVoid = 0.06;
 constexpr int kPatches = 60;               ///< rounds of points added where no body is
 constexpr std::size_t kAddedPoints = 200;  ///< in a round
 constexpr int kTriangleCuts = 24;          ///< of a triangle
+constexpr std::size_t kShown = 12;         ///< most free points of a triangle, or a few more
 constexpr std::size_t kMostSurface = 6'000;
 constexpr std::size_t kMostFrames = 4;
 
@@ -113,9 +116,9 @@ SimpleEffort effort_for(Effort effort) {
   return {1500, 300, 1000, 2, 8'000};
 }
 
-class SimpleBodySearch {
+class BodySearch {
  public:
-  SimpleBodySearch(const Mesh& mesh, const SimpleBodyOptions& options)
+  BodySearch(const Mesh& mesh, const SimpleBodyOptions& options)
       : mesh_(mesh),
         options_(options),
         effort_(effort_for(options.effort)),
@@ -129,37 +132,50 @@ class SimpleBodySearch {
     surface_ = std::move(points.surface);
     points_ = std::move(points.first);
     inner_ = std::move(points.inside);
-    points_.insert(points_.end(), options.held.begin(), options.held.end());
     find_frames();
   }
 
-  CoverCandidate run() {
-    std::vector<SimpleBody> bodies;
+  CoverCandidate find() {
     if (options_.max_bodies) {
-      bodies = within_count(*options_.max_bodies);
+      bodies_ = within_count(*options_.max_bodies);
       if (options_.epsilon && epsilon_ <= *options_.epsilon)
-        bodies = cover(*options_.epsilon, kAny);
+        bodies_ = cover(*options_.epsilon, kAny);
     } else {
-      bodies = cover(*options_.epsilon, kAny);
+      bodies_ = cover(*options_.epsilon, kAny);
     }
-    CoverCandidate out;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      out.bodies.push_back(convex_body(bodies[i], i));
-      const std::size_t vertices = out.bodies.back().core.vertices.size();
-      out.statistics.vertices += vertices;
-      out.statistics.largest = std::max(out.statistics.largest, vertices);
-    }
-    out.statistics.leaves = bodies.size();
-    // Half of what is left is for who rounds the bodies.
-    out.excess_upper = epsilon_ * (1 - 0.5 * kLeft);
-    out.excess_lower = std::min(farthest(bodies), out.excess_upper);
-    if (options_.epsilon && !(out.excess_upper <= *options_.epsilon))
-      out.stop = Stop::TooManyBodies;
-    return out;
+    return candidate();
+  }
+
+  CoverCandidate hold(std::span<const Vec3> points) {
+    points_.insert(points_.end(), points.begin(), points.end());
+    inner_.insert(inner_.end(), points.begin(), points.end());
+    if (options_.max_bodies) return find();
+    bodies_ = completed(std::move(bodies_), kAny);
+    if (bodies_.empty()) return find();
+    for (SimpleBody& one : bodies_) one = written(one);
+    return candidate();
   }
 
  private:
   static constexpr std::size_t kAny = kMostSimpleBodies;
+
+  /// The bodies of the last search, as they are handed over.
+  [[nodiscard]] CoverCandidate candidate() const {
+    CoverCandidate out;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      out.bodies.push_back(convex_body(bodies_[i], i));
+      const std::size_t vertices = out.bodies.back().core.vertices.size();
+      out.statistics.vertices += vertices;
+      out.statistics.largest = std::max(out.statistics.largest, vertices);
+    }
+    out.statistics.leaves = bodies_.size();
+    // Half of what is left is for who rounds the bodies.
+    out.excess_upper = epsilon_ * (1 - 0.5 * kLeft);
+    out.excess_lower = std::min(farthest(bodies_), out.excess_upper);
+    if (options_.epsilon && !(out.excess_upper <= *options_.epsilon))
+      out.stop = Stop::TooManyBodies;
+    return out;
+  }
 
   void show(const char* stage, double share) const {
     if (options_.progress) options_.progress({stage, share});
@@ -240,6 +256,7 @@ class SimpleBodySearch {
     epsilon_ = epsilon;
     failed_.clear();
     held_.clear();
+    holders_.clear();
     body_ = std::make_unique<RegionalBody>(query_, winding_, epsilon * (1 - kLeft), kCaps,
                                            options_.regions, epsilon);
     finest_ = options_.regions.empty() ? epsilon : std::min(epsilon, *finest_epsilon(options_));
@@ -410,10 +427,10 @@ class SimpleBodySearch {
         const double radius = least + share * epsilon_;
         const auto found = capsule_round(points, cylinder, radius, spare_);
         if (!found) continue;
-        // What is far outside does not fit.
+        const auto one = capsule(found->from, found->to, radius);
+        // What is far outside meets no cap, either.
         const Vec3 middle = 0.5 * (found->from + found->to);
-        if (!(body_->signed_distance(middle).upper < epsilon_)) continue;
-        if (auto one = capsule(found->from, found->to, radius)) return one;
+        if (one && body_->signed_distance(middle).upper < epsilon_) return one;
       }
     }
     return std::nullopt;
@@ -687,33 +704,66 @@ class SimpleBodySearch {
     int cuts;
   };
 
+  /// A body as it is written, and the box round it.
+  struct Written {
+    SimpleBody body;
+    geom::Box3 box;
+    std::uint64_t digest;  ///< of the body as it was found
+  };
+
+  [[nodiscard]] Written as_written(const SimpleBody& one) const {
+    Written out{written(one), {}, 0};
+    if (one.kind == SimpleBody::Kind::Box) {
+      for (const Vec3& p : out.body.box.corners()) out.box.extend(p);
+    } else {
+      const Vec3 radius = Vec3::Constant(out.body.capsule.radius);
+      for (const Vec3& p : {out.body.capsule.from, out.body.capsule.to}) {
+        out.box.extend(p - radius);
+        out.box.extend(p + radius);
+      }
+    }
+    Digest digest;
+    digest.add(one);
+    out.digest = digest.value();
+    return out;
+  }
+
   /// Points of a triangle in no body, by cutting it until parts are in one.
-  void find_free(const std::array<Vec3, 3>& triangle, const std::vector<SimpleBody>& bodies,
-                 std::size_t most, std::vector<Vec3>& out) const {
+  /// @param holders  gets the digests of bodies that hold all of it together; empty: there are none
+  void find_free(const std::array<Vec3, 3>& triangle, const std::vector<Written>& bodies,
+                 std::size_t most, std::vector<Vec3>& out,
+                 std::vector<std::uint64_t>& holders) const {
     const double spare = kTriangleSpare * finest_ + 4 * spacing_;
-    std::vector<const SimpleBody*> near;
-    const Vec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
-    double reach = 0;
-    for (const Vec3& p : triangle) reach = std::max(reach, (p - middle).norm());
-    for (const SimpleBody& one : bodies)
-      if (one.beyond(middle) <= reach) near.push_back(&one);
+    holders.clear();
+    std::vector<const Written*> near;
+    geom::Box3 box;
+    for (const Vec3& p : triangle) box.extend(p);
+    for (const Written& one : bodies)
+      if ((box.max.array() >= one.box.min.array()).all() &&
+          (one.box.max.array() >= box.min.array()).all())
+        near.push_back(&one);
     std::vector<Piece> open{{triangle, 0}};
     while (!open.empty() && out.size() < most) {
       const Piece piece = open.back();
       open.pop_back();
-      bool held = false;
+      const Written* holder = nullptr;
       std::array<bool, 3> some{};
-      for (const SimpleBody* one : near) {
+      for (const Written* one : near) {
         bool all = true;
         for (std::size_t k = 0; k < 3; ++k) {
-          const bool in = one->beyond(piece.corner[k]) <= -spare;
+          const bool in = one->body.beyond(piece.corner[k]) <= -spare;
           some[k] = some[k] || in;
           all = all && in;
         }
-        held = held || all;
-        if (held) break;
+        if (!all) continue;
+        holder = one;
+        break;
       }
-      if (held) continue;
+      if (holder != nullptr) {
+        if (std::ranges::find(holders, holder->digest) == holders.end())
+          holders.push_back(holder->digest);
+        continue;
+      }
       bool free = false;
       for (std::size_t k = 0; k < 3; ++k) {
         if (some[k]) continue;
@@ -738,28 +788,107 @@ class SimpleBodySearch {
         open.push_back({corner, piece.cuts + 1});
       }
     }
+    if (!out.empty()) holders.clear();
+  }
+
+  /// Points of the solid in cubes that are in no body, one of a small cube.
+  [[nodiscard]] std::vector<Vec3> void_points(const std::vector<Written>& bodies) const {
+    constexpr int kCuts = 8;
+    const Vec3 size = box_.max - box_.min;
+    const double edge = size.maxCoeff() / kCuts;
+    const auto count = [&](int k) { return static_cast<std::size_t>(std::ceil(size[k] / edge)); };
+    const std::size_t across = std::max<std::size_t>(count(0), 1);
+    const std::size_t deep = std::max<std::size_t>(count(1), 1);
+    const std::size_t all_cubes = across * deep * std::max<std::size_t>(count(2), 1);
+    std::vector<std::vector<Vec3>> found(all_cubes);
+    kaboum::parallel_for(std::size_t{0}, all_cubes,
+                         [&](std::size_t i) {
+                           const Vec3 at(static_cast<double>(i % across),
+                                         static_cast<double>(i / across % deep),
+                                         static_cast<double>(i / across / deep));
+                           std::vector<const SimpleBody*> near;
+                           near.reserve(bodies.size());
+                           for (const Written& one : bodies) near.push_back(&one.body);
+                           std::size_t cubes = 0;
+                           find_voids({box_.min + edge * (at + Vec3::Constant(0.5)), 0.5 * edge},
+                                      near, false, cubes, found[i]);
+                         },
+                         {.alone = true});
+    std::vector<Vec3> out;
+    for (const std::vector<Vec3>& some : found) out.insert(out.end(), some.begin(), some.end());
+    return out;
+  }
+
+  struct Cube {
+    Vec3 center;
+    double half;
+  };
+
+  /// Cuts a cube into eight while no body holds it and the solid may reach it.
+  /// @param inside  whether all of it is known to be in the solid
+  /// @param cubes   looked at so far
+  void find_voids(const Cube& cube, const std::vector<const SimpleBody*>& bodies, bool inside,
+                  std::size_t& cubes, std::vector<Vec3>& out) const {
+    constexpr std::size_t kMostCubes = 100'000, kMostPoints = 12;
+    constexpr double kSqrt3Up = 1.7320508076;
+    if (out.size() >= kMostPoints || ++cubes > kMostCubes) return;
+    const double spare = kTriangleSpare * finest_ + 4 * spacing_;
+    const double reach = kSqrt3Up * cube.half;
+    std::vector<const SimpleBody*> near;
+    bool held = false;  // its middle
+    for (const SimpleBody* one : bodies) {
+      const double beyond = one->beyond(cube.center);
+      if (beyond <= -spare - reach) return;
+      held = held || beyond <= -spare;
+      if (beyond <= reach) near.push_back(one);
+    }
+    if (!inside) {
+      const ParallelBody::SignedDistance away = body_->signed_distance(cube.center);
+      if (away.lower > reach) return;
+      inside = away.upper < -reach;
+      if (cube.half < kVoid * finest_) {
+        if (!held && away.upper < 0) out.push_back(cube.center);
+        return;
+      }
+    } else if (cube.half < kVoid * finest_) {
+      if (!held) out.push_back(cube.center);
+      return;
+    }
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 corner((k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0,
+                        (k & 4) != 0 ? 1.0 : -1.0);
+      find_voids({cube.center + 0.5 * cube.half * corner, 0.5 * cube.half}, near, inside, cubes,
+                 out);
+    }
   }
 
   /// Points of triangles, or of the inside, that no body holds, some of them.
-  [[nodiscard]] std::vector<Vec3> free_points(const std::vector<SimpleBody>& bodies) const {
-    std::vector<SimpleBody> as_written;
-    as_written.reserve(bodies.size());
-    for (const SimpleBody& one : bodies) as_written.push_back(written(one));
+  [[nodiscard]] std::vector<Vec3> free_points(const std::vector<SimpleBody>& bodies) {
+    std::vector<Written> all_written(bodies.size());
+    kaboum::parallel_for(std::size_t{0}, bodies.size(),
+                         [&](std::size_t b) { all_written[b] = as_written(bodies[b]); });
+    std::unordered_set<std::uint64_t> there;
+    for (const Written& one : all_written) there.insert(one.digest);
     std::vector<std::vector<Vec3>> found(mesh_.triangles.size());
+    holders_.resize(mesh_.triangles.size());
+    // Most triangles are in bodies that held them before.
     kaboum::parallel_for(std::size_t{0}, mesh_.triangles.size(), [&](std::size_t t) {
+      if (!holders_[t].empty() &&
+          std::ranges::all_of(holders_[t], [&](std::uint64_t d) { return there.contains(d); }))
+        return;
       const auto& [i, j, k] = mesh_.triangles[t];
-      find_free({mesh_.vertices[i], mesh_.vertices[j], mesh_.vertices[k]}, as_written, 12,
-                found[t]);
+      find_free({mesh_.vertices[i], mesh_.vertices[j], mesh_.vertices[k]}, all_written, kShown,
+                found[t], holders_[t]);
     });
     std::vector<Vec3> all;
     for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
     const double spare = kTriangleSpare * finest_;
     if (all.empty())
-      for (const std::vector<Vec3>* points : {&inner_, &options_.held})
-        for (const Vec3& p : *points)
-          if (std::ranges::none_of(as_written,
-                                   [&](const SimpleBody& b) { return b.beyond(p) <= -spare; }))
-            all.push_back(p);
+      for (const Vec3& p : inner_)
+        if (std::ranges::none_of(all_written,
+                                 [&](const Written& b) { return b.body.beyond(p) <= -spare; }))
+          all.push_back(p);
+    if (all.empty()) all = void_points(all_written);
     std::vector<Vec3> out;
     const std::size_t stride = all.size() / kAddedPoints + 1;
     for (std::size_t i = 0; i < all.size(); i += stride) out.push_back(all[i]);
@@ -946,18 +1075,45 @@ class SimpleBodySearch {
   double spare_ = 0;
   std::unique_ptr<RegionalBody> body_;  ///< what bodies may not leave
   std::vector<SurfacePoint> surface_;
-  std::vector<Vec3> points_;  ///< to be held
-  std::vector<Vec3> inner_;   ///< of the inside, that are looked at when triangles are held
+  std::vector<SimpleBody> bodies_;  ///< of the last search, as they are written
+  std::vector<Vec3> points_;        ///< to be held
+  std::vector<Vec3> inner_;         ///< of the inside, that are looked at when triangles are held
   std::vector<Eigen::Matrix3d> frames_;
   std::vector<Vec3> directions_;  ///< the axes of all frames
   std::vector<SimpleBody> candidates_;
   std::unordered_set<std::uint64_t> failed_;      ///< what no body was found for (key_of)
   std::unordered_map<std::uint64_t, Held> held_;  ///< by bodies' digests
+  /// Of each triangle the digests of bodies that held it together.
+  std::vector<std::vector<std::uint64_t>> holders_;
 };
 
 }  // namespace
 
-CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBodyOptions& options) {
+/// What a search refers to, and the search.
+struct SimpleBodySearch::State {
+  State(geom::SolidMesh mesh, SimpleBodyOptions asked)
+      : closed(std::move(mesh)), options(std::move(asked)) {}
+
+  geom::SolidMesh closed;
+  SimpleBodyOptions options;
+  bool too_coarse = false;  ///< the spacing of float32 numbers, for epsilon
+  std::optional<BodySearch> search;
+
+  template <class Run>
+  CoverCandidate run(const Run& run) {
+    if (too_coarse) {
+      CoverCandidate coarse;
+      coarse.stop = Stop::TooCoarse;
+      return coarse;
+    }
+    if (!search) search.emplace(closed.mesh(), options);
+    CoverCandidate out = run(*search);
+    out.statistics.filled_triangles = closed.filled_triangles();
+    return out;
+  }
+};
+
+SimpleBodySearch::SimpleBodySearch(const geom::SolidMesh& input, const SimpleBodyOptions& options) {
   if (!options.epsilon && !options.max_bodies)
     throw Error(ErrorCode::InvalidArgument, "bodies: epsilon or a number of them is needed");
   if (!options.kinds.capsules && !options.kinds.boxes)
@@ -968,19 +1124,24 @@ CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBody
     throw Error(ErrorCode::InvalidArgument, "there must be a body at least");
   if (options.max_bodies && !options.regions.empty())
     throw Error(ErrorCode::InvalidArgument, "regions do not go with a limit on the bodies");
-  const geom::SolidMesh closed = geom::close_holes(input);
-  const geom::Box3 box = geom::bounding_box(closed.mesh());
+  state_ = std::make_unique<State>(geom::close_holes(input), options);
+  const geom::Box3 box = geom::bounding_box(state_->closed.mesh());
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-  if (options.epsilon && geom::float32_spacing(largest) > 0.01 * *finest_epsilon(options)) {
-    CoverCandidate coarse;
-    coarse.stop = Stop::TooCoarse;
-    return coarse;
-  }
-  SimpleBodyOptions asked = options;
-  if (asked.epsilon) asked.epsilon = std::min(*asked.epsilon, 0.6 * box.diagonal());
-  CoverCandidate out = SimpleBodySearch(closed.mesh(), asked).run();
-  out.statistics.filled_triangles = closed.filled_triangles();
-  return out;
+  state_->too_coarse =
+      options.epsilon && geom::float32_spacing(largest) > 0.01 * *finest_epsilon(options);
+  if (options.epsilon) state_->options.epsilon = std::min(*options.epsilon, 0.6 * box.diagonal());
+}
+
+SimpleBodySearch::SimpleBodySearch(SimpleBodySearch&&) noexcept = default;
+SimpleBodySearch& SimpleBodySearch::operator=(SimpleBodySearch&&) noexcept = default;
+SimpleBodySearch::~SimpleBodySearch() = default;
+
+CoverCandidate SimpleBodySearch::find() {
+  return state_->run([](BodySearch& search) { return search.find(); });
+}
+
+CoverCandidate SimpleBodySearch::hold(std::span<const geom::Vec3> points) {
+  return state_->run([&](BodySearch& search) { return search.hold(points); });
 }
 
 }  // namespace kaboum::bcd

@@ -31,7 +31,7 @@ constexpr std::array<double, 3> kSafety{1, 64, 4096};
 /// So often places that inner bodies must not reach are handed to another search.
 constexpr int kAvoided = 5;
 /// So often places that spheres leave out are handed to another search.
-constexpr int kHeld = 20;
+constexpr int kHeld = 100;
 /// Of epsilon, that a wrap round the input may take; the bodies have what it leaves.
 constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
@@ -104,12 +104,12 @@ bcd::InnerBallOptions inner_balls_of(const SetRequest& r, double diagonal, const
 
 bcd::SimpleBodyOptions simple_of(const SetRequest& r, double diagonal, const Hooks& hooks) {
   require_possible(r);
-  using Kind = SetRequest::BodyKind;
+  using BodyKind = SetRequest::BodyKind;
   bcd::SimpleBodyOptions out;
   static_cast<bcd::SearchRun&>(out) = run_of(r, diagonal, hooks);
-  out.kinds.balls = r.body_kind == Kind::Mixed;
-  out.kinds.capsules = r.body_kind != Kind::Boxes;
-  out.kinds.boxes = r.body_kind != Kind::Capsules;
+  out.kinds.balls = r.body_kind == BodyKind::Mixed;
+  out.kinds.capsules = r.body_kind != BodyKind::Boxes;
+  out.kinds.boxes = r.body_kind != BodyKind::Capsules;
   out.max_bodies = r.max_bodies;
   out.effort = r.effort;
   return out;
@@ -224,7 +224,7 @@ class Search {
     else if (request.body_kind == SetRequest::BodyKind::Spheres)
       balls_ = balls_of(request, diagonal, hooks);
     else if (request.body_kind != SetRequest::BodyKind::Polytopes)
-      simple_ = simple_of(request, diagonal, hooks);
+      simple_.emplace(solid, simple_of(request, diagonal, hooks));
     else if (outer)
       cover_ = bcd::CoverOptions{request, run_of(request, diagonal, hooks),
                                  least_thickness(request, diagonal)};
@@ -244,7 +244,7 @@ class Search {
               found.statistics};
     }
     if (simple_) {
-      bcd::CoverCandidate found = bcd::find_simple_bodies(solid_, *simple_);
+      bcd::CoverCandidate found = left_out_.empty() ? simple_->find() : simple_->hold(left_out_);
       return {std::move(found.bodies), found.stop, found.excess_lower, found.excess_upper,
               found.statistics};
     }
@@ -271,8 +271,8 @@ class Search {
   /// Chooses other means after a refutation. @return which, in words; empty: there are none left.
   std::string other_means(const Refutation& found) {
     if (balls_ || simple_) {
-      std::vector<geom::Vec3>& held = balls_ ? balls_->held : simple_->held;
-      held.insert(held.end(), found.left_out.begin(), found.left_out.end());
+      left_out_ = found.left_out;
+      if (balls_) balls_->held.insert(balls_->held.end(), left_out_.begin(), left_out_.end());
       tried_ = ++held_ < kHeld && !found.left_out.empty() ? 0 : kSafety.size();
       return "to hold the places found";
     }
@@ -310,11 +310,12 @@ class Search {
 
   const geom::SolidMesh& solid_;
   std::optional<bcd::BallOptions> balls_;
-  std::optional<bcd::SimpleBodyOptions> simple_;
+  std::optional<bcd::SimpleBodySearch> simple_;
   std::optional<bcd::CoverOptions> cover_;
   std::optional<bcd::InnerOptions> inner_;
   std::optional<bcd::InnerBallOptions> inner_balls_;
-  std::size_t tried_ = 0;  // allowances for rounding
+  std::vector<geom::Vec3> left_out_;  // by what was found last
+  std::size_t tried_ = 0;             // allowances for rounding
   int avoided_ = 0, held_ = 0;
   bool simplified_ = false;
 };
@@ -444,8 +445,8 @@ std::optional<CertifiedSet> certify(const geom::Mesh& mesh, const std::string& s
   SetRequest asked = request;
   std::vector<geom::RequestedRegion> apart;
   // A flat sheet that is closed by its own fill has no volume.
-  const Prepare plain = [](const geom::Mesh& mesh, const geom::PrepareOptions& options) {
-    return geom::prepare(mesh, options);
+  const Prepare plain = [](const geom::Mesh& given, const geom::PrepareOptions& options) {
+    return geom::prepare(given, options);
   };
   const Prepare prepare = asked.wrap && asked.wrap->where_needed ? prepare_mesh : plain;
   if (asked.wrap) asked.wrap->input_triangles = mesh.triangles.size();

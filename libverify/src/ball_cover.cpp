@@ -19,7 +19,6 @@ namespace {
 using union_cover::Corner;
 using union_cover::Corners;
 using union_cover::Extent;
-using union_cover::kSqrt3Up;
 using union_cover::largest_of;
 
 constexpr int kTurns = 12;  ///< of a plane that is to separate a box

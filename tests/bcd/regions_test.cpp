@@ -61,7 +61,7 @@ geom::ConvexSet found(Kind kind, double epsilon, const std::vector<BoundedRegion
   } else {
     auto options = options_of<SimpleBodyOptions>(epsilon, regions);
     (kind == Kind::Capsules ? options.kinds.capsules : options.kinds.boxes) = true;
-    out.bodies = find_simple_bodies(prepared.solid, options).bodies;
+    out.bodies = SimpleBodySearch(prepared.solid, options).find().bodies;
   }
   return out;
 }
@@ -128,7 +128,8 @@ TEST(Regions, AreRefusedWithLimits) {
   auto boxes = options_of<SimpleBodyOptions>(0.6, regions);
   boxes.kinds.boxes = true;
   boxes.max_bodies = 2;
-  expect_refused(boxes, [&](const SimpleBodyOptions& o) { return find_simple_bodies(solid, o); });
+  expect_refused(boxes,
+                 [&](const SimpleBodyOptions& o) { return SimpleBodySearch(solid, o).find(); });
 }
 
 }  // namespace

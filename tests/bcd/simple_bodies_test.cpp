@@ -44,7 +44,7 @@ CoverCandidate cover(const Mesh& mesh, const SimpleKinds& kinds, double epsilon)
   options.epsilon = epsilon;
   options.effort = Effort::Fast;
   const geom::Prepared solid = geom::prepare(mesh, {});
-  CoverCandidate out = find_simple_bodies(solid.solid, options);
+  CoverCandidate out = SimpleBodySearch(solid.solid, options).find();
   geom::ConvexSet set;
   set.bodies = out.bodies;
   const verify::Cover found = verify::verify_cover(mesh, set);
@@ -87,7 +87,8 @@ TEST(SimpleBodies, ByNumber) {
   options.kinds.boxes = true;
   options.max_bodies = 1;
   options.effort = Effort::Fast;
-  const CoverCandidate one = find_simple_bodies(geom::prepare(bar({4, 1, 2}), {}).solid, options);
+  const CoverCandidate one =
+      SimpleBodySearch(geom::prepare(bar({4, 1, 2}), {}).solid, options).find();
   EXPECT_EQ(one.bodies.size(), 1U);
   EXPECT_LT(one.excess_upper, 0.3);
 }

@@ -221,13 +221,15 @@ class Run {
       const std::string said = options_.sense(question);
       std::erase_if(all, [&](const RuntimeKnowledge& k) { return value_of(f, k) != said; });
       if (!all.empty()) continue;
-      std::string values;
+      std::string what = question.fact;
+      what += " was sensed to be '";
+      what += said;
+      what += "', and by what is known it is one of ";
       for (const std::string& v : question.values) {
-        if (!values.empty()) values += ", ";
-        values += v;
+        if (v != question.values.front()) what += ", ";
+        what += v;
       }
-      throw Error(ErrorCode::InvalidInput, question.fact + " was sensed to be '" + said +
-                                               "', and by what is known it is one of " + values);
+      throw Error(ErrorCode::InvalidInput, what);
     }
     if (all.size() > 1) all.erase(all.begin() + 1, all.end());
   }

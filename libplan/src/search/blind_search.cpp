@@ -192,8 +192,8 @@ SearchResult search_deeper(const SearchInput& in, Steps& from) {
     }
     return Round::Failed;
   };
-  constexpr Index kDeepest = 10'000;  // the recursion's depth
-  for (Index limit = 1; limit <= kDeepest; ++limit) {
+  constexpr Index kLongestPlan = 10'000;  // the recursion's depth
+  for (Index limit = 1; limit <= kLongestPlan; ++limit) {
     in.statistics.depth = std::max<std::uint64_t>(in.statistics.depth, limit);
     steps.resize(limit);
     path.clear();

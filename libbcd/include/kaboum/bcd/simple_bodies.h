@@ -4,8 +4,9 @@
 #include <kaboum/geom/solid_mesh.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
-#include <vector>
+#include <span>
 
 namespace kaboum::bcd {
 
@@ -17,15 +18,14 @@ struct SimpleKinds {
   bool balls = false, capsules = false, boxes = false;
 };
 
-/// Request for find_simple_bodies.
+/// Request for SimpleBodySearch.
 struct SimpleBodyOptions : SearchRun {
   SimpleKinds kinds;
   std::optional<std::size_t> max_bodies;
   Effort effort = Effort::Normal;
-  std::vector<geom::Vec3> held;  ///< points of the solid that the bodies are to hold as well
 };
 
-/// Searches for few capsules and boxes whose union contains the input's solid and every triangle of
+/// A search for few capsules and boxes whose union contains the input's solid and every triangle of
 /// it. A capsule is a segment with a radius, float32 numbers; a box is the hull of its corners,
 /// which are rounded to float32.
 ///
@@ -36,10 +36,26 @@ struct SimpleBodyOptions : SearchRun {
 /// one that takes least to be queried. docs/algorithms/capsules-and-boxes.md.
 ///
 /// No claim that they cover: certify::certify_set decides that. The distances are certified.
-///
-/// @pre epsilon or max_bodies is given; a kind is
-/// @throws Error{InvalidArgument} on contradictory options; Error{LimitReached} where epsilon takes
-///   more bodies than kMostSimpleBodies, or none were found that hold all
-CoverCandidate find_simple_bodies(const geom::SolidMesh& input, const SimpleBodyOptions& options);
+class SimpleBodySearch {
+ public:
+  /// @pre epsilon or max_bodies is given; a kind is
+  /// @throws Error{InvalidArgument} on contradictory options
+  SimpleBodySearch(const geom::SolidMesh& input, const SimpleBodyOptions& options);
+  SimpleBodySearch(SimpleBodySearch&&) noexcept;
+  SimpleBodySearch& operator=(SimpleBodySearch&&) noexcept;
+  ~SimpleBodySearch();
+
+  /// @throws Error{LimitReached} where epsilon takes more bodies than kMostSimpleBodies, or none
+  ///   were found that hold all
+  CoverCandidate find();
+
+  /// What was found last, with bodies beside or in place of some, so that points of the solid are
+  /// held, too. With `max_bodies` all are looked for anew. @throws as find
+  CoverCandidate hold(std::span<const geom::Vec3> points);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace kaboum::bcd
