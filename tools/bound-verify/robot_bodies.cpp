@@ -32,6 +32,8 @@ constexpr double kPoseRounding = 0x1p-45;
 /// Steps between the same frames in two formats differ by no more than this, in sizes of the robot.
 constexpr double kSameFrame = 1e-9;
 constexpr double kLeastCapsule = 0.5;  ///< of its cylinder's radius: thinner ones are of no use
+/// Of a ball's radius: what is lost where a capsule that it ends stands for it.
+constexpr double kSameEnd = 1e-10;
 
 /// Bodies within the shapes of a link, and bodies round them.
 struct Bounds {
@@ -106,6 +108,26 @@ void add_capsule(const Geometry& g, double error, Bounds& out) {
   add(out.outside, std::move(core), g.size.x() + error);
 }
 
+/// Leaves out balls that reach out of a capsule by no more than `most`. Two bodies with the same
+/// surface leave points undecided where that surface touches the edges of two others.
+void leave_out_ends(geom::ConvexSet& set, double most) {
+  const auto is_end = [&](const geom::ConvexBody& ball) {
+    if (ball.core.vertices.size() != 1) return false;
+    return std::ranges::any_of(set.bodies, [&](const geom::ConvexBody& other) {
+      if (other.core.vertices.size() != 2) return false;
+      const Vec3& c = ball.core.vertices[0];
+      const double away =
+          std::min((other.core.vertices[0] - c).norm(), (other.core.vertices[1] - c).norm());
+      const double rounding = 1e-15 * (away + ball.radius);
+      return away + ball.radius + rounding <= other.radius + most * ball.radius;
+    });
+  };
+  std::vector<geom::ConvexBody> kept;
+  for (const geom::ConvexBody& body : set.bodies)
+    if (!is_end(body)) kept.push_back(body);
+  set.bodies = std::move(kept);
+}
+
 /// @throws Error{InvalidInput} naming the line of a shape of another kind
 Bounds bounds_of(const robot::Link& link, const std::string& file) {
   Bounds out;
@@ -138,6 +160,9 @@ Bounds bounds_of(const robot::Link& link, const std::string& file) {
       }
     }
   }
+  // Fewer bodies inside hold no more.
+  leave_out_ends(out.inside, kSameEnd);
+  leave_out_ends(out.outside, 0);
   return out;
 }
 
