@@ -17,16 +17,27 @@ import tarfile
 import xml.etree.ElementTree as xml
 
 import numpy
-import vamp
 import yaml
 
 import batch_scenes
+
+try:
+    import vamp
+except ImportError:
+    vamp = None  # judged_batches.py does without
 
 ROBOTS = {
     # name: joints that a problem states and that stand still, pairs of links that touch by their shapes
     "panda": {"panda_finger_joint1": 0.065, "panda_finger_joint2": 0.065},
     "ur5": {},
     "fetch": {},
+}
+# Joints that VAMP moves.
+JOINTS = {
+    "panda": [f"panda_joint{i}" for i in range(1, 8)],
+    "ur5": ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"],
+    "fetch": ["torso_lift_joint", "shoulder_pan_joint", "shoulder_lift_joint", "upperarm_roll_joint", "elbow_flex_joint",
+              "forearm_roll_joint", "wrist_flex_joint", "wrist_roll_joint"],
 }
 # Pairs of links whose sets touch nearly everywhere, as in batch_scenes.py.
 ALLOWED = {"panda": [["panda_link5", "panda_link7"]], "ur5": [], "fetch": []}
@@ -70,7 +81,7 @@ def robot_scene(args, name):
     source, urdf, scene = args.resources / name / f"{name}.urdf", folder / f"{name}.urdf", folder / "robot.json"
     if scene.exists():
         return scene, urdf
-    with_fixed_joints(source, urdf, getattr(vamp, name).joint_names(), ROBOTS[name])
+    with_fixed_joints(source, urdf, JOINTS[name], ROBOTS[name])
     program = args.build / "bin/kaboum-scene"
     subprocess.run([program, "make", scene, "--robot", f"{name}={urdf}", "--epsilon", EPSILON, "--effort", "fast", "--quiet"], check=True)
     made = json.loads(scene.read_text())
@@ -114,6 +125,31 @@ def object_of(name, m, shape):
     return {"name": name, "position": m[:3, 3].tolist(), "quaternion": quaternion(m), "euler": euler_xyz(m), "shape": shape}
 
 
+def objects_of(scene):
+    """Those of a scene of MotionBenchMaker."""
+    out = []
+    for thing in scene["world"]["collision_objects"]:
+        primitive = thing["primitives"][0]
+        m = matrix(thing["pose"]) if "pose" in thing else numpy.eye(4)
+        m = m @ matrix(thing["primitive_poses"][0])
+        size = primitive["dimensions"]
+        shape = {"box": lambda: {"box": {"size": size}}, "sphere": lambda: {"sphere": {"radius": size[0]}},
+                 "cylinder": lambda: {"cylinder": {"radius": size[1], "length": size[0]}}}[primitive["type"]]()
+        out.append(object_of(thing["id"], m, shape))
+    return out
+
+
+def pose_matrix(pose):
+    """Of a position and fixed-axis angles."""
+    r, p, y = pose.get("rpy", (0, 0, 0))
+    cr, sr, cp, sp, cy, sy = numpy.cos(r), numpy.sin(r), numpy.cos(p), numpy.sin(p), numpy.cos(y), numpy.sin(y)
+    m = numpy.eye(4)
+    m[:3, :3] = [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                 [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], [-sp, cp * sr, cp * cr]]
+    m[:3, 3] = pose["position"]
+    return m
+
+
 def benchmark_problems(args, name):
     """The problems of MotionBenchMaker that come with VAMP, some of each kind."""
     files = {}
@@ -122,20 +158,12 @@ def benchmark_problems(args, name):
             found = re.fullmatch(r"problems/(\w+)_%s/(scene|request)(\d+)\.yaml" % name, member.name)
             if found and int(found[3]) <= args.problems:
                 files[found[1], int(found[3]), found[2]] = yaml.load(tar.extractfile(member).read(), Loader=getattr(yaml, "CLoader", yaml.Loader))
-    joints = getattr(vamp, name).joint_names()
+    joints = JOINTS[name]
     out = []
     for kind, index in sorted({(k, i) for k, i, _ in files}):
         if (kind, index, "request") not in files or (kind, index, "scene") not in files:
             continue
-        objects, request = [], files[kind, index, "request"]
-        for thing in files[kind, index, "scene"]["world"]["collision_objects"]:
-            primitive = thing["primitives"][0]
-            m = matrix(thing["pose"]) if "pose" in thing else numpy.eye(4)
-            m = m @ matrix(thing["primitive_poses"][0])
-            size = primitive["dimensions"]
-            shape = {"box": lambda: {"box": {"size": size}}, "sphere": lambda: {"sphere": {"radius": size[0]}},
-                     "cylinder": lambda: {"cylinder": {"radius": size[1], "length": size[0]}}}[primitive["type"]]()
-            objects.append(object_of(thing["id"], m, shape))
+        objects, request = objects_of(files[kind, index, "scene"]), files[kind, index, "request"]
         state = request["start_state"]["joint_state"]
         stated = dict(zip(state["name"], state["position"]))
         goal = {c["joint_name"]: c["position"] for c in request["goal_constraints"][0]["joint_constraints"]}
@@ -151,12 +179,8 @@ def scene_problems(args, name):
     for scene, things in batch_scenes.scenes().items():
         objects = []
         for thing in things:
-            m = numpy.eye(4)
-            r, p, y = thing["pose"].get("rpy", (0, 0, 0))
-            cr, sr, cp, sp, cy, sy = numpy.cos(r), numpy.sin(r), numpy.cos(p), numpy.sin(p), numpy.cos(y), numpy.sin(y)
-            m[:3, :3] = [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                         [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], [-sp, cp * sr, cp * cr]]
-            m[:3, 3] = numpy.array(thing["pose"]["position"]) + vamp.constants.ROBOT_FIRST_JOINT_LOCATIONS[name]
+            m = pose_matrix(thing["pose"])
+            m[:3, 3] += vamp.constants.ROBOT_FIRST_JOINT_LOCATIONS[name]
             objects.append(object_of(thing["name"], m, thing["shape"]))
         environment = vamp_environment({"problem": scene, "objects": objects})
         free = []

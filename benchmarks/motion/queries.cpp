@@ -2,11 +2,19 @@
 //
 //   path-query-benchmark plan SCENE PROBLEMS ANSWERS REPEATS [NODES]
 //   path-query-benchmark judge SCENE URDF PROBLEMS PATHS ANSWERS STEP
+//   path-query-benchmark batches SCENE URDF OBJECTS CONFIGURATIONS MOTIONS SEED
+//
+// The last one judges what the batch checks call free: half of the configurations are drawn, half
+// are halved towards contact; motions begin at such, and go on by up to half a radian of each
+// joint. They are judged as if at every sample at 10 kHz, at one radian per second of the joint
+// that turns most: samples are left out where the distance of the exact meshes at one before is
+// larger than points can have moved since. OBJECTS is a line of JSON.
 //
 // SCENE has a robot; PROBLEMS are lines of JSON: objects, start and goal; PATHS are lines of
 // waypoints, one for each problem. planner_peers.py writes and reads all of them.
 
 #include <kaboum/base/error.h>
+#include <kaboum/filter/batch_checker.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/judge/cell.h>
 #include <kaboum/motion/roadmap.h>
@@ -24,6 +32,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 namespace {
@@ -194,36 +203,51 @@ Verdict judge(const judge::Cell& cell, judge::CellState& state, const robot::Pat
   return out;
 }
 
-int judge_paths(int argc, char** argv) {
+/// The exact meshes of a robot's links, and a cell of them with objects.
+class JudgedRobot {
+ public:
+  JudgedRobot(const world::RobotModel& model, const char* urdf) : model_(model) {
+    const robot::RobotFile file = robot::read_robot(urdf);
+    robot::MeshFiles files(file.path, {});
+    for (const world::LinkShape& shape : model.shapes)
+      links_.emplace_back(shape.link, mesh_of_link(file.robot.links[shape.link], files));
+  }
+
+  /// @param state  gets the places of the objects, and the robot at home
+  std::unique_ptr<judge::Cell> cell(const world::World& world, judge::CellState& state) const {
+    auto out = std::make_unique<judge::Cell>();
+    out->add_robot(model_.name, model_.kinematics, model_.base);
+    for (const auto& [link, mesh] : links_) out->add_link(0, link, mesh);
+    for (const world::AllowedPair& pair : model_.allowed)
+      if (pair.reason == world::AllowedPair::Reason::Stated)
+        out->allow(model_.name + "/" + model_.kinematics.links[pair.a].name,
+                   model_.name + "/" + model_.kinematics.links[pair.b].name);
+    state = {{model_.home}, {}};
+    for (const world::Object& object : world.objects) {
+      out->add_object(object.name, mesh_of(*object.primitive));
+      state.objects.push_back({object.pose, {}, false});
+    }
+    return out;
+  }
+
+ private:
+  const world::RobotModel& model_;
+  std::vector<std::pair<std::uint32_t, geom::Mesh>> links_;
+};
+
+int judge_paths(char** argv) {
   const world::SceneFile scene = world::read_scene(argv[2]);
-  const robot::RobotFile file = robot::read_robot(argv[3]);
-  robot::MeshFiles files(file.path, {});
   const std::vector<json> problems = read_lines(argv[4]), paths = read_lines(argv[5]);
   std::ofstream out(argv[6]);
   const double step = std::atof(argv[7]);
-  const world::RobotModel& model = scene.world.robots[0];
-  std::vector<std::pair<std::uint32_t, geom::Mesh>> links;
-  for (const world::LinkShape& shape : model.shapes)
-    links.emplace_back(shape.link, mesh_of_link(file.robot.links[shape.link], files));
+  const JudgedRobot robot(scene.world.robots[0], argv[3]);
   std::unique_ptr<judge::Cell> cell;
   judge::CellState state;
   json objects;
   for (std::size_t i = 0; i < problems.size(); ++i) {
     if (!cell || objects != problems[i]["objects"]) {
       objects = problems[i]["objects"];
-      cell = std::make_unique<judge::Cell>();
-      cell->add_robot(model.name, model.kinematics, model.base);
-      for (const auto& [link, mesh] : links) cell->add_link(0, link, mesh);
-      for (const world::AllowedPair& pair : model.allowed)
-        if (pair.reason == world::AllowedPair::Reason::Stated)
-          cell->allow(model.name + "/" + model.kinematics.links[pair.a].name,
-                      model.name + "/" + model.kinematics.links[pair.b].name);
-      state = {{model.home}, {}};
-      const world::World all = with_objects(scene.world, objects);
-      for (const world::Object& object : all.objects) {
-        cell->add_object(object.name, mesh_of(*object.primitive));
-        state.objects.push_back({object.pose, {}, false});
-      }
+      cell = robot.cell(with_objects(scene.world, objects), state);
     }
     const Verdict v = judge(*cell, state, paths[i].get<robot::Path>(), step);
     out << json{{"samples", v.samples}, {"contacts", v.contacts}, {"pairs", v.pairs}} << '\n';
@@ -231,16 +255,205 @@ int judge_paths(int argc, char** argv) {
   return 0;
 }
 
+/// Rows of values, one after the other.
+class JudgedBatches {
+ public:
+  JudgedBatches(const world::World& world, const judge::Cell& cell, judge::CellState state,
+                std::uint64_t seed)
+      : variables_(world.robots[0].kinematics.variables),
+        checker_(world),
+        batch_(checker_, initial_state(world), 0, {}),
+        cell_(cell),
+        state_(std::move(state)),
+        random_(seed) {}
+
+  void run(std::size_t configurations, std::size_t motions) {
+    constexpr std::size_t kAtOnce = 20'000;
+    std::size_t left = motions;
+    for (std::size_t done = 0; done < configurations;) {
+      const std::size_t count = std::min(kAtOnce, configurations - done);
+      const Values rows = drawn(count / 2), near = halved(count - count / 2);
+      judge_rows(rows, drawn_);
+      const Values free = judge_rows(near, near_);
+      done += count;
+      const std::size_t share =
+          done < configurations ? std::min(left, motions * count / configurations) : left;
+      left -= judge_motions(free, share);
+    }
+    while (left > 0) left -= std::min(left, judge_motions(halved(2000), left));
+  }
+
+  json said() const {
+    const auto counts = [](const Counts& c) {
+      return json{{"configurations", c.rows},
+                  {"free", c.free},
+                  {"missed", c.missed},
+                  {"not free, sampled", c.other},
+                  {"of these in contact", c.other_in_contact}};
+    };
+    return {{"drawn", counts(drawn_)},
+            {"near contact", counts(near_)},
+            {"motions",
+             {{"asked", asked_},
+              {"free", free_motions_},
+              {"samples", samples_},
+              {"samples of pairs looked at", looked_},
+              {"missed", missed_motions_}}}};
+  }
+  [[nodiscard]] std::size_t missed() const {
+    return drawn_.missed + near_.missed + missed_motions_;
+  }
+
+ private:
+  struct Counts {
+    std::size_t rows = 0, free = 0, missed = 0, other = 0, other_in_contact = 0;
+  };
+
+  [[nodiscard]] std::size_t width() const { return variables_.size(); }
+
+  double from(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  Values drawn(std::size_t count) {
+    Values out;
+    for (std::size_t i = 0; i < count; ++i)
+      for (const robot::Variable& v : variables_)
+        out.push_back(from(v.lower.value_or(-3.0), v.upper.value_or(3.0)));
+    return out;
+  }
+
+  std::vector<std::uint8_t> decided(const Values& rows) {
+    std::vector<std::uint8_t> out(rows.size() / width());
+    batch_.decide(rows, out);
+    return out;
+  }
+
+  /// Rows between a free one and one that is not, halved some times: the free end, mostly.
+  Values halved(std::size_t count) {
+    const Values rows = drawn(4 * count);
+    const std::vector<std::uint8_t> are_free = decided(rows);
+    Values free, other;
+    for (std::size_t i = 0; i < are_free.size(); ++i) {
+      Values& to = are_free[i] != 0 ? free : other;
+      to.insert(to.end(), rows.begin() + static_cast<std::ptrdiff_t>(i * width()),
+                rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * width()));
+    }
+    const std::size_t size = std::min({free.size(), other.size(), count * width()});
+    free.resize(size);
+    other.resize(size);
+    const auto halvings = 6 + random_() % 14;
+    for (std::size_t k = 0; k < halvings; ++k) {
+      Values middle(size);
+      for (std::size_t i = 0; i < size; ++i) middle[i] = 0.5 * (free[i] + other[i]);
+      const std::vector<std::uint8_t> is_free = decided(middle);
+      for (std::size_t i = 0; i < size; ++i)
+        (is_free[i / width()] != 0 ? free : other)[i] = middle[i];
+    }
+    return free;
+  }
+
+  void place(const double* row) { state_.q[0].assign(row, row + width()); }
+
+  void report(const char* what, const judge::Meeting& meeting) {
+    std::cout << what << ": " << meeting.names[0] << " and " << meeting.names[1] << " at";
+    for (const double x : state_.q[0]) std::cout << ' ' << std::hexfloat << x << std::defaultfloat;
+    std::cout << '\n';
+  }
+
+  /// @return the rows that are free
+  Values judge_rows(const Values& rows, Counts& counts) {
+    const std::vector<std::uint8_t> free = decided(rows);
+    Values out;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const double* row = rows.data() + i * width();
+      ++counts.rows;
+      counts.free += free[i] != 0 ? 1U : 0U;
+      if (free[i] == 0 && random_() % 64 != 0) continue;
+      place(row);
+      const auto meeting = cell_.find_meeting(state_);
+      if (free[i] == 0) {
+        ++counts.other;
+        counts.other_in_contact += meeting ? 1U : 0U;
+        continue;
+      }
+      out.insert(out.end(), row, row + width());
+      if (meeting && counts.missed++ < 5) report("a configuration that is called free", *meeting);
+    }
+    return out;
+  }
+
+  /// @return how many were called free and judged, no more than `most`
+  std::size_t judge_motions(const Values& starts, std::size_t most) {
+    Values goals = starts;
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      const robot::Variable& v = variables_[i % width()];
+      goals[i] =
+          std::clamp(goals[i] + from(-0.5, 0.5), v.lower.value_or(-3.0), v.upper.value_or(3.0));
+    }
+    const std::size_t count = std::min(starts.size() / width(), 4 * most);
+    const std::span<const double> from_rows(starts.data(), count * width());
+    const std::span<const double> to_rows(goals.data(), count * width());
+    std::vector<std::uint8_t> free(count);
+    batch_.decide_motions(from_rows, to_rows, free, {});
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < count && out < most; ++i) {
+      ++asked_;
+      if (free[i] == 0) continue;
+      ++out;
+      judge_motion(starts.data() + i * width(), goals.data() + i * width());
+    }
+    free_motions_ += out;
+    return out;
+  }
+
+  void judge_motion(const double* start, const double* goal) {
+    constexpr double kRate = 10'000;
+    double most = 0;
+    for (std::size_t k = 0; k < width(); ++k) most = std::max(most, std::abs(goal[k] - start[k]));
+    const auto samples = static_cast<std::size_t>(std::ceil(kRate * most));
+    if (samples == 0) return;
+    samples_ += samples + 1;
+    place(start);
+    judge::CellState end = state_;
+    end.q[0].assign(goal, goal + width());
+    const auto meeting = cell_.find_meeting_on(state_, end, 0, samples, looked_);
+    if (meeting && missed_motions_++ < 5) report("a motion that is called free", *meeting);
+  }
+
+  const std::vector<robot::Variable>& variables_;
+  world::Checker checker_;
+  filter::BatchChecker batch_;
+  const judge::Cell& cell_;
+  judge::CellState state_;
+  std::mt19937_64 random_;
+  Counts drawn_, near_;
+  std::size_t asked_ = 0, free_motions_ = 0, samples_ = 0, looked_ = 0, missed_motions_ = 0;
+};
+
+int judge_batches(char** argv) {
+  const world::SceneFile scene = world::read_scene(argv[2]);
+  const world::World all = with_objects(scene.world, read_lines(argv[4]).at(0));
+  judge::CellState state;
+  const JudgedRobot robot(scene.world.robots[0], argv[3]);
+  const std::unique_ptr<judge::Cell> cell = robot.cell(all, state);
+  JudgedBatches batches(all, *cell, state, std::strtoull(argv[7], nullptr, 10));
+  batches.run(std::strtoull(argv[5], nullptr, 10), std::strtoull(argv[6], nullptr, 10));
+  std::cout << batches.said() << '\n';
+  return batches.missed() == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     if (argc >= 5 && std::string(argv[1]) == "plan") return plan(argc, argv);
-    if (argc >= 8 && std::string(argv[1]) == "judge") return judge_paths(argc, argv);
+    if (argc >= 8 && std::string(argv[1]) == "judge") return judge_paths(argv);
+    if (argc >= 8 && std::string(argv[1]) == "batches") return judge_batches(argv);
   } catch (const std::exception& error) {
     std::cerr << "path-query-benchmark: " << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: path-query-benchmark plan|judge ...\n";
+  std::cerr << "usage: path-query-benchmark plan|judge|batches ...\n";
   return 2;
 }

@@ -427,7 +427,7 @@ class BodySearch {
         const double radius = least + share * epsilon_;
         const auto found = capsule_round(points, cylinder, radius, spare_);
         if (!found) continue;
-        const auto one = capsule(found->from, found->to, radius);
+        auto one = capsule(found->from, found->to, radius);
         // What is far outside meets no cap, either.
         const Vec3 middle = 0.5 * (found->from + found->to);
         if (one && body_->signed_distance(middle).upper < epsilon_) return one;
@@ -803,9 +803,9 @@ class BodySearch {
     std::vector<std::vector<Vec3>> found(all_cubes);
     kaboum::parallel_for(std::size_t{0}, all_cubes,
                          [&](std::size_t i) {
-                           const Vec3 at(static_cast<double>(i % across),
-                                         static_cast<double>(i / across % deep),
-                                         static_cast<double>(i / across / deep));
+                           const std::size_t y = i / across % deep, z = i / across / deep;
+                           const Vec3 at(static_cast<double>(i % across), static_cast<double>(y),
+                                         static_cast<double>(z));
                            std::vector<const SimpleBody*> near;
                            near.reserve(bodies.size());
                            for (const Written& one : bodies) near.push_back(&one.body);

@@ -5,6 +5,9 @@
 #include <kaboum/judge/placement.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace kaboum::judge {
 namespace {
@@ -159,6 +162,98 @@ std::optional<Meeting> Cell::find_meeting(const CellState& state, std::size_t ro
     return robot == kNone ? a.mover != kNone || b.mover != kNone
                           : a.mover == robot || b.mover == robot;
   });
+}
+
+std::vector<std::uint32_t> Cell::to_root(const robot::Robot& robot, std::uint32_t link) {
+  std::vector<std::uint32_t> out;
+  for (; link > 0; link = robot.joints[link - 1].parent) out.push_back(link);
+  return out;
+}
+
+double Cell::approach(const PosedThing& a, const PosedThing& b, std::size_t robot,
+                      const std::vector<double>& change) const {
+  const robot::Robot& kinematics = robots_[robot].kinematics;
+  const auto chain = [&](const PosedThing& p) -> std::vector<std::uint32_t> {
+    if (p.mover != robot) return {};
+    return to_root(kinematics,
+                   p.hold != nullptr ? p.hold->link : static_cast<std::uint32_t>(p.thing->index));
+  };
+  const std::vector<std::uint32_t> from_a = chain(a), from_b = chain(b);
+  double out = 0;
+  for (const auto& [p, own, other] :
+       {std::tuple{&a, &from_a, &from_b}, std::tuple{&b, &from_b, &from_a}}) {
+    // From the frame of the link to the farthest point.
+    double reach =
+        p->thing->radius +
+        (p->hold != nullptr ? p->hold->pose * p->thing->center : p->thing->center).norm();
+    for (const std::uint32_t link : *own) {
+      // Of joints above both, both follow.
+      if (std::ranges::find(*other, link) != other->end()) break;
+      const robot::Joint& joint = kinematics.joints[link - 1];
+      const double moved = joint.type == robot::JointType::Fixed
+                               ? 0
+                               : std::abs(joint.multiplier * change[joint.variable]);
+      out += moved * (joint.type == robot::JointType::Revolute ? reach : 1);
+      reach += joint.origin.translation.norm();
+      if (joint.type != robot::JointType::Prismatic) continue;
+      const robot::Variable& v = kinematics.variables[joint.variable];
+      constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+      reach += std::abs(joint.offset) +
+               std::abs(joint.multiplier) * std::max(std::abs(v.lower.value_or(kAnywhere)),
+                                                     std::abs(v.upper.value_or(kAnywhere)));
+    }
+  }
+  return out;
+}
+
+std::optional<Meeting> Cell::find_meeting_on(const CellState& from, const CellState& to,
+                                             std::size_t robot, std::size_t samples,
+                                             std::size_t& looked) const {
+  const std::vector<double>&begin = from.q[robot], &end = to.q[robot];
+  std::vector<double> change(begin.size());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = end[i] - begin[i];
+  std::vector<std::vector<PosedThing>> placed(samples + 1);
+  const auto at = [&](std::size_t k) -> const std::vector<PosedThing>& {
+    if (!placed[k].empty()) return placed[k];
+    CellState state = from;
+    const double share =
+        static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(samples, 1));
+    for (std::size_t i = 0; i < change.size(); ++i)
+      state.q[robot][i] = begin[i] + share * change[i];
+    return placed[k] = place(state);
+  };
+  // How far two things are apart, at least.
+  const auto apart = [](const PosedThing& a, const PosedThing& b, double least) {
+    constexpr double kBelow = 0.4;
+    const double balls = (a.center - b.center).norm() - a.thing->radius - b.thing->radius;
+    double reach = std::max(balls, 0.5);
+    if (balls >= reach) return balls;
+    while (reach > least && a.thing->solid->is_within(a.at, *b.thing->solid, b.at, reach))
+      reach *= kBelow;
+    return reach > least ? reach : 0.0;
+  };
+  const std::vector<PosedThing>& first = at(0);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = i + 1; j < first.size(); ++j) {
+      if (first[i].mover != robot && first[j].mover != robot) continue;
+      if (!is_looked_at(first[i], first[j])) continue;
+      const double way = kLarger * approach(first[i], first[j], robot, change) /
+                         static_cast<double>(std::max<std::size_t>(samples, 1));
+      for (std::size_t k = 0;;) {
+        const PosedThing &a = at(k)[i], &b = at(k)[j];
+        ++looked;
+        const double reach = a.thing->radius + b.thing->radius;
+        if ((a.center - b.center).squaredNorm() <= reach * reach &&
+            a.thing->solid->meets(a.at, *b.thing->solid, b.at))
+          return Meeting{{a.thing->name, b.thing->name}};
+        if (k == samples) break;
+        const double steps =
+            way > 0 ? std::floor(apart(a, b, way) / way) : static_cast<double>(samples);
+        k = steps < static_cast<double>(samples - k) ? k + static_cast<std::size_t>(steps) + 1
+                                                     : samples;
+      }
+    }
+  return std::nullopt;
 }
 
 double Cell::displacement(const CellState& from, const CellState& to, std::size_t robot) const {

@@ -84,6 +84,24 @@ double square_between(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
   return best;
 }
 
+/// Whether boxes round triangles, or the plane of one, show that they are farther apart.
+bool are_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double reach) {
+  const auto low = [](const std::array<Vec3, 3>& t) { return t[0].cwiseMin(t[1]).cwiseMin(t[2]); };
+  const auto high = [](const std::array<Vec3, 3>& t) { return t[0].cwiseMax(t[1]).cwiseMax(t[2]); };
+  const Vec3 gap = (low(a) - high(b)).cwiseMax(low(b) - high(a)).cwiseMax(0.0);
+  if (gap.squaredNorm() > reach * reach) return true;
+  for (const auto& [t, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    const Vec3 n = ((*t)[1] - (*t)[0]).cross((*t)[2] - (*t)[0]);
+    const double most = reach * n.norm();
+    std::array<double, 3> height{};
+    for (std::size_t i = 0; i < 3; ++i) height[i] = n.dot((*other)[i] - (*t)[0]);
+    if (std::ranges::all_of(height, [&](double h) { return h > most; }) ||
+        std::ranges::all_of(height, [&](double h) { return h < -most; }))
+      return true;
+  }
+  return false;
+}
+
 std::array<Vec3, 3> placed(const Transform& at, const std::array<Vec3, 3>& t) {
   return {at * t[0], at * t[1], at * t[2]};
 }
@@ -280,8 +298,10 @@ bool Solid::is_within(const Transform& at, const Solid& other, const Transform& 
   const Pair pair(*this, at, other, other_at);
   return pair.apart(nodes_[0], other.nodes_[0]) <= reach &&
          pair.visit(0, 0, reach, [&](std::uint32_t i, std::uint32_t j) {
-           return square_between(placed(at, corners(i)), placed(other_at, other.corners(j))) <=
-                  reach * reach;
+           const Corners first = placed(at, corners(i));
+           const Corners second = placed(other_at, other.corners(j));
+           return !are_beyond(first, second, reach) &&
+                  square_between(first, second) <= reach * reach;
          });
 }
 

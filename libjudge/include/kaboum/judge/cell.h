@@ -58,6 +58,15 @@ class Cell {
   /// @pre the state has as many robots, values and objects as the cell.
   [[nodiscard]] std::optional<Meeting> find_meeting(const CellState& state,
                                                     std::size_t robot = kNone) const;
+  /// A pair that meets at a sample of a robot's straight motion in joint space: its start, and so
+  /// many, equally far apart, to its end. Of each pair, samples are left out that the distance of
+  /// its triangles at one before shows to be free: points move no farther than all turns of the
+  /// joints between the two allow, at the most that links reach.
+  /// @param looked  is added to: samples of pairs that were looked at
+  /// @pre the states differ in the robot's values only
+  [[nodiscard]] std::optional<Meeting> find_meeting_on(const CellState& from, const CellState& to,
+                                                       std::size_t robot, std::size_t samples,
+                                                       std::size_t& looked) const;
   /// The first of a rest of objects with everything that does not hold it.
   [[nodiscard]] std::optional<Meeting> find_meeting_of(const CellState& state,
                                                        std::size_t object) const;
@@ -104,6 +113,13 @@ class Cell {
   };
 
   void add(Thing thing, const geom::Mesh& mesh);
+  /// The links from one to the root, without the root.
+  [[nodiscard]] static std::vector<std::uint32_t> to_root(const robot::Robot& robot,
+                                                          std::uint32_t link);
+  /// How far points of two things come nearer while a robot's values change so, at most: an upper
+  /// bound. [length]
+  [[nodiscard]] double approach(const PosedThing& a, const PosedThing& b, std::size_t robot,
+                                const std::vector<double>& change) const;
   [[nodiscard]] std::vector<PosedThing> place(const CellState& state) const;
   [[nodiscard]] bool is_looked_at(const PosedThing& a, const PosedThing& b) const;
   [[nodiscard]] bool connected(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) const;
