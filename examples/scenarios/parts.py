@@ -96,7 +96,10 @@ def rounded(low, high, radius, top=None):
     return revolve(profile + [(0.0, high)])
 
 
-def bottle(height=0.16, radius=0.03, neck=0.012):
+NECK = 0.012  # radius of a bottle's neck [m]
+
+
+def bottle(height=0.16, radius=0.03, neck=NECK):
     """Standing on z = 0; the neck's top at z = height."""
     shoulder = 0.6 * height
     profile = [(0, 0), (radius - 0.003, 0), (radius, 0.003), (radius, shoulder)]
@@ -142,6 +145,27 @@ def gripper(kind):
     raise ValueError(kind)
 
 
+# A gripper whose fingers move: two, along x of the hand, by one joint `finger`; its value is how far each pad is from the middle.
+OPEN = 0.018   # of the fingers [m]
+FORCE = 60     # with which a finger closes at most [N]
+FINGERS = {"name": "fingers", "tool": "hand", "pads": ["pad_left", "pad_right"], "joints": ["finger"], "force": FORCE}
+
+
+def fingers():
+    """Boxes of the hand; further links and joints of the two fingers; where the tool is along z of the hand."""
+    hand = [((0.09, 0.03, 0.02), (0, 0, 0.07))]
+    links, joints = {}, []
+    for side, s in (("left", 1), ("right", -1)):
+        links[f"finger_{side}"] = boxes_urdf([((0.008, 0.02, 0.068), (s * 0.010, 0, 0.116))])
+        links[f"pad_{side}"] = boxes_urdf([((0.006, 0.02, 0.03), (s * 0.003, 0, 0.135))])
+        mimic = '<mimic joint="finger"/>' if side == "right" else ""
+        joints.append(f'<joint name="finger{"" if side == "left" else "_right"}" type="prismatic"><parent link="hand"/>'
+                      f'<child link="finger_{side}"/><axis xyz="{s} 0 0"/>'
+                      f'<limit lower="0.004" upper="0.025" velocity="0.1" effort="{FORCE}"/>{mimic}</joint>'
+                      f'<joint name="pad_{side}" type="fixed"><parent link="finger_{side}"/><child link="pad_{side}"/></joint>')
+    return hand, links, "".join(joints), 0.135
+
+
 def pushing_sides():
     """Planes of the flat gripper's link `hand` that push: the outer sides of its fingers, near their tips."""
     return [{"name": f"push{k}", "link": "hand", "plane": {"point": [s * 0.028, 0, 0.157], "normal": [s, 0, 0]}} for k, s in enumerate((1, -1))]
@@ -164,13 +188,18 @@ def arm6(prefix, hand, reach=1.0):
         "forearm": ((0.02, 0.22 * r, 0.03, 0.025), 0.03, 0.03 * r + 0.02),
         "wrist": ((0.0, 0.05, 0.022), 0.02, 0.02),
     })
-    boxes, tool = gripper(hand)
+    more, moving = {}, ""
+    if hand == "fingers":
+        boxes, more, moving, tool = fingers()
+    else:
+        boxes, tool = gripper(hand)
     links = {name: mesh_urdf(f"{prefix}-{name}.off") for name in meshes}
     links["hand"] = boxes_urdf(boxes)
+    links.update(more)
     joints = [("j1", "base", "shoulder", 0.35, (0, 0, 1), 2.9), ("j2", "shoulder", "upper_arm", 0, (0, 1, 0), 2.2),
               ("j3", "upper_arm", "elbow", 0.5 * r, (0, 1, 0), 2.7), ("j4", "elbow", "forearm", 0.2 * r, (0, 0, 1), 3.1),
               ("j5", "forearm", "wrist", 0.25 * r, (0, 1, 0), 2.3), ("j6", "wrist", "hand", 0, (0, 0, 1), 3.1)]
-    return urdf(prefix, links, joints), {f"{prefix}-{n}.off": m for n, m in meshes.items()}, tool
+    return urdf(prefix, links, joints, moving), {f"{prefix}-{n}.off": m for n, m in meshes.items()}, tool
 
 
 def arm5(prefix, hand):
@@ -191,9 +220,9 @@ def arm5(prefix, hand):
     return urdf(prefix, links, joints), {f"{prefix}-{n}.off": m for n, m in meshes.items()}, tool
 
 
-def urdf(name, links, joints):
+def urdf(name, links, joints, more=""):
     text = f'<robot name="{name}">' + "".join(f'<link name="{n}">{shape}</link>' for n, shape in links.items())
     for joint, parent, child, z, axis, limit in joints:
         text += (f'<joint name="{joint}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="0 0 {z}"/>'
                  f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/><limit lower="-{limit}" upper="{limit}" velocity="2" effort="1"/></joint>')
-    return text + "</robot>\n"
+    return text + more + "</robot>\n"

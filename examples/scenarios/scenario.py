@@ -37,12 +37,12 @@ class Cell:
         self.epsilon = epsilon
         self.allowed, self.regions, self.constraints = [], [], []
 
-    def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand", features=()):
+    def robot(self, name, made, home, base=(0, 0, 0), yaw=0.0, tool_name="hand", features=(), grippers=()):
         urdf, meshes, along = made
         self.meshes.update({file: mesh.off() for file, mesh in meshes.items()})
         self.meshes[f"{name}.urdf"] = urdf
         self.robots[name] = {"base": {"position": list(base), "rpy": [0, 0, yaw]}, "home": home,
-                             "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}], "features": list(features)}
+                             "tools": [{"name": tool_name, "link": "hand", "position": [0, 0, along]}], "features": list(features), "grippers": list(grippers)}
 
     def real_robot(self, name, file, tool, home, base=(0, 0, 0), yaw=0.0):
         """Of a URDF elsewhere; `tool`: as in a scene."""
@@ -152,6 +152,10 @@ action move(?r : robot)
 
 def add_move(parser):
     parser.add_argument("--move", action="store_true", help="with the action move, to random waypoints (thesis, Table 6.1)")
+
+
+def add_fingers(parser):
+    parser.add_argument("--fingers", action="store_true", help="two fingers that close and hold by friction, not a hand that stays as it is")
 
 
 def domain_of(o, name):

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "finger_motion.h"
 #include "node_events.h"
 #include "node_motions.h"
 #include "simulation_state.h"
@@ -179,11 +180,17 @@ class Drive {
     const std::vector<MotionPart>& parts = done_.back().motions->of(node, known);
     require_joined(parts, action);
     for (const NodeEvent& event : motion_events(parts, held_)) {
-      if (event.kind != NodeEvent::Kind::Move) {
+      if (event.kind != NodeEvent::Kind::Move && !event.moves_fingers) {
         hold(event);
         continue;
       }
       const MotionPart& part = parts[event.motion];
+      if (event.moves_fingers) {
+        done_.back().executed[node].emplace_back();  // it does not say how fingers moved
+        hold(event, finger_motion_of(part, world_));
+        q_[part.robot] = part.path.back();
+        continue;
+      }
       const ToldMotion& motion = told(done_.back(), part);
       driver_.move(part.robot, motion.trajectory, motion.text,
                    done_.back().executed[node].emplace_back());
@@ -209,15 +216,15 @@ class Drive {
     for (const NodeEvent& event : settling_events(*end_, held_)) hold(event);
   }
 
-  void hold(const NodeEvent& event) {
+  void hold(const NodeEvent& event, const FingerMotion& fingers = {}) {
     if (event.other_link)
       throw DriverStop(Kind::Uncertified, world_.objects[event.object].name +
                                               " goes from one link to another of " +
                                               world_.robots[event.by.robot].name);
     if (event.kind == NodeEvent::Kind::Take)
-      driver_.take(event.object, event.by.robot, event.by.link);
+      driver_.take(event.object, event.by.robot, event.by.link, fingers);
     else
-      driver_.release(event.object, event.by.robot);
+      driver_.release(event.object, event.by.robot, fingers);
   }
 
   const world::World& world_;

@@ -4,10 +4,13 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/world/gripper.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "finger_motion.h"
 
 namespace kaboum::execution {
 namespace {
@@ -28,15 +31,39 @@ MotionPart part_of(const json& motion, const world::World& world) {
   for (const robot::Path::value_type& q : part.path)
     if (q.size() != kinematics.variables.size())
       throw Error(ErrorCode::InvalidInput, "a path of the plan does not fit its robot");
-  if (!motion.contains("holds")) return part;
-  for (const auto& [name, link] : motion.at("holds").items()) {
+  const auto object_of = [&](const std::string& name) {
     const auto object = world.find_object(name);
-    const auto number = kinematics.find_link(link.get<std::string>());
-    if (!object || !number)
+    if (!object)
+      throw Error(ErrorCode::InvalidInput, "a path of the plan is about the object '" + name +
+                                               "', which the scene does not have");
+    return *object;
+  };
+  if (motion.contains("closes")) part.closes = object_of(motion.at("closes").get<std::string>());
+  if (motion.contains("opens")) part.opens = object_of(motion.at("opens").get<std::string>());
+  if (motion.contains("grasps"))
+    for (const auto& [name, grasp] : motion.at("grasps").items())
+      part.grasps[object_of(name)] = grasp.get<std::string>();
+  if (motion.contains("holds"))
+    for (const auto& [name, link] : motion.at("holds").items()) {
+      const auto object = world.find_object(name);
+      const auto number = kinematics.find_link(link.get<std::string>());
+      if (!object || !number)
+        throw Error(ErrorCode::InvalidInput,
+                    "a path of the plan holds '" + name + "', which the scene does not have");
+      part.holds[*object] = *number;
+    }
+  const auto require_held = [&](std::size_t object, bool is_held, const char* how) {
+    if (!is_held)
       throw Error(ErrorCode::InvalidInput,
-                  "a path of the plan holds '" + name + "', which the scene does not have");
-    part.holds[*object] = *number;
-  }
+                  "a path of the plan does not hold '" + world.objects[object].name + "', " + how);
+  };
+  for (const auto& [object, grasp] : part.grasps)
+    require_held(object, part.holds.contains(object), "of which it states a grasp");
+  if (part.moves_fingers() && part.path.empty())
+    throw Error(ErrorCode::InvalidInput, "a path of the plan, of fingers, has no points");
+  for (const auto& about : {part.closes, part.opens})
+    if (about)
+      require_held(*about, part.grasps.contains(*about), "which fingers close on or open from");
   return part;
 }
 
@@ -61,6 +88,58 @@ std::vector<MotionPart> parts_of(const std::string& payload, const world::World&
     }
   }
   return out;
+}
+
+world::Attachment hold_of(const MotionPart& part, const world::World& world, std::size_t object,
+                          const geom::Transform& pose) {
+  const std::uint32_t link = part.holds.at(object);
+  const world::RobotModel& robot = world.robots[part.robot];
+  const auto named = part.grasps.find(object);
+  if (named != part.grasps.end()) {
+    for (const world::Grasp& grasp : world.objects[object].grasps)
+      if (const world::Gripper* gripper = gripper_with_pads(robot, link);
+          grasp.name == named->second && gripper != nullptr && !find_misfit(robot, *gripper, grasp))
+        return hold_by(world, part.robot, link, pose, grasp);
+    throw Error(ErrorCode::InvalidInput, "a path of the plan holds '" + world.objects[object].name +
+                                             "' by the grasp '" + named->second +
+                                             "', which pads of '" + robot.name + "' do not");
+  }
+  world::Attachment out;
+  if (gripper_with_pads(robot, link) == nullptr)
+    return hold_by(world, part.robot, link, pose, world::Grasp{});
+  out.robot = part.robot;
+  out.link = link;
+  out.pose = pose;
+  // Pushed by the link; or mounted on what pads hold, which do not touch it.
+  out.link_touches = std::ranges::none_of(
+      part.grasps, [&](const auto& other) { return part.holds.at(other.first) == link; });
+  return out;
+}
+
+judge::Hold judged(const world::Attachment& held) {
+  return {held.robot, held.link, held.pose, held.touching, held.link_touches};
+}
+
+FingerMotion finger_motion_of(const MotionPart& part, const world::World& world) {
+  const world::RobotModel& robot = world.robots[part.robot];
+  const world::Attachment held = hold_of(part, world, part.closes ? *part.closes : *part.opens, {});
+  const world::Gripper& gripper = *gripper_with_pads(robot, held.link);
+  FingerMotion out{gripper.name, {}, gripper.joints, {}, {}, 0, {}, gripper.force};
+  for (const world::FingerValue& finger : held.fingers) {
+    out.joint_names.push_back(robot.kinematics.variables[finger.variable].name);
+    out.from.push_back(part.path.front()[finger.variable]);
+    out.to.push_back(part.path.back()[finger.variable]);
+    out.within = std::max(out.within, finger.within);
+  }
+  for (const std::uint32_t pad : held.touching)
+    out.pads.push_back(robot.kinematics.links[pad].name);
+  return out;
+}
+
+std::vector<double> finger_room_of(const MotionPart& part, const world::World& world) {
+  std::vector<std::optional<world::Attachment>> held(world.objects.size());
+  for (const auto& [object, link] : part.holds) held[object] = hold_of(part, world, object, {});
+  return finger_room(world, part.robot, held);
 }
 
 namespace {

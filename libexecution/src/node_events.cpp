@@ -2,6 +2,8 @@
 
 #include "node_events.h"
 
+#include <kaboum/base/error.h>
+
 #include <optional>
 
 namespace kaboum::execution {
@@ -25,6 +27,17 @@ class Events {
       held_[object] = *by;
     else
       held_.erase(object);
+  }
+
+  /// Likewise, while fingers close on it or open from it.
+  void hold(std::size_t object, std::optional<Holder> by, std::size_t fingers) {
+    const std::size_t before = out.size();
+    hold(object, by);
+    if (out.size() == before)
+      throw Error(ErrorCode::InvalidInput,
+                  "fingers of the plan close on what is held, or open from what is not");
+    out[before].motion = fingers;
+    out[before].moves_fingers = true;
   }
 
   std::vector<NodeEvent> out;
@@ -56,11 +69,21 @@ std::vector<NodeEvent> motion_events(const std::vector<MotionPart>& parts, Held&
   Events events(held);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const MotionPart& part = parts[i];
+    if (part.opens) {
+      // What else the gripper holds, mounted on it, is let go before.
+      const Holder by{part.robot, part.holds.at(*part.opens)};
+      for (const auto& [object, link] : part.holds)
+        if (object != *part.opens && link == by.link) events.hold(object, std::nullopt);
+      events.hold(*part.opens, std::nullopt, i);
+      continue;
+    }
     std::vector<std::size_t> let_go;
     for (const auto& [object, by] : held)
       if (by.robot == part.robot && !part.holds.contains(object)) let_go.push_back(object);
     for (const std::size_t object : let_go) events.hold(object, next_holder(parts, i, object));
+    if (part.closes) events.hold(*part.closes, Holder{part.robot, part.holds.at(*part.closes)}, i);
     for (const auto& [object, link] : part.holds) events.hold(object, Holder{part.robot, link});
+    if (part.closes) continue;
     events.out.push_back({NodeEvent::Kind::Move, i});
   }
   return std::move(events.out);

@@ -24,10 +24,13 @@ Held held_in(const judge::CellState& state);
 struct NodeEvent {
   enum class Kind : std::uint8_t { Move, Take, Release };
   Kind kind = Kind::Move;
-  std::size_t motion = 0;   ///< of Move: its number among the node's
-  std::size_t object = 0;   ///< of Take and Release
-  Holder by = {};           ///< likewise
-  bool other_link = false;  ///< of Take: another link of the same robot holds it
+  /// Of Move: its number among the node's; of Take and Release where fingers close or open, that of
+  /// their motion.
+  std::size_t motion = 0;
+  std::size_t object = 0;      ///< of Take and Release
+  Holder by = {};              ///< likewise
+  bool other_link = false;     ///< of Take: another link of the same robot holds it
+  bool moves_fingers = false;  ///< of Take and Release: `motion` closes or opens the gripper
 };
 
 /// The motions of a node, and what is taken and let go before each. What is handed over is taken

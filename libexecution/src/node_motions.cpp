@@ -24,7 +24,8 @@ world::WorldState world_state(const judge::CellState& state) {
     out.poses.push_back(place.pose);
     out.attachments.emplace_back();
     if (const auto& hold = place.hold)
-      out.attachments.back() = {hold->robot, hold->link, hold->pose, hold->touching};
+      out.attachments.back() = {hold->robot, hold->link, hold->pose, hold->touching,
+                                hold->link_touches};
     out.absent.push_back(place.away);
   }
   return out;
@@ -51,11 +52,11 @@ void hold(const world::World& world, world::WorldState& state, const MotionPart&
       state.poses[o] = manipulation::place_of(manipulation::word_of(pose), world, o).pose;
       continue;
     }
-    world::Attachment now;
-    now.robot = part.robot;
-    now.link = wanted->second;
-    now.pose = inverse(pose_of_link(world, state, part.robot, now.link)) * pose;
-    held = manipulation::place_of(manipulation::word_of(world, now), world, o).attachment;
+    const world::Attachment now = hold_of(
+        part, world, o, inverse(pose_of_link(world, state, part.robot, wanted->second)) * pose);
+    // Rounded as the word has it.
+    held = now;
+    held->pose = manipulation::place_of(manipulation::word_of(now.pose), world, o).pose;
   }
 }
 
@@ -64,8 +65,8 @@ std::vector<MotionPart> joined(std::vector<MotionPart> parts) {
   std::vector<MotionPart> out;
   for (MotionPart& part : parts) {
     if (!out.empty() && out.back().robot == part.robot && out.back().holds == part.holds &&
-        !out.back().path.empty() && !part.path.empty() &&
-        out.back().path.back() == part.path.front())
+        !out.back().moves_fingers() && !part.moves_fingers() && !out.back().path.empty() &&
+        !part.path.empty() && out.back().path.back() == part.path.front())
       out.back().path.insert(out.back().path.end(), part.path.begin() + 1, part.path.end());
     else
       out.push_back(std::move(part));
@@ -122,7 +123,8 @@ void NodeMotions::blend(MotionPart& part, const world::WorldState& state,
                                                    call.arguments);
   const std::vector<double> asked(part.path.size(), kept ? options_.motion.blend : 0);
   part.blends = motion::certified_blends(
-      {*checker_, state, part.robot, kept ? *kept : std::vector<motion::PathConstraint>()},
+      {*checker_, state, part.robot, kept ? *kept : std::vector<motion::PathConstraint>(),
+       finger_room_of(part, world_)},
       part.path, limits_of(options_, world_, part.robot), asked, options_.motion.rate, kResolution);
 }
 

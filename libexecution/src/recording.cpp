@@ -169,8 +169,7 @@ std::string Recording::json(const std::vector<world::ExactMesh>& exact) const {
     judge::CellState state{first.q, {}};
     for (std::size_t o = 0; o < world_.objects.size(); ++o) {
       state.objects.push_back({first.poses[o], std::nullopt, false});
-      if (const auto& a = first.attachments[o])
-        state.objects.back().hold = {a->robot, a->link, a->pose, a->touching};
+      if (const auto& a = first.attachments[o]) state.objects.back().hold = judged(*a);
     }
     out["states"].push_back(state_json(state));
   }

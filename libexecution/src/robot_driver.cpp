@@ -10,9 +10,12 @@
 #include <cmath>
 #include <deque>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+
+#include "finger_motion.h"
 
 namespace kaboum::execution {
 namespace {
@@ -21,9 +24,10 @@ using nlohmann::json;
 using Kind = DriverStop::Kind;
 using external::LineSocket;
 
-constexpr std::size_t kExcerpt = 200;  // characters of a line in a message
-constexpr double kLastWords = 0.2;     // for telling a driver to stop [s]
-constexpr double kSlower = 1.5;        // a motion may take so many times as long as it is
+constexpr std::size_t kExcerpt = 200;    // characters of a line in a message
+constexpr double kLastWords = 0.2;       // for telling a driver to stop [s]
+constexpr double kRoundedFinger = 1e-9;  // of an answer in decimals [rad or length]
+constexpr double kSlower = 1.5;          // a motion may take so many times as long as it is
 
 std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -320,7 +324,7 @@ struct RobotDriver::Data {
   }
 
   /// How far a robot is from a configuration at most, if the answer says where it is.
-  std::optional<double> off(const json& answer, const std::vector<double>& q) {
+  std::optional<double> off(const json& answer, std::size_t robot, const std::vector<double>& q) {
     if (!answer.contains("q")) return std::nullopt;
     std::vector<double> is;
     try {
@@ -329,12 +333,46 @@ struct RobotDriver::Data {
       stop(e.kind(), e.what());
     }
     double most = 0;
-    for (std::size_t j = 0; j < q.size(); ++j) most = std::max(most, std::abs(is[j] - q[j]));
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      const double distance = std::abs(is[j] - q[j]);
+      const auto finger = fingers.find({robot, static_cast<std::uint32_t>(j)});
+      if (finger == fingers.end())
+        most = std::max(most, distance);
+      else
+        require_finger(robot, finger->first.second, distance, finger->second);
+    }
     return most;
   }
 
+  /// What is certified of what a robot holds is so while its fingers are where they hold it.
+  void require_finger(std::size_t robot, std::uint32_t variable, double distance, double within) {
+    if (distance <= within + kRoundedFinger) return;
+    const world::RobotModel& model = world.robots[robot];
+    stop(Kind::Elsewhere, "the joint '" + model.kinematics.variables[variable].name + "' of " +
+                              model.name + "'s gripper is " + dump(distance) +
+                              " away from where it was told to be; " + dump(within) +
+                              " is allowed by the grasp");
+  }
+
+  /// Of an answer to a motion of fingers: where they are then.
+  void require_fingers(const json& answer, std::size_t robot, const FingerMotion& moved) {
+    if (!answer.contains("q") || moved.to.empty()) return;
+    std::vector<double> is;
+    try {
+      is = numbers(answer["q"], world.robots[robot].kinematics.variables.size(), line);
+    } catch (const DriverStop& e) {
+      stop(e.kind(), e.what());
+    }
+    for (std::size_t k = 0; k < moved.variables.size(); ++k) {
+      const std::uint32_t variable = moved.variables[k];
+      const auto held = fingers.find({robot, variable});
+      require_finger(robot, variable, std::abs(is[variable] - moved.to[k]),
+                     held != fingers.end() ? held->second : options.tracking);
+    }
+  }
+
   void require_near(const json& answer, std::size_t robot, const std::vector<double>& q) {
-    const auto distance = off(answer, q);
+    const auto distance = off(answer, robot, q);
     if (!distance) return;
     most_tracking = std::max(most_tracking, *distance);
     if (*distance > options.tracking)
@@ -391,6 +429,8 @@ struct RobotDriver::Data {
   std::string doing = "when it was started", line;
   std::uint64_t messages = 0;
   double waited = 0, between = 0, most_tracking = 0;
+  /// How far joints of grippers that hold something may be off, by robot and variable.
+  std::map<std::pair<std::size_t, std::uint32_t>, double> fingers;
   bool over = false, finished = false;
 };
 
@@ -490,7 +530,7 @@ void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
     if (!answer.contains("failed"))
       data_->stop(Kind::Nonsense, "a motion is 'done' or 'failed', not " + excerpt(data_->line));
     const std::string why = "it says that it failed: " + answer["failed"].get<std::string>();
-    const auto off = data_->off(answer, from);
+    const auto off = data_->off(answer, robot, from);
     if (!off) data_->stop(Kind::Failed, why + "; where " + model.name + " is, it does not say");
     if (*off > data_->options.tracking)
       data_->stop(Kind::Failed, why + "; " + model.name + " is not where the motion began");
@@ -498,20 +538,28 @@ void RobotDriver::move(std::size_t robot, const motion::Trajectory& trajectory,
   }
 }
 
-void RobotDriver::take(std::size_t object, std::size_t robot, std::uint32_t link) {
+void RobotDriver::take(std::size_t object, std::size_t robot, std::uint32_t link,
+                       const FingerMotion& fingers) {
   const world::RobotModel& model = data_->world.robots[robot];
-  data_->ask_again({{"do", "take"},
-                    {"robot", model.name},
-                    {"object", data_->world.objects[object].name},
-                    {"link", model.kinematics.links[link].name}},
-                   data_->options.most_seconds, "done");
+  json message = {{"do", "take"},
+                  {"robot", model.name},
+                  {"object", data_->world.objects[object].name},
+                  {"link", model.kinematics.links[link].name}};
+  if (!fingers.to.empty()) message["gripper"] = to_json<json>(fingers);
+  const json answer = data_->ask_again(message, data_->options.most_seconds, "done");
+  for (const std::uint32_t variable : fingers.variables)
+    data_->fingers[{robot, variable}] = fingers.within;
+  data_->require_fingers(answer, robot, fingers);
 }
 
-void RobotDriver::release(std::size_t object, std::size_t robot) {
-  data_->ask_again({{"do", "release"},
-                    {"robot", data_->world.robots[robot].name},
-                    {"object", data_->world.objects[object].name}},
-                   data_->options.most_seconds, "done");
+void RobotDriver::release(std::size_t object, std::size_t robot, const FingerMotion& fingers) {
+  json message = {{"do", "release"},
+                  {"robot", data_->world.robots[robot].name},
+                  {"object", data_->world.objects[object].name}};
+  if (!fingers.to.empty()) message["gripper"] = to_json<json>(fingers);
+  const json answer = data_->ask_again(message, data_->options.most_seconds, "done");
+  for (const std::uint32_t variable : fingers.variables) data_->fingers.erase({robot, variable});
+  data_->require_fingers(answer, robot, fingers);
 }
 
 std::string RobotDriver::sense(const std::string& fact, const std::vector<std::string>& values) {

@@ -18,14 +18,6 @@ constexpr double kMostGap = 2e-3;
 /// Of differences of samples, as shares of a limit: what rounding of doubles may add at 1 kHz.
 constexpr double kRounding = 1e-6;
 
-std::vector<std::uint32_t> touching(const world::RobotModel& robot, std::uint32_t link) {
-  std::vector<std::uint32_t> out;
-  for (const world::Gripper& gripper : robot.grippers)
-    if (robot.tools[gripper.tool].link == link)
-      out.insert(out.end(), gripper.links.begin(), gripper.links.end());
-  return out;
-}
-
 }  // namespace
 
 SimulationReport& SimulationReport::operator+=(const SimulationReport& other) {
@@ -159,8 +151,7 @@ void Simulation::hold(const MotionPart& part, judge::CellState& state) {
         say(world_.objects[o].name + " is held without a grasp");
       }
     }
-    place.hold = {part.robot, wanted->second, inverse(link) * pose,
-                  touching(world_.robots[part.robot], wanted->second)};
+    place.hold = judged(hold_of(part, world_, o, inverse(link) * pose));
   }
 }
 

@@ -6,12 +6,15 @@
 #include <kaboum/judge/placement.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/world/grasp_family.h>
+#include <kaboum/world/gripper.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+
+#include "motion_part.h"
 
 namespace kaboum::execution {
 namespace {
@@ -136,18 +139,22 @@ std::optional<StatedState> state_of(const world::World& world, const plan::Model
     out.words += *conf + "\n";
   }
   std::vector<geom::Transform> relative(world.objects.size());
+  std::vector<std::optional<world::Attachment>> held(world.objects.size());
   out.mounted.resize(world.objects.size());
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
     const auto pose = word(model, known, "pose", world.objects[o].name, manipulation::kStart);
     if (!pose) return std::nullopt;
     const manipulation::ObjectPlace place = manipulation::place_of(*pose, world, o);
     judge::CellState::Place put{place.pose, std::nullopt, place.absent};
-    if (const auto& a = place.attachment) put.hold = {a->robot, a->link, a->pose, a->touching};
+    if (const auto& a = place.attachment) put.hold = judged(*a);
+    held[o] = place.attachment;
     out.mounted[o] = place.mounted_on;
     relative[o] = place.pose;
     out.state.objects.push_back(std::move(put));
     out.words += *pose + "\n";
   }
+  for (std::size_t r = 0; r < world.robots.size(); ++r)
+    set_grippers(world, r, held, out.state.q[r]);
   // What is mounted is where the object below it is, and moves with it.
   std::vector<char> resolved(world.objects.size(), 0);
   const std::function<void(std::size_t, std::size_t)> resolve = [&](std::size_t o,
@@ -160,6 +167,7 @@ std::optional<StatedState> state_of(const world::World& world, const plan::Model
     judge::CellState::Place place = out.state.objects[*below];
     geom::Transform& pose = place.hold ? place.hold->pose : place.pose;
     pose = judge::product(pose, relative[o]);
+    if (place.hold && !place.hold->link_touches) place.hold->touching.clear();  // pads do not
     out.state.objects[o] = std::move(place);
     resolved[o] = 1;
   };

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "finger_motion.h"
 #include "node_events.h"
 
 namespace kaboum::execution {
@@ -165,6 +166,16 @@ void Timeline::add(const plan::RunStep& step) {
     std::size_t next = 0;
     Json events = Json::array();
     for (const NodeEvent& event : moving) {
+      if (event.moves_fingers) {
+        const Json& motion = added.at(next++);
+        Json entry = event_json(event, time);
+        entry["file"] = motion["file"];
+        entry["duration"] = motion["duration"];
+        entry["gripper"] = to_json<Json>(finger_motion_of(parts[event.motion], world_));
+        time += motion["duration"].get<double>();
+        events.push_back(std::move(entry));
+        continue;
+      }
       if (event.kind != NodeEvent::Kind::Move) {
         events.push_back(event_json(event, time));
         continue;

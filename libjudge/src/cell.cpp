@@ -123,7 +123,7 @@ bool Cell::is_looked_at(const PosedThing& a, const PosedThing& b) const {
   for (const auto& [x, y] : {std::pair{&a, &b}, std::pair{&b, &a}})
     if (x->hold != nullptr && y->thing->robot == x->hold->robot) {
       const auto link = static_cast<std::uint32_t>(y->thing->index);
-      if (link == x->hold->link ||
+      if ((x->hold->link_touches && link == x->hold->link) ||
           std::ranges::find(x->hold->touching, link) != x->hold->touching.end())
         return false;
     }

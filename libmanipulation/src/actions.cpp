@@ -4,6 +4,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/regions.h>
 
@@ -187,9 +188,18 @@ Answer reach(Geometry& geometry, const Question& question) {
 Answer grasp(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
+  const std::vector<double> q = configuration_of(question.arguments[2], geometry.world.robots[r]);
+  if (has_finger_joints(geometry.world.robots[r]))
+    return perform(
+        geometry, question, {"grasp", {r}, {o}},
+        [&](Sequence& s) {
+          s.start_at(r, q);
+          return !s.state().attachments[o] && s.take(r, o);
+        },
+        [&](const Sequence& s) { return s.word_of_object(o); });
   CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
-  asked.state.set_robot(r, configuration_of(question.arguments[2], geometry.world.robots[r]));
+  asked.state.set_robot(r, q);
   Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
   if (sequence.state().attachments[o] || !sequence.take(r, o))
     return Answer::impossible("no tool of " + geometry.world.robots[r].name + " is at a grasp of " +
@@ -215,8 +225,7 @@ Answer transfer(Geometry& geometry, const Question& question) {
   if (auto no = out_of_reach(geometry, question, r, o)) return *no;
   const auto act = [&](Sequence& s) {
     if (!s.reach(r, o) || !s.take(r, o) || !s.place(r, o, support, false)) return false;
-    s.let_go(r, o);
-    return s.go(r, end);
+    return s.let_go(r, o) && s.go(r, end);
   };
   return perform(geometry, question, {"transfer", {r}, {o, support}}, act,
                  [&](const Sequence& s) { return s.word_of_object(o); });
@@ -242,8 +251,7 @@ Answer put_down(Geometry& geometry, const Question& question, bool upright) {
   const std::vector<double> end = configuration_of(question.arguments[3], geometry.world.robots[r]);
   const auto act = [&](Sequence& s) {
     if (!s.place(r, o, support, upright)) return false;
-    s.let_go(r, o);
-    return s.go(r, end);
+    return s.let_go(r, o) && s.go(r, end);
   };
   return perform(geometry, question, {upright ? "putUpright" : "put", {r}, {o, support}}, act,
                  [&](const Sequence& s) { return s.word_of_object(o); });
@@ -275,8 +283,7 @@ Answer join(Geometry& geometry, const Question& question) {
   const std::vector<double> end = configuration_of(question.arguments[3], geometry.world.robots[r]);
   const auto act = [&](Sequence& s) {
     if (!s.mount(r, o, onto)) return false;
-    s.let_go(r, o);
-    return s.withdraw(r) && s.go(r, end);
+    return s.let_go(r, o) && s.withdraw(r) && s.go(r, end);
   };
   return perform(geometry, question, {"join", {r}, {o, onto}}, act,
                  [&](const Sequence& s) { return s.word_of_mounted(o); });
@@ -314,13 +321,22 @@ Answer release(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const world::RobotModel& robot = geometry.world.robots[r];
+  const std::vector<double> q = configuration_of(question.arguments[2], robot);
+  const std::string not_held = robot.name + " does not hold " + geometry.world.objects[o].name;
+  if (has_finger_joints(robot))
+    return perform(
+        geometry, question, {"release", {r}, {o}},
+        [&](Sequence& s) {
+          s.start_at(r, q);
+          return s.held_by(r, o) ? s.let_go(r, o) : s.fail(Answer::Kind::Impossible, not_held);
+        },
+        [&](const Sequence& s) { return s.word_of_object(o); });
   CallState asked(geometry, question);
   if (!asked.state.read_object(o)) return asked.not_known();
-  asked.state.set_robot(r, configuration_of(question.arguments[2], robot));
+  asked.state.set_robot(r, q);
   Sequence sequence(geometry, question, asked.state.world(), asked.state.mounted());
-  if (!sequence.held_by(r, o))
-    return Answer::impossible(robot.name + " does not hold " + geometry.world.objects[o].name);
-  sequence.let_go(r, o);
+  if (!sequence.held_by(r, o)) return Answer::impossible(not_held);
+  if (!sequence.let_go(r, o)) return sequence.failure();
   return Answer::found(sequence.word_of_object(o));
 }
 
@@ -420,8 +436,7 @@ Answer mate(Geometry& geometry, const Question& question) {
                                              question.arguments[2] + " alone, as a mate's are");
   const auto act = [&](Sequence& s) {
     if (!s.mate(r, o, onto, set)) return false;
-    s.let_go(r, o);
-    return s.go(r, end);
+    return s.let_go(r, o) && s.go(r, end);
   };
   return perform(geometry, question, {"mate", {r}, {o, onto}}, act,
                  [&](const Sequence& s) { return s.word_of_mounted(o); });
@@ -472,7 +487,9 @@ Answer grasp_motion_collides(Geometry& geometry, const Question& question) {
   for (const Motion& motion : fetched.motions) {
     world::WorldState then = state;
     for (const auto& [object, held] : motion.holds) then.attachments[object] = held;
-    if (!find_obstacles(geometry.checker, then, r, motion.path, things, geometry.check).empty())
+    if (!find_obstacles(geometry.checker, then, r, motion.path, things,
+                        check_of(geometry, r, then.attachments))
+             .empty())
       return Answer::holds(true);
   }
   return Answer::holds(false, "the motion is free of it");
@@ -491,7 +508,11 @@ Answer swept_collides(Geometry& geometry, const Question& question) {
   if (state.absent[o]) return Answer::holds(false, question.arguments[2] + " is away");
   // All other objects are absent: they were not read. Contacts of the robot with itself and
   // with others count.
-  const auto motion = check_motion(geometry.checker, state, r, {state.q[r], to}, geometry.check);
+  world::MotionOptions check = geometry.check;
+  check.around = asked.state.finger_room(r);
+  const auto motion =
+      check_motion(geometry.checker, state, r,
+                   {state.q[r], with_fingers_of(geometry.world.robots[r], state.q[r], to)}, check);
   return Answer::holds(motion.outcome != world::MotionAnswer::Outcome::Free, "it is free");
 }
 

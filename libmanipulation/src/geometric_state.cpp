@@ -4,6 +4,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/gripper.h>
 
 namespace kaboum::manipulation {
 namespace {
@@ -33,13 +34,21 @@ std::size_t region_named(const Geometry& geometry, const std::string& name) {
   return find_named(geometry.world.regions, name, "region");
 }
 
+world::MotionOptions check_of(const Geometry& geometry, std::size_t robot,
+                              const std::vector<std::optional<world::Attachment>>& attachments) {
+  world::MotionOptions out = geometry.check;
+  out.around = finger_room(geometry.world, robot, attachments);
+  return out;
+}
+
 GeometricState::GeometricState(Geometry& geometry, plan::StateView& view)
     : geometry_(geometry),
       view_(view),
       state_(initial_state(geometry.world)),
       mounted_(geometry.world.objects.size()),
       robots_read_(geometry.world.robots.size(), false),
-      objects_read_(geometry.world.objects.size(), false) {
+      objects_read_(geometry.world.objects.size(), false),
+      finger_room_(geometry.world.robots.size()) {
   state_.absent.assign(objects_read_.size(), true);
   if (geometry_.fixed_robots.size() < robots_read_.size() ||
       geometry_.fixed_objects.size() < objects_read_.size())
@@ -65,7 +74,28 @@ bool GeometricState::read_robot(std::size_t robot) {
     return false;
   }
   state_.q[robot] = configuration_of(*word, model);
+  if (!read_fingers(robot)) return false;
   robots_read_[robot] = true;
+  return true;
+}
+
+/// Puts the joints of a robot's grippers where they are: what it holds decides that.
+bool GeometricState::read_fingers(std::size_t robot) {
+  const world::World& world = geometry_.world;
+  if (!has_finger_joints(world.robots[robot])) return true;
+  std::vector<std::optional<world::Attachment>> held(world.objects.size());
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    if (world.objects[o].grasps.empty() && !world.attachments[o]) continue;
+    const auto word = geometry_.is_fixed_object(o) ? std::string(kStart)
+                                                   : view_.value("pose", {world.objects[o].name});
+    if (!word) {
+      unknown_ = "the pose of " + world.objects[o].name + " is not known";
+      return false;
+    }
+    held[o] = place_of(*word, world, o).attachment;
+  }
+  set_grippers(world, robot, held, state_.q[robot]);
+  finger_room_[robot] = world::finger_room(world, robot, held);
   return true;
 }
 
@@ -91,7 +121,7 @@ bool GeometricState::read_place(std::size_t object, std::size_t depth) {
     place.absent = state_.absent[*below];
     place.attachment = state_.attachments[*below];
     if (place.attachment)
-      place.attachment->pose = place.attachment->pose * place.pose;
+      place.attachment = carried_along(*place.attachment, place.pose);
     else
       place.pose = state_.poses[*below] * place.pose;
   }

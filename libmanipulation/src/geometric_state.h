@@ -9,11 +9,15 @@
 
 namespace kaboum::manipulation {
 
-/// A robot goes along a path, with what it carries.
+/// A robot goes along a path, with what it carries; or the fingers of a gripper alone, about an
+/// object that is among what it holds before it moves, or while it still rests.
 struct Motion {
+  enum class Fingers : std::uint8_t { Still, Close, Open };
   std::size_t robot = 0;
   robot::Path path;
   std::vector<std::pair<std::size_t, world::Attachment>> holds;  ///< objects, ascending
+  Fingers fingers = Fingers::Still;
+  std::size_t object = 0;  ///< that the fingers close or open about
 };
 
 /// What a call has led to among the things that it involves.
@@ -58,6 +62,10 @@ struct Geometry {
   mutable world::Scratch scratch;
 };
 
+/// How motions of a robot are decided that holds something: with room for its fingers.
+world::MotionOptions check_of(const Geometry& geometry, std::size_t robot,
+                              const std::vector<std::optional<world::Attachment>>& attachments);
+
 /// @throws Error{InvalidInput} for names that the scene does not have.
 std::size_t robot_named(const Geometry& geometry, const std::string& name);
 std::size_t object_named(const Geometry& geometry, const std::string& name);
@@ -82,11 +90,17 @@ class GeometricState {
   [[nodiscard]] const world::WorldState& world() const { return state_; }
   /// What each object is mounted on, as far as it was read.
   [[nodiscard]] const std::vector<std::optional<std::size_t>>& mounted() const { return mounted_; }
+  /// How far the joints of a robot's grippers may be off, by what it holds: as
+  /// MotionOptions::around.
+  [[nodiscard]] const std::vector<double>& finger_room(std::size_t robot) const {
+    return finger_room_[robot];
+  }
   /// A sentence, when something is not known.
   [[nodiscard]] const std::string& unknown() const { return unknown_; }
 
  private:
   bool read_place(std::size_t object, std::size_t depth);
+  bool read_fingers(std::size_t robot);
   void find_fixed();
 
   Geometry& geometry_;
@@ -94,6 +108,7 @@ class GeometricState {
   world::WorldState state_;
   std::vector<std::optional<std::size_t>> mounted_;
   std::vector<bool> robots_read_, objects_read_;
+  std::vector<std::vector<double>> finger_room_;  ///< of the robots that were read
   std::string unknown_;
 };
 

@@ -35,11 +35,15 @@ std::vector<double> rounded(std::vector<double> q, const world::RobotModel& robo
   return configuration_of(word_of(q), robot);
 }
 
-/// Whether no joint moves but the arm's.
-bool is_alone(const robot::Robot& robot, const ik::Arm& arm) {
-  const auto moving = std::ranges::count_if(robot.joints, [](const robot::Joint& joint) {
-    return joint.type != robot::JointType::Fixed;
-  });
+/// Whether no joint moves but the arm's, and those of grippers, which what they hold decides.
+bool is_alone(const world::RobotModel& model, const ik::Arm& arm) {
+  const auto moving =
+      std::ranges::count_if(model.kinematics.joints, [&](const robot::Joint& joint) {
+        return joint.type != robot::JointType::Fixed &&
+               std::ranges::none_of(model.grippers, [&](const world::Gripper& gripper) {
+                 return std::ranges::find(gripper.joints, joint.variable) != gripper.joints.end();
+               });
+      });
   return static_cast<std::size_t>(moving) == arm.axes.size();
 }
 
@@ -59,7 +63,7 @@ void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
   const world::Transform in_base = ik::inverse(robot.base) * target;
   std::vector<double> reference;
   for (const std::uint32_t variable : arm.variables) reference.push_back(from[variable]);
-  goals.alone = goals.alone && is_alone(kinematics, arm);
+  goals.alone = goals.alone && is_alone(robot, arm);
 
   const auto add = [&](std::span<const double> q) {
     const auto near = ik::nearest_copy(arm, q, reference);

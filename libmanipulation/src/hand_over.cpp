@@ -98,6 +98,9 @@ bool Sequence::hand_over(std::size_t from, std::size_t object, std::size_t to) {
   const std::string& name = geometry_.world.objects[object].name;
   if (!held_by(from, object))
     return fail(Answer::Kind::Impossible, robots[from].name + " does not hold " + name);
+  if (!held_by(from, object)->fingers.empty())
+    return fail(Answer::Kind::NotFound,
+                name + " is held by a gripper with joints, which hands nothing over");
   if (from == to) return fail(Answer::Kind::Impossible, "a robot hands nothing to itself");
   preferred_goals(to, object);  // says among how many grasps it chooses
   if ((question_.choice > 0 && meet_somewhere(from, object, to, Grasps::Preferred)) ||
@@ -116,7 +119,7 @@ bool Sequence::wander(std::size_t robot) {
     std::vector<double> q;
     for (const robot::Variable& v : model.kinematics.variables)
       q.push_back(random_.between(v.lower.value_or(-3), v.upper.value_or(3)));
-    q = configuration_of(manipulation::word_of(q), model);
+    q = with_fingers(robot, configuration_of(manipulation::word_of(q), model));
     world::WorldState then = state_;
     then.q[robot] = q;
     if (is_free(then) && go(robot, q)) {

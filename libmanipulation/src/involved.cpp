@@ -17,6 +17,8 @@ void add_attachment(std::string& key, const world::Attachment& held) {
   add_to_key(key, held.robot);
   add_to_key(key, held.link);
   add_to_key(key, held.pose);
+  add_to_key(key, held.grasp.size());
+  key += held.grasp;
 }
 
 }  // namespace
@@ -184,8 +186,8 @@ std::vector<Involved::Thing> Involved::decide(const Performed& performed,
         if (item.robot == world::Item::kObject) state.absent[item.index] = false;
     }
     if (items.empty()) break;
-    const auto found =
-        find_obstacles(geometry_.checker, state, motion.robot, motion.path, items, geometry_.check);
+    const auto found = find_obstacles(geometry_.checker, state, motion.robot, motion.path, items,
+                                      check_of(geometry_, motion.robot, state.attachments));
     ++asked;
     positive += found.empty() ? 0 : 1;
     const auto is_found = [&](const Thing& thing) {

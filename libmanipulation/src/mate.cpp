@@ -150,7 +150,8 @@ Goals Sequence::goals_that_meet(std::size_t robot,
   Goals goals;
   goals.all = false;
   for (const std::vector<double>& q : drawn.configurations) {
-    std::vector<double> word = configuration_of(manipulation::word_of(q), model);
+    std::vector<double> word =
+        with_fingers(robot, configuration_of(manipulation::word_of(q), model));
     if (!find_out_of_limits(model.kinematics, word) &&
         motion::check_constraints(model, {word}, constraints).outcome ==
             motion::ConstraintAnswer::Outcome::Kept)

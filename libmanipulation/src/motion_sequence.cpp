@@ -6,6 +6,7 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/world/grasp_family.h>
+#include <kaboum/world/gripper.h>
 
 #include <nlohmann/json.hpp>
 
@@ -57,8 +58,14 @@ Answer MotionSequence::found(std::string value) const {
     const world::RobotModel& model = geometry_.world.robots[motion.robot];
     nlohmann::json& path = paths.emplace_back();
     path = {{"robot", model.name}, {"path", motion.path}};
-    for (const auto& [object, held] : motion.holds)
-      path["holds"][geometry_.world.objects[object].name] = model.kinematics.links[held.link].name;
+    for (const auto& [object, held] : motion.holds) {
+      const std::string& name = geometry_.world.objects[object].name;
+      path["holds"][name] = model.kinematics.links[held.link].name;
+      if (!held.link_touches && !held.grasp.empty()) path["grasps"][name] = held.grasp;
+    }
+    if (motion.fingers != Motion::Fingers::Still)
+      path[motion.fingers == Motion::Fingers::Close ? "closes" : "opens"] =
+          geometry_.world.objects[motion.object].name;
   }
   Answer out = Answer::found(std::move(value), paths.dump());
   out.chosen = chosen_;
@@ -88,8 +95,9 @@ bool MotionSequence::may_follow(std::size_t robot, const robot::Path& path) cons
       motion::ConstraintAnswer::Outcome::Kept)
     return false;
   const Stopwatch watch;
-  const bool free = check_motion(geometry_.checker, state_, robot, path, geometry_.check).outcome ==
-                    world::MotionAnswer::Outcome::Free;
+  const bool free = check_motion(geometry_.checker, state_, robot, path,
+                                 check_of(geometry_, robot, state_.attachments))
+                        .outcome == world::MotionAnswer::Outcome::Free;
   if (GeometryCounters* counters = geometry_.options.counters.get()) {
     ++counters->predicate_calls;
     counters->positive += free ? 0 : 1;
@@ -129,6 +137,41 @@ bool MotionSequence::is_free_at(std::size_t robot, const std::vector<double>& q)
   return is_free(there);
 }
 
+std::vector<double> MotionSequence::with_fingers(std::size_t robot, std::vector<double> q) const {
+  return with_fingers_of(geometry_.world.robots[robot], state_.q[robot], std::move(q));
+}
+
+bool MotionSequence::move_fingers(std::size_t robot, std::size_t object, Motion::Fingers how) {
+  std::vector<double> end = state_.q[robot];
+  if (how == Motion::Fingers::Close) {
+    set_grippers(geometry_.world, robot, state_.attachments, end);
+  } else {
+    auto others = state_.attachments;
+    others[object].reset();
+    set_grippers(geometry_.world, robot, others, end);
+  }
+  if (end == state_.q[robot]) return true;  // suction
+  const robot::Path path{state_.q[robot], end};
+  const bool closes = how == Motion::Fingers::Close;
+  const auto motion = check_motion(geometry_.checker, state_, robot, path,
+                                   check_of(geometry_, robot, state_.attachments));
+  if (motion.outcome != world::MotionAnswer::Outcome::Free) {
+    std::string reason = std::string("the gripper does not ") +
+                         (closes ? "close on " : "open from ") +
+                         geometry_.world.objects[object].name;
+    if (motion.contact)
+      reason += ", in the way: " + geometry_.world.name_of(motion.contact->items[0]) + " and " +
+                geometry_.world.name_of(motion.contact->items[1]);
+    return fail(Answer::Kind::NotFound, std::move(reason));
+  }
+  const robot::Path last = last_paths_[robot];
+  record(robot, path);
+  last_paths_[robot] = last;
+  motions_.back().fingers = how;
+  motions_.back().object = object;
+  return true;
+}
+
 /// What moves, what it holds by which link, and how.
 void MotionSequence::record(std::size_t robot, const robot::Path& path) {
   Motion& motion = motions_.emplace_back();
@@ -154,6 +197,8 @@ std::optional<world::Attachment> MotionSequence::find_grasp(std::size_t robot,
       held.robot = robot;
       held.link = tool.link;
       held.pose = inverse(link) * pose;
+      if (world::gripper_with_pads(geometry_.world.robots[robot], tool.link) != nullptr)
+        held = world::hold_by(geometry_.world, robot, tool.link, held.pose, grasp);
       // As the word has it, with the fingers that may touch.
       return place_of(manipulation::word_of(geometry_.world, held), geometry_.world, object)
           .attachment;
@@ -167,9 +212,7 @@ void MotionSequence::carry(std::size_t object, const std::optional<world::Attach
   for (std::size_t o = 0; o < mounted_.size(); ++o) {
     if (mounted_[o] != object || state_.absent[o]) continue;
     const Transform relative = inverse(pose_of_object(object)) * pose_of_object(o);
-    std::optional<world::Attachment> with = held;
-    if (with) with->pose = with->pose * relative;
-    carry(o, with, pose * relative);
+    carry(o, held ? std::optional(carried_along(*held, relative)) : std::nullopt, pose * relative);
   }
   state_.attachments[object] = held;
   if (!held) state_.poses[object] = pose;

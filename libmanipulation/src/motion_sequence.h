@@ -61,6 +61,11 @@ class MotionSequence {
   void add_goals(Goals& goals, std::size_t robot, std::uint32_t link,
                  const world::Transform& target, bool any = false) const;
   void record(std::size_t robot, const robot::Path& path);
+  /// A configuration with the joints of grippers as they are now: what is held decides these.
+  [[nodiscard]] std::vector<double> with_fingers(std::size_t robot, std::vector<double> q) const;
+  /// Closes or opens the gripper that holds an object: its fingers go straight, and all is free but
+  /// for its pads and the object. @pre the object is attached, and stays where it is
+  bool move_fingers(std::size_t robot, std::size_t object, Motion::Fingers how);
 
   const Geometry& geometry_;
   const plan::Question& question_;

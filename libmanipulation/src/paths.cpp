@@ -91,11 +91,12 @@ motion::PathAnswer MotionSequence::look_for_path(const world::WorldState& state,
   return answer;
 }
 
-bool MotionSequence::go(std::size_t robot, const std::vector<double>& q) {
+bool MotionSequence::go(std::size_t robot, const std::vector<double>& to) {
+  const std::vector<double> q = with_fingers(robot, to);
   // Back where it came from the same way, if that is free as things are now.
-  robot::Path& last = last_paths_[robot];
-  if (last.size() > 1 && last.front() == q && last.back() == state_.q[robot]) {
-    const robot::Path back(last.rbegin(), last.rend());
+  robot::Path back(last_paths_[robot].rbegin(), last_paths_[robot].rend());
+  for (std::vector<double>& at : back) at = with_fingers(robot, std::move(at));
+  if (back.size() > 1 && back.back() == q && back.front() == state_.q[robot]) {
     if (may_follow(robot, back)) {
       record(robot, back);
       return true;
@@ -112,7 +113,9 @@ bool MotionSequence::go(std::size_t robot, const Goals& goals,
     return fail(all ? Answer::Kind::Impossible : Answer::Kind::NotFound, reason);
   };
   motion::PathOptions options = geometry_.options.path;
-  options.check = geometry_.check;
+  options.check = check_of(geometry_, robot, state_.attachments);
+  for (const world::Gripper& gripper : geometry_.world.robots[robot].grippers)
+    options.still.insert(options.still.end(), gripper.joints.begin(), gripper.joints.end());
   options.constraints = motion::carried_constraints(geometry_.world, state_, robot);
   std::ranges::move(kept, std::back_inserter(options.constraints));
   options.seed = question_.seed;

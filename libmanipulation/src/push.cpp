@@ -157,7 +157,7 @@ bool Sequence::push_along(std::size_t robot, std::size_t object, const PushedObj
   Transform pose = at;
   pose.translation += length * contact.direction;
   target_ = Target{object, pose, std::nullopt, contact.link, 0};
-  let_go(robot, object);
+  if (!let_go(robot, object)) return undo(reason_);
   Transform back = end;
   back.translation -= kBackOff * contact.direction;
   const auto away = line_to(back);

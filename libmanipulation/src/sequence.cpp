@@ -6,6 +6,7 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/grasp_family.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
@@ -198,13 +199,25 @@ bool Sequence::take(std::size_t robot, std::size_t object) {
   if (mounted_[object])
     return fail(Answer::Kind::Impossible, geometry_.world.objects[object].name + " is mounted on " +
                                               geometry_.world.objects[*mounted_[object]].name);
+  if (held->link_touches) {
+    carry(object, held, {});
+    return true;
+  }
+  for (std::size_t o = 0; o < state_.attachments.size(); ++o)
+    if (const auto other = held_by(robot, o);
+        other && !other->grasp.empty() && other->link == held->link && !state_.absent[o])
+      return fail(Answer::Kind::Impossible, "the gripper holds " + geometry_.world.objects[o].name);
+  const world::WorldState before = state_;
   carry(object, held, {});
-  return true;
+  if (move_fingers(robot, object, Motion::Fingers::Close)) return true;
+  state_ = before;
+  return false;
 }
 
-void Sequence::let_go(std::size_t robot, std::size_t object) {
+bool Sequence::let_go(std::size_t robot, std::size_t object) {
   const auto held = held_by(robot, object);
   ensure(held.has_value(), "what is let go is held");
+  if (!held->fingers.empty() && !move_fingers(robot, object, Motion::Fingers::Open)) return false;
   Transform pose = pose_of_link(robot, held->link) * held->pose;
   // Where it was meant to be: that does not depend on the configuration that brought it there.
   if (target_ && target_->object == object) {
@@ -219,13 +232,14 @@ void Sequence::let_go(std::size_t robot, std::size_t object) {
     carry(object, std::nullopt,
           at_start ? thing.pose
                    : place_of(manipulation::word_of(pose), geometry_.world, object).pose);
-    return;
+    return true;
   }
   mounted_[object] = onto;
   const Transform relative = inverse(pose_of_object(*onto)) * pose;
   std::optional<world::Attachment> with = state_.attachments[*onto];
-  if (with) with->pose = with->pose * relative;
+  if (with) with = carried_along(*with, relative);
   carry(object, with, pose);
+  return true;
 }
 
 }  // namespace kaboum::manipulation

@@ -20,7 +20,8 @@ class Sequence : public MotionSequence {
   }
   /// To where a tool holds the object by one of its grasps. It may be held by another robot.
   bool reach(std::size_t robot, std::size_t object);
-  /// Holds the object, with what is mounted on it, by the tool that is at one of its grasps.
+  /// Holds the object, with what is mounted on it, by the tool that is at one of its grasps; a
+  /// gripper with joints closes on it.
   bool take(std::size_t robot, std::size_t object);
   /// To where the held object stands on another one; upright all the way, if that is asked for.
   bool place(std::size_t robot, std::size_t object, std::size_t support, bool upright);
@@ -31,8 +32,13 @@ class Sequence : public MotionSequence {
   /// one when it is let go.
   bool mate(std::size_t robot, std::size_t object, std::size_t onto,
             const world::ConstraintSet& constraints);
-  /// Lets go what stands or is mounted, at the very pose that was meant.
-  void let_go(std::size_t robot, std::size_t object);
+  /// The robot is where a call says that it is.
+  void start_at(std::size_t robot, const std::vector<double>& q) {
+    state_.q[robot] = with_fingers(robot, q);
+  }
+  /// Lets go what stands or is mounted, at the very pose that was meant; a gripper with joints
+  /// opens. @return false: it cannot
+  bool let_go(std::size_t robot, std::size_t object);
   /// The tool straight back from what was mounted, as far as that slid in.
   bool withdraw(std::size_t robot);
   /// Straight up with the held object.

@@ -3,6 +3,7 @@
 #include <kaboum/kinematics/arm.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/gripper.h>
 
 #include <algorithm>
 
@@ -22,7 +23,9 @@ Answer swept_volume(Geometry& geometry, const Question& question) {
     return Answer::impossible("outside the limits of a joint");
   GeometricState state(geometry, question.state);
   if (!state.read_all()) return Answer::not_found(state.unknown());
-  const Motion motion = motion_in(state.world(), r, {state.world().q[r], to});
+  const std::vector<double>& from = state.world().q[r];
+  const Motion motion =
+      motion_in(state.world(), r, {from, with_fingers_of(geometry.world.robots[r], from, to)});
   return Answer::found(volume_word(geometry.world, {motion}));
 }
 

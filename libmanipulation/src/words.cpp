@@ -2,8 +2,10 @@
 // executed without the process that made it.
 #include <kaboum/base/error.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/world/gripper.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -68,15 +70,33 @@ world::Transform pose_of(std::string_view numbers, std::string_view word) {
   return out;
 }
 
-/// The fingers that may touch what is held at a link: of the grippers whose tool is fixed to it.
-std::vector<std::uint32_t> touching(const world::RobotModel& robot, std::uint32_t link) {
-  std::vector<std::uint32_t> out;
-  for (const world::Gripper& gripper : robot.grippers)
-    if (robot.tools[gripper.tool].link == link)
-      out.insert(out.end(), gripper.links.begin(), gripper.links.end());
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+constexpr std::string_view kBy = " by ";
+
+/// How a link holds an object. @param rest  of the word, after the link
+world::Attachment attachment_of(std::string_view rest, std::string_view word,
+                                const world::World& world, std::size_t object, std::size_t robot,
+                                std::uint32_t link) {
+  const std::size_t by = rest.find(kBy);
+  const world::Transform pose = pose_of(rest.substr(0, by), word);
+  world::Grasp none;
+  if (by == std::string_view::npos) {
+    world::Attachment out;
+    out.robot = robot;
+    out.link = link;
+    out.pose = pose;
+    if (world::gripper_with_pads(world.robots[robot], link) == nullptr)
+      out = world::hold_by(world, robot, link, pose, none);
+    return out;
+  }
+  const std::string_view name = rest.substr(by + kBy.size());
+  const std::vector<world::Grasp>& grasps = world.objects[object].grasps;
+  const auto grasp = std::ranges::find(grasps, name, &world::Grasp::name);
+  const world::Gripper* gripper = world::gripper_with_pads(world.robots[robot], link);
+  if (grasp == grasps.end() || gripper == nullptr ||
+      world::find_misfit(world.robots[robot], *gripper, *grasp))
+    unknown(word, "pose of '" + world.objects[object].name + "' by a grasp of its, in pads of '" +
+                      world.robots[robot].name + "'");
+  return world::hold_by(world, robot, link, pose, *grasp);
 }
 
 }  // namespace
@@ -108,6 +128,7 @@ std::string word_of(const world::World& world, const world::Attachment& attachme
   const world::RobotModel& robot = world.robots[attachment.robot];
   std::string out = "on " + robot.name + "/" + robot.kinematics.links[attachment.link].name;
   append_pose(out, attachment.pose);
+  if (!attachment.link_touches) out += std::string(kBy) + attachment.grasp;
   return out;
 }
 
@@ -132,8 +153,7 @@ ObjectPlace place_of(std::string_view word, const world::World& world, std::size
       for (std::uint32_t link = 0; link < robot.kinematics.links.size(); ++link) {
         const std::string name = "on " + robot.name + "/" + robot.kinematics.links[link].name + " ";
         if (!word.starts_with(name)) continue;
-        out.attachment = {r, link, pose_of(word.substr(name.size() - 1), word),
-                          touching(robot, link)};
+        out.attachment = attachment_of(word.substr(name.size() - 1), word, world, object, r, link);
         break;
       }
     }

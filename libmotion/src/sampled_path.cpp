@@ -54,7 +54,10 @@ class Decider {
 
   /// @param around  room about the lines: MotionOptions::around
   std::optional<Fault> find_fault(const robot::Path& path, const std::vector<double>& around = {}) {
-    options_.around = around;
+    options_.around = moving_.around;
+    if (options_.around.empty()) options_.around = around;
+    for (std::size_t i = 0; i < around.size() && !moving_.around.empty(); ++i)
+      options_.around[i] += around[i];
     const world::MotionAnswer motion =
         check_motion(moving_.checker, moving_.state, moving_.robot, path, options_);
     if (motion.outcome == world::MotionAnswer::Outcome::Free) {

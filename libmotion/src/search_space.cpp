@@ -132,6 +132,8 @@ void SearchSpace::draw_around(const Values& start, std::span<const Values> goals
     near_lower_[i] = turns ? std::max(lower_[i], low - more) : lower_[i];
     near_upper_[i] = turns ? std::min(upper_[i], high + more) : upper_[i];
   }
+  for (const std::uint32_t i : options_.still)
+    lower_[i] = upper_[i] = near_lower_[i] = near_upper_[i] = start[i];
 }
 
 Values SearchSpace::sample(Random& random) {

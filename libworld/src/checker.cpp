@@ -31,7 +31,7 @@ bool is_carried_by_link(const WorldState& state, const Item& object, const Item&
   const auto& attachment = state.attachments[object.index];
   if (!attachment || shape.robot != attachment->robot) return false;
   const std::uint32_t link = world.robots[shape.robot].shapes[shape.index].link;
-  return link == attachment->link ||
+  return (attachment->link_touches && link == attachment->link) ||
          std::binary_search(attachment->touching.begin(), attachment->touching.end(), link);
 }
 

@@ -130,7 +130,7 @@ class Obstacles {
             const robot::Path& path, const std::vector<Item>& things, const MotionOptions& options)
       : path_(path),
         options_(options),
-        moving_(checker, state, {{robot, &path}}, options.scratch, &things),
+        moving_(checker, state, {{robot, &path, &options.around}}, options.scratch, &things),
         intervals_(moving_.pairs().size()) {}
 
   std::vector<Item> run() {

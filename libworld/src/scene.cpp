@@ -6,6 +6,7 @@
 #include <kaboum/world/constraint_conflict.h>
 #include <kaboum/world/features.h>
 #include <kaboum/world/grasp_family.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
@@ -27,6 +28,8 @@ constexpr double kRounding = 1e-9;
 /// Of slides and turns. [length or rad]
 constexpr double kFarthestBound = 1e6;
 constexpr double kLastRank = 100;
+/// Of the opening of a gripper. [rad or length]
+constexpr double kMostWithin = 0.1;
 /// Of constraints of grasps. [length, rad]
 constexpr double kLeastTolerance = 1e-6;
 /// Of features of the tool that holds an object.
@@ -96,7 +99,8 @@ class Parser : detail::SceneRobot {
 
   /// Of the object that was read last.
   void add_grasp(const Located& g) {
-    known(g, {"name", "position", "rpy", "quaternion", "slides", "turn", "rank", "all"});
+    known(g, {"name", "position", "rpy", "quaternion", "slides", "turn", "rank", "all", "opening",
+              "within", "pads"});
     Grasp out{string(need(g, "name")), pose(g)};
     if (find(g, "all") != nullptr) add_constraints_of(g, out);
     for (const Located& s : list(g, "slides")) {
@@ -135,7 +139,55 @@ class Parser : detail::SceneRobot {
       out.rank = static_cast<unsigned>(value);
     }
     if (is_family(out)) require_tool(need(g, "name"));
+    read_opening(g, out);
     world_.objects.back().grasps.push_back(std::move(out));
+  }
+
+  /// How far grippers with joints are open while they hold the object that was read last, and which
+  /// pads touch it.
+  void read_opening(const Located& g, Grasp& out) const {
+    if (const Located* opening = find(g, "opening")) {
+      if (opening->kind != Located::Kind::Object)
+        fail(*opening, "an object with a value for each joint of the gripper is expected");
+      for (std::size_t i = 0; i < opening->names.size(); ++i)
+        out.opening.emplace_back(opening->names[i], bound(opening->values[i]));
+    }
+    if (const Located* within = find(g, "within")) {
+      if (out.opening.empty()) fail(*within, "a tolerance of an 'opening', which is not stated");
+      out.within = number(*within);
+      if (!(out.within >= 0 && out.within <= kMostWithin))
+        fail(*within, "a number from 0 to 0.1 is expected: how far a joint may be off");
+    }
+    for (const Located& pad : list(g, "pads")) out.pads.push_back(string(pad));
+    std::vector<std::string> joints;
+    bool with_pads = false;
+    for (const RobotModel& robot : world_.robots)
+      for (const ToolFrame& tool : robot.tools) {
+        const Gripper* gripper = gripper_with_pads(robot, tool.link);
+        if (gripper == nullptr || !fits(tool, out)) continue;
+        with_pads = true;
+        if (const auto misfit = find_misfit(robot, *gripper, out))
+          fail(g, "the grasp '" + out.name + "' " + *misfit);
+        for (const std::uint32_t variable : gripper->joints)
+          joints.push_back(robot.kinematics.variables[variable].name);
+      }
+    for (std::size_t i = 0; i < out.opening.size(); ++i)
+      if (std::ranges::find(joints, out.opening[i].first) == joints.end())
+        fail(need(g, "opening").values[i], "no gripper that may use this grasp has the joint '" +
+                                               out.opening[i].first + "'" +
+                                               did_you_mean(out.opening[i].first, joints));
+    if (!with_pads) {
+      if (!out.pads.empty()) fail(need(g, "pads"), "no gripper with pads may use this grasp");
+      return;
+    }
+    // What is held by pads is held by a grasp of this name.
+    for (const Grasp& other : world_.objects.back().grasps)
+      if (other.name == out.name)
+        fail(need(g, "name"), "the name '" + out.name +
+                                  "' is used twice, and grippers with pads "
+                                  "tell grasps by their names");
+    if (out.name.find_first_of("\n\r") != std::string::npos)
+      fail(need(g, "name"), "a name with the end of a line");
   }
 
   /// Of a grasp of the object that was read last: between the tool that holds it and the object.
@@ -293,10 +345,11 @@ class Parser : detail::SceneRobot {
     Attachment out;
     out.robot = *robot;
     out.pose = pose(a);
+    const auto& grasps = world_.objects[*object].grasps;
+    auto found = grasps.end();
     if (const Located* grasp = find(a, "grasp")) {
-      const auto& grasps = world_.objects[*object].grasps;
-      const auto found = std::find_if(grasps.begin(), grasps.end(),
-                                      [&](const Grasp& g) { return g.name == string(*grasp); });
+      found = std::find_if(grasps.begin(), grasps.end(),
+                           [&](const Grasp& g) { return g.name == string(*grasp); });
       if (found == grasps.end()) fail(*grasp, "the object has no grasp '" + grasp->text + "'");
       if (!found->constraints.empty())
         fail(*grasp, "the grasp '" + grasp->text +
@@ -316,13 +369,25 @@ class Parser : detail::SceneRobot {
       if (tool != nullptr) {
         frame = tool_of(model, *tool);
       } else {
-        const auto found =
-            std::find_if(model.grippers.begin(), model.grippers.end(),
-                         [&](const Gripper& g) { return g.name == string(*gripper); });
-        if (found == model.grippers.end())
+        const auto by = std::find_if(model.grippers.begin(), model.grippers.end(),
+                                     [&](const Gripper& g) { return g.name == string(*gripper); });
+        if (by == model.grippers.end())
           fail(*gripper, "the robot has no gripper '" + gripper->text + "'");
-        frame = found->tool;
-        out.touching = found->links;
+        frame = by->tool;
+        if (!by->pads.empty()) {
+          if (found == grasps.end())
+            fail(*gripper, "what a gripper with pads holds is held by a 'grasp', which is missing");
+          if (!fits(model.tools[frame], *found) || find_misfit(model, *by, *found))
+            fail(a, "the grasp '" + found->name + "' is not for the gripper '" + by->name + "'");
+          for (const auto& other : world_.attachments)
+            if (other && other->robot == *robot && !other->link_touches &&
+                other->link == model.tools[frame].link)
+              fail(*gripper, "the gripper '" + by->name + "' holds another object already");
+          world_.attachments[*object] = hold_by(world_, *robot, model.tools[frame].link,
+                                                model.tools[frame].pose * out.pose, *found);
+          return;
+        }
+        out.touching = by->links;
         std::sort(out.touching.begin(), out.touching.end());
       }
       out.link = model.tools[frame].link;

@@ -6,6 +6,7 @@
 #include <kaboum/base/option.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/allowed_pairs.h>
+#include <kaboum/world/gripper.h>
 
 #include <algorithm>
 #include <set>
@@ -96,10 +97,7 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
         {string(need(tool, "name")), link_of(out.kinematics, need(tool, "link")), pose(tool)});
   }
   for (const Located& gripper : list(r, "grippers")) {
-    known(gripper, {"name", "tool", "links"});
-    Gripper g{string(need(gripper, "name")), tool_of(out, need(gripper, "tool")), {}};
-    for (const Located& link : list(gripper, "links"))
-      g.links.push_back(link_of(out.kinematics, link));
+    Gripper g = gripper_of(out, gripper);
     out.grippers.push_back(std::move(g));
   }
   add_features(r, out);
@@ -108,6 +106,71 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
   for (const Located& pair : list(r, "allowed_contacts"))
     out.allowed.push_back(pair_of(out, pair, AllowedPair::Reason::Stated));
   add_proved(r, out);
+  return out;
+}
+
+/// Fingers by their links; or pads, which alone may touch what is held, and joints that move them.
+Gripper SceneRobot::gripper_of(const RobotModel& robot, const Located& gripper) const {
+  known(gripper, {"name", "tool", "links", "pads", "joints", "force"});
+  Gripper out{string(need(gripper, "name")), tool_of(robot, need(gripper, "tool")), {}};
+  for (const Located& link : list(gripper, "links"))
+    out.links.push_back(link_of(robot.kinematics, link));
+  if (find(gripper, "pads") == nullptr) {
+    for (const char* member : {"joints", "force"})
+      if (const Located* given = find(gripper, member))
+        fail(*given, "a gripper with '" + std::string(member) +
+                         "' states its 'pads': the links that alone may touch what it holds");
+    return out;
+  }
+  if (const Located* links = find(gripper, "links"))
+    fail(*links, "a gripper has 'links' or 'pads': where there are pads nothing else may touch");
+  const std::uint32_t hand = robot.tools[out.tool].link;
+  if (gripper_with_pads(robot, hand) != nullptr)
+    fail(need(gripper, "tool"), "two grippers with pads at one link");
+  for (const Located& joint : list(gripper, "joints")) {
+    const auto variable =
+        static_cast<std::uint32_t>(variable_of(robot.kinematics, string(joint), joint));
+    for (const Gripper& other : robot.grippers)
+      if (std::ranges::find(other.joints, variable) != other.joints.end())
+        fail(joint, "the joint '" + joint.text + "' is one of the gripper '" + other.name + "'");
+    if (std::ranges::find(out.joints, variable) != out.joints.end())
+      fail(joint, "the joint '" + joint.text + "' is there twice");
+    out.joints.push_back(variable);
+  }
+  std::set<std::uint32_t> moving;  // joints that move a pad against the tool
+  const auto rigid = [&](std::uint32_t link) {
+    while (link > 0 && robot.kinematics.joints[link - 1].type == robot::JointType::Fixed)
+      link = robot.kinematics.joints[link - 1].parent;
+    return link;
+  };
+  for (const Located& pad : list(gripper, "pads")) {
+    const std::uint32_t link = link_of(robot.kinematics, pad);
+    if (std::ranges::find(robot.shapes, link, &LinkShape::link) == robot.shapes.end())
+      fail(pad, "the pad '" + pad.text + "' has no shape: what touches needs one");
+    if (std::ranges::find(out.pads, link) != out.pads.end())
+      fail(pad, "the pad '" + pad.text + "' is there twice");
+    for (std::uint32_t at = rigid(link); at != rigid(hand);) {
+      if (at == 0)
+        fail(pad, "the pad '" + pad.text + "' does not hang from the link of the tool, '" +
+                      robot.kinematics.links[hand].name + "'");
+      const std::uint32_t variable = robot.kinematics.joints[at - 1].variable;
+      if (std::ranges::find(out.joints, variable) == out.joints.end())
+        fail(pad, "the joint '" + robot.kinematics.variables[variable].name + "' moves the pad '" +
+                      pad.text + "' against the tool, and is none of the gripper's 'joints'");
+      moving.insert(variable);
+      at = rigid(robot.kinematics.joints[at - 1].parent);
+    }
+    out.pads.push_back(link);
+  }
+  if (out.pads.empty()) fail(need(gripper, "pads"), "at least one pad is expected");
+  for (std::size_t i = 0; i < out.joints.size(); ++i)
+    if (!moving.contains(out.joints[i]))
+      fail(need(gripper, "joints").items[i], "the joint moves no pad against the tool");
+  std::ranges::sort(out.pads);
+  if (const Located* force = find(gripper, "force")) {
+    out.force = number(*force);
+    if (!(out.force > 0)) fail(*force, "a force above 0 is expected");
+  }
   return out;
 }
 

@@ -29,6 +29,8 @@ class SceneRobot : public SceneSets {
   std::vector<double> read_home(const Located* value, const Located& at,
                                 const robot::Robot& robot) const;
 
+  /// @param robot  with its shapes, tools and grippers so far
+  Gripper gripper_of(const RobotModel& robot, const Located& gripper) const;
   bool is_of_visual_shapes(const Located& r) const;
   void note_bare_links(const RobotModel& robot, bool visual);
   void require_shapes(const Loaded& loaded, const Located& value, bool visual) const;

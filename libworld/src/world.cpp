@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/world.h>
 
 namespace kaboum::world {
@@ -68,6 +69,7 @@ WorldState initial_state(const World& world) {
   for (const Object& object : world.objects) out.poses.push_back(object.pose);
   out.attachments = world.attachments;
   out.attachments.resize(world.objects.size());
+  set_grippers(world, out);
   return out;
 }
 

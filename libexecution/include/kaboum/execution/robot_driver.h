@@ -51,6 +51,18 @@ const char* name_of(DriverStop::Kind kind);
 /// A trajectory as a driver is told it, in JSON: what takes the time of telling a motion.
 std::string told_trajectory(const robot::Robot& robot, const motion::Trajectory& trajectory);
 
+/// How fingers of a gripper close on something, or open from it: what is certified of them is so
+/// wherever each joint is between the two, all at the same share, and within `within` of that.
+struct FingerMotion {
+  std::string gripper;
+  std::vector<std::string> joint_names;
+  std::vector<std::uint32_t> variables;  ///< of the robot, as the joints
+  std::vector<double> from, to;          ///< of each joint [rad or length]
+  double within = 0;                     ///< how far joints may be off while it holds something
+  std::vector<std::string> pads;         ///< links that alone may touch it
+  double force = 0;                      ///< that joints close with, at most; 0: not stated
+};
+
 /// A robot driver: another program that moves robots, real or simulated ones, and senses. It is
 /// told one thing at a time by a line of JSON, and answers by one (docs/planning/drivers.md).
 ///
@@ -78,8 +90,10 @@ class RobotDriver {
   /// @param told  told_trajectory of it
   void move(std::size_t robot, const motion::Trajectory& trajectory, const std::string& told,
             ExecutedMotion& executed);
-  void take(std::size_t object, std::size_t robot, std::uint32_t link);
-  void release(std::size_t object, std::size_t robot);
+  /// @param fingers  that close or open with it; none: of a gripper without joints
+  void take(std::size_t object, std::size_t robot, std::uint32_t link,
+            const FingerMotion& fingers = {});
+  void release(std::size_t object, std::size_t robot, const FingerMotion& fingers = {});
   /// @return one of the values, or whatever else was sensed
   std::string sense(const std::string& fact, const std::vector<std::string>& values);
   /// Says that the plan has come to its end. @param end  where the plan has everything then; null:

@@ -15,6 +15,7 @@ struct Hold {
   std::uint32_t link = 0;
   geom::Transform pose;                 ///< from the object's frame to the link's
   std::vector<std::uint32_t> touching;  ///< links that may touch the object besides
+  bool link_touches = true;             ///< the link itself may; false: `touching` alone
 };
 
 /// Places of all robots and objects.
@@ -40,7 +41,8 @@ struct Meeting {
 /// - links of one robot with only fixed joints, or one joint but for frames without shapes, between
 ///   them;
 /// - pairs that were allowed;
-/// - what is held and the link that holds it, with the links that may touch it.
+/// - what is held and the link that holds it, with the links that may touch it; where pads hold it,
+///   these alone.
 class Cell {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

@@ -26,15 +26,16 @@ std::vector<double> configuration_of(std::string_view word, const world::RobotMo
 /// Place of an object.
 struct ObjectPlace {
   bool absent = false;
-  world::Transform pose;                        ///< to the world; of attached objects, not used
-  std::optional<world::Attachment> attachment;  ///< `touching` is that of the link's grippers
-  std::optional<std::size_t> mounted_on;        ///< an object; `pose` is to that one's frame
+  world::Transform pose;  ///< to the world; of attached objects, not used
+  /// `touching` is that of the link's grippers; of one with pads as the grasp says.
+  std::optional<world::Attachment> attachment;
+  std::optional<std::size_t> mounted_on;  ///< an object; `pose` is to that one's frame
 };
 
 /// "at x y z qx qy qz qw", rounded to multiples of 1e-7.
 /// @throws Error{LimitReached} as above.
 std::string word_of(const world::Transform& pose);
-/// "on ROBOT/LINK x y z qx qy qz qw".
+/// "on ROBOT/LINK x y z qx qy qz qw", and where pads hold it " by GRASP".
 std::string word_of(const world::World& world, const world::Attachment& attachment);
 
 /// "in OBJECT x y z qx qy qz qw": mounted on another object, with which it moves.

@@ -21,7 +21,9 @@ struct PathOptions {
   /// Number of shortcuts that are tried; 0: the path is as the search found it.
   std::size_t shortcuts = 60;
   std::vector<PathConstraint> constraints = {};  ///< that are kept at every instant
-  world::MotionOptions check = {};               ///< its progress is told of the whole search
+  /// Variables that stay as at the start, as those of fingers that hold something.
+  std::vector<std::uint32_t> still = {};
+  world::MotionOptions check = {};  ///< its progress is told of the whole search
 };
 
 /// Two things that stood in the way, and how often.

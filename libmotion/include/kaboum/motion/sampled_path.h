@@ -31,6 +31,9 @@ struct MovingRobot {
   const world::WorldState& state;
   std::size_t robot = 0;
   std::span<const PathConstraint> constraints = {};  ///< that it keeps
+  /// How far each variable may be from its line everywhere, as world::MotionOptions::around: of
+  /// fingers that stop where they touch.
+  std::vector<double> around = {};
 
   [[nodiscard]] const robot::Robot& kinematics() const;
 };

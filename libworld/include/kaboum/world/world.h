@@ -11,6 +11,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Subject of a planner's geometric questions: robots, objects and regions by their bounding sets,
@@ -28,11 +29,18 @@ struct ToolFrame {
   Transform pose;  ///< from the frame to the link's
 };
 
-/// The links that may touch what a tool holds.
+/// The links that may touch what a tool holds: fingers, with the link that the tool is fixed to; or
+/// pads, and nothing else.
 struct Gripper {
   std::string name;
   std::size_t tool = 0;              ///< index of a tool frame
-  std::vector<std::uint32_t> links;  ///< fingers
+  std::vector<std::uint32_t> links;  ///< fingers; none where there are pads
+  /// Links that alone may touch what is held, while it is held; ascending.
+  std::vector<std::uint32_t> pads = {};
+  /// Variables of the robot that close and open it; none: suction, or fingers that do not move.
+  /// While nothing is held by the pads they are as at the robot's home.
+  std::vector<std::uint32_t> joints = {};
+  double force = 0;  ///< with which each joint closes, at most; 0: not stated [N or N m]
 };
 
 /// The bounding sets of a link, in its frame.
@@ -137,6 +145,11 @@ struct Grasp {
   /// Between features of the tool, which are the first ones, in its frame, and of the object.
   std::vector<ToleratedConstraint> constraints = {};
   std::vector<Transform> members = {};  ///< some holds that meet them; the pose is the first one
+  /// Values of the gripper's joints while it holds the object, by their names. [rad or length]
+  std::vector<std::pair<std::string, double>> opening = {};
+  /// How far each of them may be off, ≥ 0: fingers stop where they touch. [rad or length]
+  double within = 1e-3;
+  std::vector<std::string> pads = {};  ///< links of the gripper that touch it; none: all its pads
 };
 
 struct Object {
@@ -161,12 +174,22 @@ struct Region {
   BoundingSet inner;
 };
 
+/// The value of a gripper's joint while it holds something. [rad or length]
+struct FingerValue {
+  std::uint32_t variable = 0;  ///< of the robot
+  double value = 0;
+  double within = 0;  ///< how far it may be off, ≥ 0
+};
+
 /// An object that moves with a link.
 struct Attachment {
   std::size_t robot = 0;
   std::uint32_t link = 0;
-  Transform pose;                       ///< from the object's frame to the link's
-  std::vector<std::uint32_t> touching;  ///< links that may touch it besides, ascending
+  Transform pose;                         ///< from the object's frame to the link's
+  std::vector<std::uint32_t> touching;    ///< links that may touch it besides, ascending
+  bool link_touches = true;               ///< the link itself may touch it; false: `touching` alone
+  std::string grasp = {};                 ///< of the object, by whose opening it is held; "": none
+  std::vector<FingerValue> fingers = {};  ///< of the gripper that holds it
 };
 
 /// Something that can collide: a shape of a robot, or an object (then `robot` is kObject).
@@ -225,7 +248,7 @@ struct WorldState {
   std::vector<bool> absent_robots = {};
 };
 
-/// Robots at home, objects where the scene has them.
+/// Robots at home, objects where the scene has them; grippers as they hold what is attached.
 WorldState initial_state(const World& world);
 
 }  // namespace kaboum::world

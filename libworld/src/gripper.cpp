@@ -1,0 +1,141 @@
+// Grippers with joints and pads.
+
+#include <kaboum/base/error.h>
+#include <kaboum/base/similar_name.h>
+#include <kaboum/world/gripper.h>
+
+#include <algorithm>
+
+namespace kaboum::world {
+namespace {
+
+/// The value of a joint in a grasp's opening.
+const double* find_value(const Grasp& grasp, const std::string& joint) {
+  const auto found =
+      std::ranges::find(grasp.opening, joint, &std::pair<std::string, double>::first);
+  return found == grasp.opening.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+const Gripper* gripper_with_pads(const RobotModel& robot, std::uint32_t link) {
+  for (const Gripper& gripper : robot.grippers)
+    if (!gripper.pads.empty() && robot.tools[gripper.tool].link == link) return &gripper;
+  return nullptr;
+}
+
+bool has_finger_joints(const RobotModel& robot) {
+  return std::ranges::any_of(robot.grippers,
+                             [](const Gripper& gripper) { return !gripper.joints.empty(); });
+}
+
+std::optional<std::string> find_misfit(const RobotModel& robot, const Gripper& gripper,
+                                       const Grasp& grasp) {
+  for (const std::uint32_t variable : gripper.joints) {
+    const robot::Variable& v = robot.kinematics.variables[variable];
+    const double* value = find_value(grasp, v.name);
+    if (value == nullptr)
+      return "states no 'opening' of the joint '" + v.name + "' of the gripper '" + gripper.name +
+             "' of '" + robot.name + "', which may use it";
+    if ((v.lower && *value < *v.lower) || (v.upper && *value > *v.upper))
+      return "opens the joint '" + v.name + "' of '" + robot.name + "' beyond its limits";
+  }
+  for (const std::string& pad : grasp.pads) {
+    std::vector<std::string> names;
+    for (const std::uint32_t link : gripper.pads)
+      names.push_back(robot.kinematics.links[link].name);
+    if (std::ranges::find(names, pad) == names.end())
+      return "names the pad '" + pad + "', which the gripper '" + gripper.name + "' of '" +
+             robot.name + "' does not have" + did_you_mean(pad, names);
+  }
+  return std::nullopt;
+}
+
+Attachment hold_by(const World& world, std::size_t robot, std::uint32_t link, const Transform& pose,
+                   const Grasp& grasp) {
+  const RobotModel& model = world.robots[robot];
+  Attachment out;
+  out.robot = robot;
+  out.link = link;
+  out.pose = pose;
+  const Gripper* gripper = gripper_with_pads(model, link);
+  if (gripper == nullptr) {
+    for (const Gripper& other : model.grippers)
+      if (model.tools[other.tool].link == link)
+        out.touching.insert(out.touching.end(), other.links.begin(), other.links.end());
+  } else {
+    if (const auto misfit = find_misfit(model, *gripper, grasp))
+      throw Error(ErrorCode::InvalidArgument, "the grasp '" + grasp.name + "' " + *misfit);
+    out.link_touches = false;
+    out.grasp = grasp.name;
+    for (const std::uint32_t pad : gripper->pads)
+      if (grasp.pads.empty() ||
+          std::ranges::find(grasp.pads, model.kinematics.links[pad].name) != grasp.pads.end())
+        out.touching.push_back(pad);
+    for (const std::uint32_t variable : gripper->joints)
+      out.fingers.push_back(
+          {variable, *find_value(grasp, model.kinematics.variables[variable].name), grasp.within});
+  }
+  std::ranges::sort(out.touching);
+  const auto repeated = std::ranges::unique(out.touching);
+  out.touching.erase(repeated.begin(), repeated.end());
+  return out;
+}
+
+Attachment carried_along(const Attachment& below, const Transform& relative) {
+  Attachment out = below;
+  out.pose = below.pose * relative;
+  if (!below.link_touches) out.touching.clear();
+  out.grasp.clear();
+  out.fingers.clear();
+  return out;
+}
+
+void set_grippers(const World& world, std::size_t robot,
+                  const std::vector<std::optional<Attachment>>& attachments,
+                  std::vector<double>& q) {
+  const RobotModel& model = world.robots[robot];
+  for (const Gripper& gripper : model.grippers)
+    for (const std::uint32_t variable : gripper.joints) q[variable] = model.home[variable];
+  for (const auto& held : attachments)
+    if (held && held->robot == robot)
+      for (const FingerValue& finger : held->fingers) q[finger.variable] = finger.value;
+}
+
+void set_grippers(const World& world, WorldState& state) {
+  for (std::size_t r = 0; r < world.robots.size(); ++r)
+    set_grippers(world, r, state.attachments, state.q[r]);
+}
+
+std::vector<double> with_fingers_of(const RobotModel& robot, const std::vector<double>& other,
+                                    std::vector<double> q) {
+  for (const Gripper& gripper : robot.grippers)
+    for (const std::uint32_t variable : gripper.joints) q[variable] = other[variable];
+  return q;
+}
+
+std::vector<double> finger_room(const World& world, std::size_t robot,
+                                const std::vector<std::optional<Attachment>>& attachments) {
+  std::vector<double> out;
+  for (const auto& held : attachments) {
+    if (!held || held->robot != robot) continue;
+    for (const FingerValue& finger : held->fingers) {
+      if (!(finger.within > 0)) continue;
+      out.resize(world.robots[robot].kinematics.variables.size(), 0);
+      out[finger.variable] = std::max(out[finger.variable], finger.within);
+    }
+  }
+  return out;
+}
+
+std::string name_pads(const World& world, const Attachment& held) {
+  const RobotModel& model = world.robots[held.robot];
+  std::string out;
+  for (std::size_t i = 0; i < held.touching.size(); ++i) {
+    if (i > 0) out += i + 1 == held.touching.size() ? " and " : ", ";
+    out += model.name + "/" + model.kinematics.links[held.touching[i]].name;
+  }
+  return out;
+}
+
+}  // namespace kaboum::world
