@@ -5,7 +5,8 @@
 
 A robot is the MJCF that `bcd-decompose ROBOT.urdf --robot-format mjcf` writes; things of the scene are the convex bodies of their
 sets. What has grasps in the scene can move; the rest stands still. What is taken is held by a suction cup, which takes nothing
-farther than --reach metres, pulls it to where the plan holds it (a weld, not friction), and sets it down before it lets go. A part that is let go where it touches
+farther than --reach metres, pulls it to where the plan holds it (a weld, not friction), and sets it down before it lets go. A gripper with
+joints closes its fingers with its force, and holds by contact and friction of its pads alone. A part that is let go where it touches
 one that another robot holds sits on that. --report FILE.json has what went otherwise
 than planned: how far joints were from where they were told to be, contacts that the plan does not know, how far things end from where the
 plan has them. --log FILE.jsonl has samples of all joints and poses, --film DIRECTORY pictures.
@@ -43,6 +44,11 @@ TRACKED = 2e-3      # a motion has ended when all joints are so near [rad or m]
 DOWN = 0.03         # how fast things are set down [m/s]
 FIT = 2e-3          # a part that is let go so near to one that another robot holds sits on it, as in a press fit [m]
 DEEP = 5e-4         # contacts deeper than that are told [m]
+CLOSING = 0.3       # the force of fingers that close grows for so long [s]
+FINGER = 20000.0    # stiffness of fingers that hold nothing [N/m]
+DAMPING = 500.0     # of fingers [N s/m]
+SLOW = 1e-3         # fingers stand that are slower [m/s]
+PAD = (1.0, 0.01, 0.001)  # friction of pads: sliding, torsional [m], rolling [m]
 GRAVITY = 9.81
 COLOURS = ((0.85, 0.35, 0.25), (0.25, 0.5, 0.8), (0.35, 0.65, 0.35), (0.85, 0.65, 0.2), (0.55, 0.4, 0.7))
 
@@ -129,8 +135,22 @@ class World:
                 raise Failure(f"robot '{name}' has no --robot {name}=FILE.xml")
             arm = mujoco.MjSpec.from_file(files[name])
             arm.compiler.boundmass, arm.compiler.boundinertia = 0.05, 1e-4
+            fingers = {joint for gripper in robot.get("grippers", []) for joint in gripper.get("joints", [])}
+            fingers |= {e.name1 for e in arm.equalities if e.type == mujoco.mjtEq.mjEQ_JOINT and e.name2 in fingers}
+            pads = {pad for gripper in robot.get("grippers", []) if gripper.get("joints") for pad in gripper["pads"]}
             for joint in arm.joints:
                 joint.armature = ROTOR
+                if joint.name in fingers:
+                    joint.armature = 0.2 * ROTOR
+                    joint.damping = np.full_like(joint.damping, DAMPING) if np.ndim(joint.damping) else DAMPING
+            for body in arm.bodies:
+                for geom in body.geoms if body.name in pads else ():
+                    geom.friction, geom.condim, geom.priority = PAD, 4, 1
+                    geom.solref[:], geom.solimp[:3] = (2 * STEP, 1), (0.95, 0.99, 0.0005)  # as hard as goes with this step
+            if pads:  # that what they hold creeps is an artefact of soft contacts
+                spec.option.impratio, spec.option.noslip_iterations = 10, 5
+                if hasattr(mujoco.mjtEnableBit, "mjENBL_MULTICCD"):  # later versions have it on
+                    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_MULTICCD
             base = robot.get("base", {})
             frame = spec.worldbody.add_frame(pos=base.get("position", [0, 0, 0]), quat=of_rpy(base.get("rpy", [0, 0, 0])))
             spec.attach(arm, prefix=name + "/", frame=frame)
@@ -174,6 +194,7 @@ class World:
             ids = [self.model.joint(f"{name}/{joint}").id for joint in joints]
             self.places[name] = np.array([self.model.jnt_qposadr[i] for i in ids])
             self.dofs[name] = np.array([self.model.jnt_dofadr[i] for i in ids])
+        self._find_fingers(scene)
         self.target = {name: (np.array(robots[name]["q"], float), 0.0, 0.0) for name in self.robots}
         # Nobody has put them down exactly there.
         random = np.random.default_rng(options.seed)
@@ -183,6 +204,7 @@ class World:
         for data in (self.data, self.plan):
             for name in self.robots:
                 data.qpos[self.places[name]] = self.target[name][0]
+            self._mimic(data)
             mujoco.mj_forward(self.model, data)
         self.time, self.farthest, self.contacts, self.ends = 0.0, 0.0, {}, {}
         self.action, self.samples, self.log, self.renderer, self.frames = "", 0, None, None, 0
@@ -192,6 +214,44 @@ class World:
             pathlib.Path(options.film).mkdir(parents=True, exist_ok=True)
             self.renderer = mujoco.Renderer(self.model, 480, 640)
         self.run(SETTLE)
+
+    def _find_fingers(self, scene):
+        """Joints of grippers, each with those that mimic it; links that are pads; what is held by these."""
+        m = self.model
+        self.fingers, self.pads, self.gripped, self.squeeze = {}, {}, {}, {}
+        for robot in scene["robots"]:
+            name = robot["name"]
+            for gripper in robot.get("grippers", []):
+                for joint in gripper.get("joints", []):
+                    driving = m.joint(f"{name}/{joint}").id
+                    moved = [(driving, 1.0)]
+                    for e in range(m.neq):
+                        if m.eq_type[e] == mujoco.mjtEq.mjEQ_JOINT and m.eq_obj2id[e] == driving:
+                            moved.append((m.eq_obj1id[e], float(m.eq_data[e, 1])))
+                            m.eq_solref[e] = 2 * STEP, 1
+                    self.fingers[name, joint] = [(int(m.jnt_dofadr[i]), int(m.jnt_qposadr[i]), by) for i, by in moved]
+                if gripper.get("joints"):
+                    self.pads.setdefault(name, set()).update(m.body(f"{name}/{pad}").id for pad in gripper["pads"])
+        driven = {name: {self.fingers[n, j][0][0] for n, j in self.fingers if n == name} for name in self.robots}
+        self.of_arm = {name: np.array([d not in driven[name] for d in self.dofs[name]]) for name in self.robots}
+
+    def _mimic(self, data):
+        for moved in self.fingers.values():
+            for _, place, by in moved[1:]:
+                data.qpos[place] = by * data.qpos[moved[0][1]]
+
+    def _finger_forces(self):
+        """Fingers that hold push with their force; others are held where they were told to be."""
+        d = self.data
+        for (robot, joint), moved in self.fingers.items():
+            force, since = self.squeeze.get((robot, joint), (None, 0.0))
+            told = self.target[robot][0][self.robots[robot].index(joint)]
+            for dof, place, by in moved:
+                if force is None:
+                    pushes = float(np.clip(FINGER * (by * told - d.qpos[place]), -100, 100))
+                else:
+                    pushes = by * force * min(1.0, (self.time - since) / CLOSING)
+                d.qfrc_applied[dof] = pushes + d.qfrc_bias[dof]
 
     def _separate(self):
         """Which contacts there are: all but those of a robot with itself, which the plan keeps apart, and with what it holds, and
@@ -230,16 +290,20 @@ class World:
         m, d = self.model, self.data
         wished, torque = np.zeros(m.nv), np.zeros(m.nv)
         for name, (q, v, a) in self.target.items():
-            dofs = self.dofs[name]
-            off = q - d.qpos[self.places[name]]
-            wished[dofs] = a + 2 * STIFF * (v - d.qvel[dofs]) + STIFF ** 2 * off
+            arm = self.of_arm[name]
+            dofs = self.dofs[name][arm]
+            off = (q - d.qpos[self.places[name]])[arm]
+            wished[dofs] = (a + 2 * STIFF * (v - d.qvel[self.dofs[name]]) + STIFF ** 2 * (q - d.qpos[self.places[name]]))[arm]
             self.farthest = max(self.farthest, float(np.max(np.abs(off), initial=0)))
         mujoco.mj_mulM(m, d, torque, wished)
         d.qfrc_applied[:] = 0
-        for dofs in self.dofs.values():
+        for name, dofs in self.dofs.items():
+            dofs = dofs[self.of_arm[name]]
             d.qfrc_applied[dofs] = torque[dofs] + d.qfrc_bias[dofs]
             d.qfrc_applied[dofs[0]] += self.options.push
+        self._finger_forces()
         mujoco.mj_step(m, d)
+        self._bend_ways()
         self.time += STEP
         self._look()
         self.samples += 1
@@ -254,17 +318,39 @@ class World:
 
     def _look(self):
         """Contacts between what moves with a robot and what does not."""
-        carrier = {thing: robot for thing, (robot, _) in self.held.items()}
+        carrier = {thing: robot for thing, (robot, _) in (*self.held.items(), *self.gripped.items())}
         for i in range(self.data.ncon):
             contact = self.data.contact[i]
             if contact.dist > -DEEP:
                 continue
             a, b = (self.owner[g] for g in contact.geom)
             of_a, of_b = carrier.get(a, a), carrier.get(b, b)
-            if of_a == of_b or (of_a not in self.robots and of_b not in self.robots):
+            if of_a not in self.robots and of_b not in self.robots:
+                continue
+            if of_a == of_b and not self._is_beside_pads(a, b, contact.geom):
                 continue
             key = (self.action, *sorted((a, b)))
             self.contacts[key] = max(self.contacts.get(key, 0.0), -float(contact.dist))
+
+    def _bend_ways(self):
+        """A step takes a free body straight on, and a link along its curve: what friction alone has follow a link would creep outwards,
+        by half of speed² / radius · step each second. So what pads hold goes the second-order part of the link's way as well."""
+        m, d = self.model, self.data
+        along, about, turn = np.zeros((3, m.nv)), np.zeros((3, m.nv)), np.zeros(3)
+        for thing, (_, link) in self.gripped.items():
+            start = m.jnt_qposadr[m.body_jntadr[m.body(thing).id]]
+            mujoco.mj_jacDot(m, d, along, about, d.qpos[start:start + 3].copy(), m.body(link).id)
+            d.qpos[start:start + 3] += 0.5 * STEP ** 2 * along @ d.qvel
+            # MuJoCo turns free bodies in their own frame.
+            mujoco.mju_rotVecQuat(turn, about @ d.qvel, np.array([1, -1, -1, -1]) * d.qpos[start + 3:start + 7])
+            mujoco.mju_quatIntegrate(d.qpos[start + 3:start + 7], turn, 0.5 * STEP ** 2)
+
+    def _is_beside_pads(self, a, b, geoms):
+        """Whether a link that is no pad touches what pads hold."""
+        for thing, robot, geom in ((a, b, geoms[1]), (b, a, geoms[0])):
+            if thing in self.gripped and robot in self.robots:
+                return self.model.geom_bodyid[geom] not in self.pads[robot]
+        return False
 
     def _picture(self):
         camera = mujoco.MjvCamera()
@@ -304,6 +390,7 @@ class World:
         return executed
 
     def _carry_in_plan(self):
+        self._mimic(self.plan)
         mujoco.mj_kinematics(self.model, self.plan)
         for thing, (link, at, turn) in self.held_by_plan.items():
             body = self.plan.body(link)
@@ -319,7 +406,7 @@ class World:
         line = np.zeros(6)
         return min((mujoco.mj_geomDistance(self.model, self.data, a, b, most, line) for a in ours for b in theirs), default=most)
 
-    def take(self, robot, link, thing):
+    def take(self, robot, link, thing, gripper=None):
         name = f"{robot}/{link}"
         if thing not in self.things:
             raise Failure(f"'{thing}' has no grasps in the scene, so it stands fast here")
@@ -327,8 +414,52 @@ class World:
         if gap > self.options.reach:
             raise Failure(f"'{thing}' is {1000 * gap:.0f} mm from '{robot}': nothing is held")
         self._let_go(thing)
+        if gripper:
+            self._close(robot, name, thing, gripper)
+            return
         self._weld(thing, robot, name)
         self.run(SETTLE)
+
+    def _close(self, robot, name, thing, gripper):
+        """Closes fingers on a thing; they stop where their pads touch it."""
+        a, b = self.plan.body(name), self.plan.body(thing)
+        at, turn = relative(a.xpos, a.xquat, b.xpos, b.xquat)
+        self.gripped[thing] = (robot, name)
+        for joint, begin, to in zip(gripper["joint_names"], gripper["from"], gripper["to"]):
+            force = gripper.get("force", self.options.force) * (1 if to > begin else -1)
+            self.squeeze[robot, joint] = (force, self.time)
+        self._stand(robot, gripper, 2.0)
+        for joint, to in zip(gripper["joint_names"], gripper["to"]):
+            is_at = float(self.data.qpos[self.fingers[robot, joint][0][1]])
+            if abs(is_at - to) > gripper["within"]:
+                self._open(robot, thing, {**gripper, "to": gripper["from"]})
+                raise Failure(f"the fingers do not stop at '{thing}': {joint} is {1000 * abs(is_at - to):.1f} mm from where it should hold")
+        self._tell_fingers(robot, gripper)
+        self.held_by_plan[thing] = (name, at, turn)
+
+    def _open(self, robot, thing, gripper):
+        for joint in gripper["joint_names"]:
+            self.squeeze.pop((robot, joint), None)
+        self._tell_fingers(robot, gripper)
+        self._stand(robot, gripper, 2.0)
+        self.gripped.pop(thing, None)
+        self.held_by_plan.pop(thing, None)
+
+    def _tell_fingers(self, robot, gripper):
+        q = np.array(self.target[robot][0])
+        for joint, to in zip(gripper["joint_names"], gripper["to"]):
+            q[self.robots[robot].index(joint)] = to
+        self.target[robot] = (q, 0.0, 0.0)
+        self.plan.qpos[self.places[robot]] = q
+
+    def _stand(self, robot, gripper, most):
+        """Until fingers stand. @param most  [s]"""
+        dofs = [dof for joint in gripper["joint_names"] for dof, _, _ in self.fingers[robot, joint]]
+        begun = self.time
+        while self.time - begun < most:
+            self.step()
+            if self.time - begun > 1.5 * CLOSING and np.max(np.abs(self.data.qvel[dofs])) < SLOW:
+                return
 
     def _weld(self, thing, robot, name):
         """Holds a thing by a link: bellows pull it to where the plan holds it."""
@@ -351,7 +482,11 @@ class World:
             self._separate()
             self.held_by_plan.pop(thing, None)
 
-    def release(self, robot, thing):
+    def release(self, robot, thing, gripper=None):
+        if thing in self.gripped and gripper:
+            self._open(robot, thing, gripper)
+            self.run(SETTLE)
+            return
         if thing not in self.held:
             raise Failure(f"'{thing}' is not held")
         # Handed over: another robot has taken it.
@@ -379,9 +514,9 @@ class World:
 
     def weight(self, thing):
         """What a held thing weighs, by the force at the link that holds it, at rest [kg]."""
-        if thing not in self.held:
+        if thing not in self.held and thing not in self.gripped:
             raise Failure(f"'{thing}' is held by no robot: it cannot be weighed")
-        link = self.model.eq_obj1id[self.held[thing][1]]
+        link = self.model.body(self.gripped[thing][1]).id if thing in self.gripped else self.model.eq_obj1id[self.held[thing][1]]
         total, count = 0.0, 200
         for _ in range(count):
             self.step()
@@ -428,10 +563,10 @@ class Simulated(Driver):
         return self.world.move(robot, motion)
 
     def take(self, robot, object, link):
-        self.world.take(robot, link, object)
+        self.world.take(robot, link, object, self.gripper)
 
     def release(self, robot, object):
-        self.world.release(robot, object)
+        self.world.release(robot, object, self.gripper)
 
     def sense(self, fact, values):
         for measure in self.measures:
@@ -474,6 +609,7 @@ def main():
     parser.add_argument("--disturb", type=float, default=0.0, metavar="METRES", help="things begin up to so far beside their places, at random [0]")
     parser.add_argument("--push", type=float, default=0.0, metavar="NM", help="a torque at the first joint of each robot that it does not know of [0]")
     parser.add_argument("--seed", type=int, default=1, help="of what is random [1]")
+    parser.add_argument("--force", type=float, default=40.0, metavar="N", help="of fingers whose gripper states none in the scene [40]")
     parser.add_argument("--reach", type=float, default=0.03, metavar="METRES", help="the suction cup takes what is so near [0.03]")
     parser.add_argument("--report", metavar="FILE.json", help="what went otherwise than planned")
     parser.add_argument("--log", metavar="FILE.jsonl", help="joints and poses, 100 times a second")

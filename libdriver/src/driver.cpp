@@ -144,17 +144,54 @@ struct Driver::Answers {
     const std::string robot = robot_of(message), object = message.at("object"),
                       link = message.at("link");
     if (driver.held_.contains({object, robot})) throw Failure(object + " is held already");
+    read_gripper(message, robot);
     driver.take(robot, object, link);
     driver.held_[{object, robot}] = link;
-    return {{"done", true}};
+    return moved_fingers(robot);
   }
 
   json release(const json& message) const {
     const std::string robot = robot_of(message), object = message.at("object");
     if (!driver.held_.contains({object, robot})) throw Failure(object + " is not held by it");
+    read_gripper(message, robot);
     driver.release(robot, object);
     driver.held_.erase({object, robot});
-    return {{"done", true}};
+    return moved_fingers(robot);
+  }
+
+  /// What a message says of a gripper with joints.
+  void read_gripper(const json& message, const std::string& robot) const {
+    driver.gripper_.reset();
+    if (!message.contains("gripper")) return;
+    const json& g = message["gripper"];
+    Gripper out{g.at("name").get<std::string>(),
+                g.at("joint_names").get<std::vector<std::string>>(),
+                g.at("from").get<std::vector<double>>(),
+                g.at("to").get<std::vector<double>>(),
+                g.value("within", 0.0),
+                g.value("pads", std::vector<std::string>()),
+                g.value("force", 0.0)};
+    const std::vector<std::string>& names = driver.robots_[robot].joint_names;
+    for (const std::string& joint : out.joint_names)
+      if (std::ranges::find(names, joint) == names.end() ||
+          out.to.size() != out.joint_names.size() || out.from.size() != out.joint_names.size())
+        throw Failure("'" + robot + "' does not have the joint '" + joint +
+                      "' of the gripper, or there is no value of it");
+    driver.gripper_ = std::move(out);
+  }
+
+  /// The joints of the gripper are told to be elsewhere now.
+  [[nodiscard]] json moved_fingers(const std::string& name) const {
+    json out = {{"done", true}};
+    if (!driver.gripper_) return out;
+    Robot& robot = driver.robots_[name];
+    for (std::size_t k = 0; k < driver.gripper_->joint_names.size(); ++k) {
+      const auto joint = std::ranges::find(robot.joint_names, driver.gripper_->joint_names[k]);
+      robot.q[static_cast<std::size_t>(joint - robot.joint_names.begin())] = driver.gripper_->to[k];
+    }
+    driver.gripper_.reset();
+    if (const auto q = driver.where(name)) out["q"] = *q;
+    return out;
   }
 
   json answer(const json& message) const {

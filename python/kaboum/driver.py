@@ -86,11 +86,14 @@ class Driver:
     `robots`: joint names of each robot. `q`: where each robot is, by what it was told last or by `where`. `held`: for each held object its
     robot and link. `timing`: for each kind of message how many there were, and their seconds, all and the longest.
     `tracking`: how far each joint may be, by `where`, from where a motion begins [rad or length].
+    `gripper`: in `take` and `release`, of a gripper with joints, how far they close or open: {"name", "joint_names", "from", "to", "within",
+    "pads", "force"}; else None. Each joint stops where the pads touch, at most `within` from `to`.
     """
 
     def __init__(self):
         self.robots, self.q, self.held, self.timing = {}, {}, {}, {}
         self.tracking = 0.05
+        self.gripper = None
         self._told = {}  # where each robot was told to be last
 
     # --- what a robot does ---
@@ -119,10 +122,10 @@ class Driver:
             self.open(robot, by[1])
 
     def close(self, robot, link):
-        """Closes the gripper of a link, or switches its suction on."""
+        """Closes the gripper of a link, or switches its suction on. `self.gripper` says how far, if it has joints."""
 
     def open(self, robot, link):
-        """Opens the gripper of a link, or switches its suction off."""
+        """Opens the gripper of a link, or switches its suction off; likewise."""
 
     def attach(self, robot, object, link):
         """An object moves with a link from now on."""
@@ -271,17 +274,33 @@ class Driver:
         robot, thing = self._robot(message), message["object"]
         if (thing, robot) in self.held:
             raise Failure(thing + " is held already")
-        self.take(robot, thing, message["link"])
-        self.held[thing, robot] = (robot, message["link"])
-        return {"done": True}
+        return self._move_fingers(robot, message, lambda: self.take(robot, thing, message["link"]),
+                                  lambda: self.held.update({(thing, robot): (robot, message["link"])}))
 
     def _release(self, message):
         robot, thing = self._robot(message), message["object"]
         if (thing, robot) not in self.held:
             raise Failure(thing + " is not held by it")
-        self.release(robot, thing)
-        del self.held[thing, robot]
-        return {"done": True}
+        return self._move_fingers(robot, message, lambda: self.release(robot, thing), lambda: self.held.pop((thing, robot)))
+
+    def _move_fingers(self, robot, message, act, note):
+        """Takes or releases; where the robot's gripper has joints, they are told to be elsewhere then."""
+        gripper = message.get("gripper")
+        if gripper and not set(gripper["joint_names"]) <= set(self.robots[robot]):
+            raise Failure(f"'{robot}' does not have all joints of the gripper")
+        self.gripper = gripper
+        try:
+            act()
+        finally:
+            self.gripper = None
+        note()
+        if not gripper:
+            return {"done": True}
+        for joint, to in zip(gripper["joint_names"], gripper["to"]):
+            self._told[robot][self.robots[robot].index(joint)] = to
+        q = self.where(robot)
+        self.q[robot] = list(self._told[robot] if q is None else q)
+        return {"done": True} if q is None else {"done": True, "q": list(q)}
 
     def _sense(self, message):
         said = self.sense(message["fact"], message["values"])

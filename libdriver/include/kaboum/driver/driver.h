@@ -44,6 +44,17 @@ struct Robot {
   std::vector<double> q;
 };
 
+/// How a gripper with joints closes or opens. Each joint stops where the pads touch, at most
+/// `within` from `to`.
+struct Gripper {
+  std::string name;
+  std::vector<std::string> joint_names;
+  std::vector<double> from, to;   ///< of the joints [rad or length]
+  double within = 0;              ///< [rad or length]
+  std::vector<std::string> pads;  ///< links that alone may touch what it holds
+  double force = 0;               ///< of each joint, at most; 0: not stated [N or N m]
+};
+
 /// Where an object is: at a pose, held by a robot, or away.
 struct Place {
   std::optional<std::array<std::array<double, 4>, 3>> pose;  ///< rows, from the object to the world
@@ -89,6 +100,9 @@ class Driver {
   /// Closes the gripper of a link, or switches its suction on; opens it, or switches it off.
   virtual void close(const std::string& robot, const std::string& link);
   virtual void open(const std::string& robot, const std::string& link);
+  /// In take and release, and what they call: of a gripper with joints, how far they close or open;
+  /// else null.
+  [[nodiscard]] const Gripper* gripper() const { return gripper_ ? &*gripper_ : nullptr; }
   /// An object moves with a link from now on; it does not any more.
   virtual void attach(const std::string& robot, const std::string& object, const std::string& link);
   virtual void detach(const std::string& robot, const std::string& object);
@@ -121,6 +135,7 @@ class Driver {
   std::map<std::string, Robot> robots_;  ///< and where each was told to be last
   /// Links that hold an object, by object and robot; an empty one is not known.
   std::map<std::pair<std::string, std::string>, std::string> held_;
+  std::optional<Gripper> gripper_;
 };
 
 }  // namespace kaboum::driver
