@@ -36,6 +36,8 @@ except ImportError:  # in a checkout: the file itself, which needs nothing else
     from driver import Driver, Failure
 
 STEP = 0.002        # of the simulation [s]
+FINE = 0.001        # likewise, with fingers that hold by friction [s]
+HARD, FIRM = 4, 0.99  # of contacts of pads: their time constant in steps, and MuJoCo's largest impedance
 SAMPLED = 5         # steps between samples of what was executed
 STIFF = 100.0       # of the control of joints: it corrects with this frequency, critically damped [rad/s]
 ROTOR = 0.5         # inertia of motors behind their gears [kg m², or kg]
@@ -120,7 +122,9 @@ class World:
         scene_file = pathlib.Path(options.scene)
         scene = json.loads(scene_file.read_text())
         spec = mujoco.MjSpec()
-        spec.option.timestep, spec.option.gravity = STEP, [0, 0, -GRAVITY]
+        with_fingers = any(g.get("joints") for robot in scene["robots"] for g in robot.get("grippers", []))
+        self.dt = FINE if with_fingers else STEP
+        spec.option.timestep, spec.option.gravity = self.dt, [0, 0, -GRAVITY]
         spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT, rgb1=[1, 1, 1], rgb2=[1, 1, 1],
                          width=32, height=32 * 6)
@@ -146,7 +150,7 @@ class World:
             for body in arm.bodies:
                 for geom in body.geoms if body.name in pads else ():
                     geom.friction, geom.condim, geom.priority = PAD, 4, 1
-                    geom.solref[:], geom.solimp[:3] = (2 * STEP, 1), (0.95, 0.99, 0.0005)  # as hard as goes with this step
+                    geom.solref[:], geom.solimp[:3] = (HARD * self.dt, 1), (0.95, FIRM, 0.0005)
             if pads:  # that what they hold creeps is an artefact of soft contacts
                 spec.option.impratio, spec.option.noslip_iterations = 10, 5
                 if hasattr(mujoco.mjtEnableBit, "mjENBL_MULTICCD"):  # later versions have it on
@@ -228,7 +232,7 @@ class World:
                     for e in range(m.neq):
                         if m.eq_type[e] == mujoco.mjtEq.mjEQ_JOINT and m.eq_obj2id[e] == driving:
                             moved.append((m.eq_obj1id[e], float(m.eq_data[e, 1])))
-                            m.eq_solref[e] = 2 * STEP, 1
+                            m.eq_solref[e] = HARD * self.dt, 1
                     self.fingers[name, joint] = [(int(m.jnt_dofadr[i]), int(m.jnt_qposadr[i]), by) for i, by in moved]
                 if gripper.get("joints"):
                     self.pads.setdefault(name, set()).update(m.body(f"{name}/{pad}").id for pad in gripper["pads"])
@@ -304,7 +308,7 @@ class World:
         self._finger_forces()
         mujoco.mj_step(m, d)
         self._bend_ways()
-        self.time += STEP
+        self.time += self.dt
         self._look()
         self.samples += 1
         if self.leaving and self.samples % 10 == 0:
@@ -333,17 +337,19 @@ class World:
             self.contacts[key] = max(self.contacts.get(key, 0.0), -float(contact.dist))
 
     def _bend_ways(self):
-        """A step takes a free body straight on, and a link along its curve: what friction alone has follow a link would creep outwards,
-        by half of speed² / radius · step each second. So what pads hold goes the second-order part of the link's way as well."""
+        """MuJoCo's constraints leave out how the link's Jacobian changes. So what friction alone has follow a link on a curve, of acceleration a,
+        creeps outwards: with e its velocity beside the link, e changes by −b e − a, b = 2 / (impedance · time constant), and e comes to −a / b.
+        In a step of h the two part by h² a (1 / (b h) − 1/2); that is put right here, and the force that friction has to give stays."""
         m, d = self.model, self.data
         along, about, turn = np.zeros((3, m.nv)), np.zeros((3, m.nv)), np.zeros(3)
+        part = self.dt ** 2 * (0.5 * FIRM * HARD - 0.5)
         for thing, (_, link) in self.gripped.items():
             start = m.jnt_qposadr[m.body_jntadr[m.body(thing).id]]
             mujoco.mj_jacDot(m, d, along, about, d.qpos[start:start + 3].copy(), m.body(link).id)
-            d.qpos[start:start + 3] += 0.5 * STEP ** 2 * along @ d.qvel
+            d.qpos[start:start + 3] += part * along @ d.qvel
             # MuJoCo turns free bodies in their own frame.
             mujoco.mju_rotVecQuat(turn, about @ d.qvel, np.array([1, -1, -1, -1]) * d.qpos[start + 3:start + 7])
-            mujoco.mju_quatIntegrate(d.qpos[start + 3:start + 7], turn, 0.5 * STEP ** 2)
+            mujoco.mju_quatIntegrate(d.qpos[start + 3:start + 7], turn, part)
 
     def _is_beside_pads(self, a, b, geoms):
         """Whether a link that is no pad touches what pads hold."""
@@ -360,7 +366,7 @@ class World:
         self.frames += 1
 
     def run(self, seconds):
-        for _ in range(round(seconds / STEP)):
+        for _ in range(round(seconds / self.dt)):
             self.step()
 
     def joints(self):
@@ -370,17 +376,17 @@ class World:
 
     def move(self, robot, motion):
         executed = []
-        for k in range(round(motion.duration / STEP)):
-            t = k * STEP
+        for k in range(round(motion.duration / self.dt)):
+            t = k * self.dt
             if k % SAMPLED == 0:
                 executed.append([t, *map(float, self.data.qpos[self.places[robot]])])
             self.target[robot] = tuple(map(np.array, motion.at(t)))
             self.step()
         end = np.array(motion.positions[-1])
         self.target[robot] = (end, 0.0, 0.0)
-        for k in range(round(1 / STEP)):
+        for k in range(round(1 / self.dt)):
             if k % SAMPLED == 0:
-                executed.append([motion.duration + k * STEP, *map(float, self.data.qpos[self.places[robot]])])
+                executed.append([motion.duration + k * self.dt, *map(float, self.data.qpos[self.places[robot]])])
             if np.max(np.abs(end - self.data.qpos[self.places[robot]]), initial=0) < TRACKED and \
                     np.max(np.abs(self.data.qvel[self.dofs[robot]]), initial=0) < 0.05:
                 break
@@ -504,12 +510,12 @@ class World:
         """The cup's spring lowers what a robot holds until it stands on something, as far as --reach."""
         held = {thing: weld for thing, (by, weld) in self.held.items() if by == robot}
         geoms = {g for g in range(self.model.ngeom) if self.owner[g] in held}
-        for _ in range(round(self.options.reach / (DOWN * STEP))):
+        for _ in range(round(self.options.reach / (DOWN * self.dt))):
             if any((a in geoms) != (b in geoms) and c.dist < 0 for c in self.data.contact[:self.data.ncon] for a, b in [c.geom]):
                 break
             for weld in held.values():
                 link = self.model.eq_obj1id[weld]
-                self.model.eq_data[weld, 3:6] -= DOWN * STEP * self.data.xmat[link].reshape(3, 3)[2]
+                self.model.eq_data[weld, 3:6] -= DOWN * self.dt * self.data.xmat[link].reshape(3, 3)[2]
             self.step()
 
     def weight(self, thing):

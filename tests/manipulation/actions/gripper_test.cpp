@@ -1,0 +1,256 @@
+// Fingers that close on things and open from them: what is answered is carried out among exact
+// meshes by the judge, and what must not touch is refused.
+
+#include <gtest/gtest.h>
+#include <kaboum/judge/placement.h>
+#include <kaboum/manipulation/words.h>
+#include <kaboum/world/allowed_pairs.h>
+#include <kaboum/world/gripper.h>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "two_arms.h"
+
+namespace kaboum::test {
+namespace {
+
+using geom::Transform;
+using geom::Vec3;
+using plan::Answer;
+using Words = std::map<std::string, std::string>;
+
+/// The left arm of TwoArms with two fingers, which one joint moves along x of the hand, or three
+/// about its axis; a block between them, and what stands beside it.
+class Fingers {
+ public:
+  struct Shape {
+    int fingers = 2;
+    double width = 0.05;  ///< of the block [m]
+    double pad = 0.006;   ///< thickness [m]
+    double open = 0.04;   ///< value of the joint: from the middle to a pad [m]
+    double within = 0.001;
+    std::optional<Vec3> post = {};  ///< beside the block, in its frame: the middle of a thin one
+  };
+  static constexpr double kTip = 0.24;
+
+  explicit Fingers(const Shape& s) : shape(s) {
+    world::RobotModel& robot = arms.world.robots[0];
+    robot::Robot& chain = robot.kinematics;
+    const auto variable = static_cast<std::uint32_t>(chain.variables.size());
+    chain.variables.push_back({"finger", 0.0, 0.06});
+    robot.home.push_back(s.open);
+    world::Gripper gripper{"fingers", 0, {}};
+    gripper.joints = {variable};
+    for (int k = 0; k < s.fingers; ++k) {
+      const double angle = 2 * std::numbers::pi * k / s.fingers;
+      const Transform turn{Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(),
+                           Vec3::Zero()};
+      const std::string name = std::to_string(k);
+      const std::uint32_t finger = add_link("finger" + name, arms.hand, turn, variable);
+      const std::uint32_t pad = add_link("pad" + name, finger, {}, std::nullopt);
+      add_shape(finger, {0.008, 0.02, 0.08}, {s.pad + 0.004, 0, kTip - 0.04});
+      add_shape(pad, {s.pad, 0.02, 0.04}, {s.pad / 2, 0, kTip - 0.02});
+      gripper.pads.push_back(pad);
+    }
+    robot.grippers = {gripper};
+    robot.allowed = world::connected_links(robot);
+    world::Object& block = arms.world.objects[TwoArms::kBlock];
+    block.outer = {{{"", box_at({s.width, s.width, 0.16}, Vec3::Zero())}},
+                   collide::Direction::Outer,
+                   TwoArms::kEpsilon};
+    block.grasps.resize(1);
+    block.grasps[0].opening = {{"finger", s.width / 2 - 0.0005}};
+    block.grasps[0].within = s.within;
+    // The other arm and what is not needed are far away.
+    arms.world.objects[TwoArms::kSocket].pose.translation = {0.5, -0.4, 0.021};
+    arms.world.objects[TwoArms::kWall].outer = {{{"", box_at({0.004, 0.02, 0.16}, Vec3::Zero())}},
+                                                collide::Direction::Outer,
+                                                TwoArms::kEpsilon};
+    if (s.post)
+      arms.world.objects[TwoArms::kWall].pose.translation = block.pose.translation + *s.post;
+    for (std::size_t r = 0; r < 2; ++r) {
+      const world::RobotModel& model = arms.world.robots[r];
+      cell.add_robot(model.name, model.kinematics, model.base);
+      for (const auto& pair : model.allowed)
+        cell.allow(model.name + "/" + model.kinematics.links[pair.a].name,
+                   model.name + "/" + model.kinematics.links[pair.b].name);
+    }
+    for (std::size_t r = 0; r < 2; ++r)
+      for (const world::LinkShape& link : arms.world.robots[r].shapes)
+        cell.add_link(r, link.link, link.outer.body(0).core);
+    for (const world::Object& o : arms.world.objects)
+      cell.add_object(o.name, o.outer.body(0).core);
+  }
+
+  /// What a call answers with everything at first but for what `words` says.
+  Answer ask_for(const std::string& function, const std::vector<std::string>& arguments,
+                 Words words = {}) {
+    words.merge(Words{{"conf(left)", "home"},
+                      {"conf(right)", "home"},
+                      {"pose(block)", "start"},
+                      {"pose(socket)", "start"},
+                      {"pose(wall)", "start"}});
+    return ask(manipulation::bind_externals(arms.world, {}), function, arguments, words, 3);
+  }
+
+  Shape shape;
+  TwoArms arms;
+  judge::Cell cell;
+
+ private:
+  std::uint32_t add_link(const std::string& name, std::uint32_t parent, const Transform& origin,
+                         std::optional<std::uint32_t> variable) {
+    robot::Robot& chain = arms.world.robots[0].kinematics;
+    robot::Joint joint;
+    joint.name = name;
+    joint.parent = parent;
+    joint.origin = origin;
+    joint.axis = Vec3::UnitX();
+    if (variable) {
+      joint.type = robot::JointType::Prismatic;
+      joint.variable = *variable;
+    }
+    chain.joints.push_back(joint);
+    chain.links.emplace_back();
+    chain.links.back().name = name;
+    return static_cast<std::uint32_t>(chain.links.size() - 1);
+  }
+
+  void add_shape(std::uint32_t link, const Vec3& size, const Vec3& center) {
+    arms.world.robots[0].shapes.push_back(
+        {link, {{{"", box_at(size, center)}}, collide::Direction::Outer, TwoArms::kEpsilon}, {}});
+  }
+};
+
+/// Carries motions out: every sample is looked at, and only pads may touch what is held.
+struct Execution {
+  explicit Execution(Fingers& f) : fingers(f), state(f.arms.state()) {
+    for (std::size_t o = 0; o < state.objects.size(); ++o)
+      state.objects[o].pose = f.arms.world.objects[o].pose;
+  }
+
+  void follow(const Answer& answer) {
+    for (const nlohmann::json& part : nlohmann::json::parse(answer.payload)) {
+      const auto path = part.at("path").get<robot::Path>();
+      ASSERT_EQ(path.front(), state.q[0]);
+      auto& place = state.objects[TwoArms::kBlock];
+      const bool holds = part.contains("holds");
+      if (holds && !place.hold) {
+        ASSERT_EQ(part.value("closes", ""), "block") << "it is held from when fingers close on it";
+        const Transform hand = fingers.cell.pose_of(state, 0, fingers.arms.hand);
+        const Transform back{hand.linear.transpose(),
+                             -(hand.linear.transpose() * hand.translation)};
+        place.hold = judge::Hold{0, fingers.arms.hand, judge::product(back, place.pose),
+                                 fingers.arms.world.robots[0].grippers[0].pads, false};
+      } else if (!holds && place.hold) {
+        ASSERT_TRUE(opened) << "it is let go when fingers have opened";
+        place.pose = fingers.cell.pose_of(state, TwoArms::kBlock);
+        place.hold.reset();
+      }
+      const bool moves_fingers = part.contains("closes") || part.contains("opens");
+      for (const std::vector<double>& q : samples_of(path, moves_fingers ? 1e-4 : 0.01)) {
+        for (std::size_t j = 0; j < q.size(); ++j) {
+          const bool is_finger = j + 1 == q.size();
+          if (is_finger != moves_fingers) {
+            ASSERT_EQ(q[j], path.front()[j]) << "fingers or the arm, not both";
+          }
+        }
+        state.q[0] = q;
+        const auto meeting = fingers.cell.find_meeting(state, 0);
+        ASSERT_FALSE(meeting) << meeting->names[0] << " and " << meeting->names[1];
+        ++samples;
+      }
+      closed = closed || part.contains("closes");
+      opened = part.contains("opens");
+    }
+  }
+
+  Fingers& fingers;
+  judge::CellState state;
+  bool closed = false, opened = false;
+  std::size_t samples = 0;
+};
+
+TEST(Fingers, CloseHoldAndOpen) {
+  for (const int count : {2, 3, 4})
+    for (const double width : {0.02, 0.035, 0.05})
+      for (const double within : {0.0, 0.001, 0.003}) {
+        SCOPED_TRACE(std::to_string(count) + " fingers, " + std::to_string(width));
+        Fingers f({.fingers = count, .width = width, .within = within});
+        const Answer fetched = f.ask_for("fetch", {"left", "block", "home"});
+        ASSERT_EQ(fetched.kind, Answer::Kind::Value) << fetched.reason;
+        EXPECT_TRUE(fetched.value.ends_with(" by top")) << fetched.value;
+        Execution run(f);
+        run.follow(fetched);
+        EXPECT_TRUE(run.closed);
+        EXPECT_EQ(run.state.q[0].back(), width / 2 - 0.0005);
+        const Answer put =
+            f.ask_for("put", {"left", "block", "socket", "home"}, {{"pose(block)", fetched.value}});
+        ASSERT_EQ(put.kind, Answer::Kind::Value) << put.reason;
+        run.follow(put);
+        EXPECT_EQ(run.state.q[0], f.arms.world.robots[0].home);
+        EXPECT_FALSE(run.state.objects[TwoArms::kBlock].hold);
+        EXPECT_GT(run.samples, 500U);
+      }
+}
+
+/// In two steps, as domains have them: where a call says that the robot is, fingers are as what it
+/// holds decides.
+TEST(Fingers, GraspAndReleaseCloseAndOpen) {
+  Fingers f({});
+  const Answer reached = f.ask_for("reach", {"left", "block"});
+  ASSERT_EQ(reached.kind, Answer::Kind::Value) << reached.reason;
+  const Answer grasped = f.ask_for("grasp", {"left", "block", reached.value});
+  ASSERT_EQ(grasped.kind, Answer::Kind::Value) << grasped.reason;
+  Execution run(f);
+  run.follow(reached);
+  run.follow(grasped);
+  EXPECT_TRUE(run.closed);
+  const Answer released =
+      f.ask_for("release", {"left", "block", reached.value},
+                {{"pose(block)", grasped.value}, {"conf(left)", reached.value}});
+  ASSERT_EQ(released.kind, Answer::Kind::Value) << released.reason;
+  EXPECT_EQ(released.value, "start");
+  run.follow(released);
+  EXPECT_TRUE(run.opened);
+  // Nothing else is taken meanwhile.
+  const Answer again =
+      f.ask_for("grasp", {"left", "block", reached.value}, {{"pose(block)", grasped.value}});
+  EXPECT_EQ(again.kind, Answer::Kind::Impossible);
+}
+
+void expect_refused(const Fingers::Shape& shape, const std::string& a, const std::string& b) {
+  Fingers f(shape);
+  const Answer answer = f.ask_for("fetch", {"left", "block", "home"});
+  ASSERT_NE(answer.kind, Answer::Kind::Value) << answer.payload;
+  EXPECT_NE(answer.reason.find("does not close on block"), std::string::npos) << answer.reason;
+  EXPECT_TRUE(answer.reason.find(a) != std::string::npos &&
+              answer.reason.find(b) != std::string::npos)
+      << answer.reason;
+}
+
+TEST(Fingers, WhatIsNoPadMustNotTouchTheThing) {
+  // Pads so thin that the fingers behind them would touch.
+  expect_refused({.pad = 0.0004}, "left/finger", "block");
+}
+
+TEST(Fingers, PadsMustNotTouchAnythingElse) {
+  // Between the open pad and where it holds: it would close through the post.
+  for (const double x : {0.030, 0.034}) expect_refused({.post = Vec3(x, 0, 0.06)}, "left/", "wall");
+}
+
+TEST(Fingers, RoomThatFingersStopInIsFreeAsWell) {
+  // Beside the finger that has closed, between it and where it was: nearer than it may be off.
+  const auto beside = [](double gap, double within) {
+    const double outside = 0.025 - 0.0005 + 0.006 + 0.008;
+    Fingers f({.open = 0.0275, .within = within, .post = Vec3(outside + 0.003 + gap, 0, 0.06)});
+    return f.ask_for("fetch", {"left", "block", "home"}).kind == Answer::Kind::Value;
+  };
+  EXPECT_TRUE(beside(0.006, 0.001));
+  EXPECT_FALSE(beside(0.006, 0.005));
+}
+
+}  // namespace
+}  // namespace kaboum::test
