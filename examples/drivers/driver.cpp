@@ -8,6 +8,7 @@
 
 #include <kaboum/driver/driver.h>
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 
@@ -17,7 +18,10 @@ class NoRobot final : public kaboum::driver::Driver {
  protected:
   void begin(const std::map<std::string, kaboum::driver::Robot>& robots,
              const std::map<std::string, kaboum::driver::Place>& /*objects*/) override {
-    for (const auto& [name, robot] : robots) q_[name] = robot.q;
+    for (const auto& [name, robot] : robots) {
+      q_[name] = robot.q;
+      names_[name] = robot.joint_names;
+    }
   }
   std::vector<kaboum::driver::ExecutedSample> move(const std::string& robot,
                                                    const kaboum::driver::Motion& motion) override {
@@ -30,6 +34,15 @@ class NoRobot final : public kaboum::driver::Driver {
     q_[robot] = motion.points.back().q;
     return out;
   }
+  void close(const std::string& robot, const std::string& /*link*/) override {
+    if (gripper() == nullptr) return;  // it has no joints
+    const std::vector<std::string>& names = names_[robot];
+    for (std::size_t k = 0; k < gripper()->joint_names.size(); ++k) {
+      const auto joint = std::find(names.begin(), names.end(), gripper()->joint_names[k]);
+      q_[robot][static_cast<std::size_t>(joint - names.begin())] = gripper()->to[k];
+    }
+  }
+  void open(const std::string& robot, const std::string& link) override { close(robot, link); }
   std::optional<std::vector<double>> where(const std::string& robot) override { return q_[robot]; }
   std::string sense(const std::string& /*fact*/, const std::vector<std::string>& values) override {
     return values.front();
@@ -37,6 +50,7 @@ class NoRobot final : public kaboum::driver::Driver {
 
  private:
   std::map<std::string, std::vector<double>> q_;
+  std::map<std::string, std::vector<std::string>> names_;  ///< of joints
 };
 
 }  // namespace

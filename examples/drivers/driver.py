@@ -38,6 +38,13 @@ class NoRobot(Driver):
         if self.options.stray is not None:  # what encoders would have seen: farthest off half way
             return [[t, *(x + self.options.stray * math.sin(math.pi * t / motion.duration) for x in q)] for t, q in zip(motion.times, motion.positions)]
 
+    def close(self, robot, link):
+        if self.gripper:  # it has joints: they are there at once
+            for joint, to in zip(self.gripper["joint_names"], self.gripper["to"]):
+                self.q[robot][self.robots[robot].index(joint)] = to
+
+    open = close
+
     def sense(self, fact, values):
         said = self.sensed.get(fact)
         return said if said is not None else self.random.choice(values)

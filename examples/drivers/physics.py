@@ -222,7 +222,7 @@ class World:
     def _find_fingers(self, scene):
         """Joints of grippers, each with those that mimic it; links that are pads; what is held by these."""
         m = self.model
-        self.fingers, self.pads, self.gripped, self.squeeze = {}, {}, {}, {}
+        self.fingers, self.pads, self.gripped, self.squeeze, self.parting = {}, {}, {}, {}, set()
         for robot in scene["robots"]:
             name = robot["name"]
             for gripper in robot.get("grippers", []):
@@ -322,7 +322,7 @@ class World:
 
     def _look(self):
         """Contacts between what moves with a robot and what does not."""
-        carrier = {thing: robot for thing, (robot, _) in (*self.held.items(), *self.gripped.items())}
+        carrier = {thing: robot for thing, (robot, _) in (*self.held.items(), *self.gripped.items()) if thing not in self.parting}
         for i in range(self.data.ncon):
             contact = self.data.contact[i]
             if contact.dist > -DEEP:
@@ -331,7 +331,8 @@ class World:
             of_a, of_b = carrier.get(a, a), carrier.get(b, b)
             if of_a not in self.robots and of_b not in self.robots:
                 continue
-            if of_a == of_b and not self._is_beside_pads(a, b, contact.geom):
+            beside = self._is_beside_pads(a, b, contact.geom)
+            if beside is False or (of_a == of_b and not beside):
                 continue
             key = (self.action, *sorted((a, b)))
             self.contacts[key] = max(self.contacts.get(key, 0.0), -float(contact.dist))
@@ -352,11 +353,11 @@ class World:
             mujoco.mju_quatIntegrate(d.qpos[start + 3:start + 7], turn, part)
 
     def _is_beside_pads(self, a, b, geoms):
-        """Whether a link that is no pad touches what pads hold."""
+        """Whether a link that is no pad touches what pads hold; False: a pad does. None: it is about something else."""
         for thing, robot, geom in ((a, b, geoms[1]), (b, a, geoms[0])):
-            if thing in self.gripped and robot in self.robots:
-                return self.model.geom_bodyid[geom] not in self.pads[robot]
-        return False
+            if thing in self.gripped and robot == self.gripped[thing][0]:
+                return bool(self.model.geom_bodyid[geom] not in self.pads[robot])
+        return None
 
     def _picture(self):
         camera = mujoco.MjvCamera()
@@ -444,10 +445,12 @@ class World:
         self.held_by_plan[thing] = (name, at, turn)
 
     def _open(self, robot, thing, gripper):
+        self.parting.add(thing)  # it may touch what it is put on
         for joint in gripper["joint_names"]:
             self.squeeze.pop((robot, joint), None)
         self._tell_fingers(robot, gripper)
         self._stand(robot, gripper, 2.0)
+        self.parting.discard(thing)
         self.gripped.pop(thing, None)
         self.held_by_plan.pop(thing, None)
 

@@ -128,13 +128,43 @@ std::vector<double> finger_room(const World& world, std::size_t robot,
   return out;
 }
 
+namespace {
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return out;
+}
+
+}  // namespace
+
 std::string name_pads(const World& world, const Attachment& held) {
   const RobotModel& model = world.robots[held.robot];
-  std::string out;
-  for (std::size_t i = 0; i < held.touching.size(); ++i) {
-    if (i > 0) out += i + 1 == held.touching.size() ? " and " : ", ";
-    out += model.name + "/" + model.kinematics.links[held.touching[i]].name;
-  }
+  std::vector<std::string> names;
+  for (const std::uint32_t link : held.touching)
+    names.push_back(model.name + "/" + model.kinematics.links[link].name);
+  return listed(names);
+}
+
+std::string pads_claim(const World& world) {
+  std::vector<std::string> names;
+  for (const RobotModel& robot : world.robots)
+    for (const Gripper& gripper : robot.grippers)
+      for (const std::uint32_t link : gripper.pads)
+        names.push_back(robot.name + "/" + robot.kinematics.links[link].name);
+  if (names.empty()) return "";
+  return std::string("free but for the ") + (names.size() == 1 ? "pad " : "pads ") + listed(names) +
+         " with what " + (names.size() == 1 ? "it holds" : "they hold");
+}
+
+std::vector<std::string> notes_of_pads(const World& world) {
+  std::vector<std::string> out;
+  for (std::size_t o = 0; o < world.attachments.size(); ++o)
+    if (const auto& held = world.attachments[o]; held && !held->link_touches)
+      out.push_back("contact of " + world.objects[o].name + " and " + name_pads(world, *held) +
+                    ", which hold it, is left out");
   return out;
 }
 

@@ -58,6 +58,7 @@ class Parser : detail::SceneRobot {
     for (const Located& a : list(root, "attachments")) attach(a);
     for (const Located& c : list(root, "constraints")) add_constraints(c);
     note_unknown_sources();
+    for (std::string& note : notes_of_pads(world_)) notes.push_back(std::move(note));
   }
 
   World take() { return std::move(world_); }

@@ -135,6 +135,10 @@ Gripper SceneRobot::gripper_of(const RobotModel& robot, const Located& gripper) 
         fail(joint, "the joint '" + joint.text + "' is one of the gripper '" + other.name + "'");
     if (std::ranges::find(out.joints, variable) != out.joints.end())
       fail(joint, "the joint '" + joint.text + "' is there twice");
+    for (std::uint32_t at = hand; at > 0; at = robot.kinematics.joints[at - 1].parent)
+      if (robot.kinematics.joints[at - 1].type != robot::JointType::Fixed &&
+          robot.kinematics.joints[at - 1].variable == variable)
+        fail(joint, "the joint '" + joint.text + "' moves the tool itself, not only its pads");
     out.joints.push_back(variable);
   }
   std::set<std::uint32_t> moving;  // joints that move a pad against the tool

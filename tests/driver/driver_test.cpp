@@ -133,6 +133,56 @@ TEST(Driver, AGripperClosesAndOpensOnce) {
   for (const std::size_t k : {3U, 6U}) EXPECT_TRUE(answers.at(k).contains("failed")) << k;
 }
 
+/// Notes how far a gripper with joints goes.
+class Hand : public Recorder {
+ protected:
+  void close(const std::string& robot, const std::string& link) override {
+    Recorder::close(robot, link);
+    note();
+  }
+  void open(const std::string& robot, const std::string& link) override {
+    Recorder::open(robot, link);
+    note();
+  }
+
+ private:
+  void note() {
+    const Gripper* g = gripper();
+    calls.push_back(g == nullptr
+                        ? "no joints"
+                        : g->name + " " + g->joint_names.at(0) + " to " + json(g->to.at(0)).dump() +
+                              " within " + json(g->within).dump());
+  }
+};
+
+TEST(Driver, AGripperWithJointsIsToldHowFarAndMotionsBeginThere) {
+  Hand driver;
+  driver.at = Values{0, 0.25};
+  json begin = kBegin;
+  begin["objects"] = json::object();
+  const json gripper = {{"name", "fingers"}, {"joint_names", {"b"}}, {"from", {1.0}},
+                        {"to", {0.25}},      {"within", 0.0625},     {"pads", {"pad"}}};
+  json take = {{"do", "take"}, {"robot", "arm"}, {"object", "o1"}, {"link", "hand"}};
+  json plain = take;
+  plain["object"] = "o2";
+  take["gripper"] = gripper;
+  json unknown = take;
+  unknown["gripper"]["joint_names"] = {"c"};
+  json release = {{"do", "release"}, {"robot", "arm"}, {"object", "o1"}, {"gripper", gripper}};
+  release["gripper"]["to"] = {1.0};
+  const auto answers = speak(driver, {begin, unknown, take, move_of(trajectory()), release, plain});
+  EXPECT_TRUE(answers.at(1).contains("failed"));
+  EXPECT_EQ(answers.at(2), json({{"done", true}, {"q", {0, 0.25}}, {"id", 3}}));
+  // Told to be at 0.25 since then; that motion begins at 1.
+  EXPECT_NE(answers.at(3).value("failed", "").find("begins elsewhere"), std::string::npos);
+  EXPECT_TRUE(answers.at(4).contains("done"));
+  EXPECT_EQ(driver.calls,
+            (std::vector<std::string>{"begin 1", "close hand", "fingers b to 0.25 within 0.0625",
+                                      "attach o1", "detach o1", "open hand",
+                                      "fingers b to 1.0 within 0.0625", "close hand", "no joints",
+                                      "attach o2", "stop"}));
+}
+
 TEST(Driver, WhereItIsAndHowItMovedAreSaid) {
   Recorder driver;
   driver.at = Values{0, 1};

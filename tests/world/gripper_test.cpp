@@ -95,11 +95,11 @@ TEST(Gripper, OnlyItsPadsMayTouchWhatItHolds) {
   {
     // A pad that touches another thing.
     const std::string two = box(files, "0.7", side());
-    const World world = files.world(
-        files.scene(two.substr(0, two.size() - 1) +
-                        R"(, {"name": "other", "pose": {"position": [3.3, -0.2, 0.1]}, "outer": )" +
-                        files.ref("box.glb") + "}]" + kHeld,
-                    kGripper));
+    const World world = files.world(files.scene(
+        two.substr(0, two.size() - 1) +
+            R"(, {"name": "other", "pose": {"position": [2.6, -0.42, 0.1]}, "outer": )" +
+            files.ref("box.glb") + "}]" + kHeld,
+        kGripper));
     WorldState state = initial_state(world);
     const auto now = contacts(world, state);
     EXPECT_TRUE(meets(now, world, "arm/l3", "other"));
@@ -143,6 +143,11 @@ TEST(Gripper, MistakesAreNamed) {
   expect_refused(files, gripper(R"(, "pads": ["l3"])"), {"'j3' moves the pad 'l3'", "'joints'"});
   expect_refused(files, gripper(R"(, "pads": ["base"], "joints": ["j3"])"), {"does not hang"});
   expect_refused(files, gripper(R"(, "pads": ["l3"], "joints": ["j3", "j1"])"),
+                 {"'j1' moves the tool itself"});
+  expect_refused(files,
+                 files.scene(box(files, "0.7", side()),
+                             R"("tools": [{"name": "flange", "link": "base"}], "grippers": [{"name":
+                             "hand", "tool": "flange", "pads": ["l1"], "joints": ["j1", "j3"]}])"),
                  {"moves no pad against the tool"});
   expect_refused(files, gripper(R"(, "pads": ["l3"], "joints": ["j3"], "force": 0)"),
                  {"a force above 0"});

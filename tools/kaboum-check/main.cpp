@@ -363,7 +363,7 @@ int check(const tools::CheckOptions& o) {
              : !o.configurations.empty()
                  ? robot::read_path(o.configurations, model.kinematics, o.reading, notes)
              : !o.configuration.empty() ? parse_configuration(o, model.kinematics)
-                                        : robot::Path{model.home};
+                                        : robot::Path{initial_state(scene.world).q[*robot]};
   }
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   const auto tell = [&](const std::string& line) { say(o, line); };

@@ -117,7 +117,7 @@ MoveRequest read_request(const MoveOptions& o) {
   };
   r.start = !o.start.empty()  ? read(o.start, true).back()
             : !o.from.empty() ? configuration(o.from, "--from", o, robot)
-                              : r.model().home;
+                              : initial_state(r.scene.world).q[r.robot];
   for (const std::string& text : o.to) {
     r.goals.push_back(configuration(text, "--to", o, robot));
     r.numbers.push_back(r.goals.size());

@@ -142,6 +142,8 @@ int solve(const PlanOptions& o) {
   if (!o.task.margin.margins.empty()) report["margins"] = words_of(o.task.margin);
   if (!engine.empty()) report["engine"] = engine_json(o);
   task.keep_answers();
+  const std::string pads = pads_of(task);
+  if (!pads.empty()) report["claim"] = pads;
   if (task.scene() != nullptr) {
     report["geometry"] = geometry_json(task.counters());
     report["geometry"]["answers_reused"] = task.answers_reused();
@@ -173,7 +175,8 @@ int solve(const PlanOptions& o) {
                                       (n == 1 ? " assumption: " : " assumptions: ")) +
                             std::to_string(size.nodes) + " nodes, " + std::to_string(size.leaves) +
                             " leaves, longest path " + std::to_string(size.longest) + " actions" +
-                            (engine.empty() ? "" : ", contacts " + engine));
+                            (engine.empty() ? "" : ", contacts " + engine) +
+                            (pads.empty() || !engine.empty() ? "" : "; motions are " + pads));
     return kDone;
   }
   std::cerr << "kaboum-plan: " << said.sentence << (engine.empty() ? "" : ", contacts " + engine)
@@ -197,8 +200,12 @@ int check(const PlanOptions& o) {
                  {"violation", r.violation},  {"states_replayed", r.states},
                  {"ends_replayed", r.leaves}, {"plan", size_json(plan::measure(model, p))}};
   if (!engine.empty()) report["engine"] = engine_json(o);
+  const std::string pads = pads_of(task);
+  if (!pads.empty()) report["claim"] = pads;
   write_report(o.common, "kaboum-plan", report);
-  const std::string by = engine.empty() ? "" : ", contacts " + engine;
+  const std::string by = !engine.empty() ? ", contacts " + engine
+                         : !pads.empty() ? "; motions are " + pads
+                                         : "";
   if (!r.valid) {
     std::cout << "invalid: " << r.violation << by << '\n';
     return kNo;

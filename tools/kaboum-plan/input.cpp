@@ -6,6 +6,7 @@
 #include <kaboum/engines/engine_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/outcomes.h>
+#include <kaboum/world/gripper.h>
 
 namespace kaboum::tools {
 
@@ -16,6 +17,10 @@ execution::PlanningTask read_task(const PlanOptions& o, bool answers_kept) {
   if (task.scene() != nullptr)
     for (const std::string& note : task.scene()->notes) log(o.common.quiet, note);
   return task;
+}
+
+std::string pads_of(const execution::PlanningTask& task) {
+  return task.scene() == nullptr ? std::string() : world::pads_claim(task.scene()->world);
 }
 
 std::map<std::string, std::string> read_outcomes(const std::string& file) {

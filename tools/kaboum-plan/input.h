@@ -15,6 +15,9 @@ namespace kaboum::tools {
 /// @throws Error as execution::PlanningTask.
 execution::PlanningTask read_task(const PlanOptions& options, bool answers_kept = false);
 
+/// What is left out of contacts in a task's scene, as world::pads_claim; empty: nothing.
+std::string pads_of(const execution::PlanningTask& task);
+
 /// A file of outcomes. @throws Error{InvalidInput} as plan::parse_outcomes.
 std::map<std::string, std::string> read_outcomes(const std::string& file);
 

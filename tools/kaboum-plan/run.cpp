@@ -197,6 +197,8 @@ int run_plan(const PlanOptions& o) {
   const bool good = drive.good();
   report["verdict"] = good ? "good" : "not good";
   if (!plan.not_certified.empty()) report["not_certified"] = plan.not_certified;
+  if (const std::string pads = pads_of(task); !pads.empty() && plan.not_certified.empty())
+    report["claim"] = pads;
   write_report(o.common, "kaboum-plan", report);
   for (const std::string& problem : r.problems) std::cerr << "kaboum-plan: " << problem << '\n';
   if (drive.stopped)

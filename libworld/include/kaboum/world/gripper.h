@@ -49,7 +49,14 @@ std::vector<double> with_fingers_of(const RobotModel& robot, const std::vector<d
 std::vector<double> finger_room(const World& world, std::size_t robot,
                                 const std::vector<std::optional<Attachment>>& attachments);
 
-/// "pads arm/left and arm/right"
+/// "arm/left and arm/right": the links that may touch what is held.
 std::string name_pads(const World& world, const Attachment& held);
+
+/// What is left out of contacts in what is certified of a world: "free but for the pads arm/left
+/// and arm/right with what they hold"; empty: no gripper has pads.
+std::string pads_claim(const World& world);
+
+/// Sentences for the things that pads hold at first: which contact is left out.
+std::vector<std::string> notes_of_pads(const World& world);
 
 }  // namespace kaboum::world
