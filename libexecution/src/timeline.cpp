@@ -56,6 +56,16 @@ std::string field(const Json& value) {
 constexpr const char* kColumns[] = {"time",     "event", "robot", "object", "link", "file",
                                     "duration", "fact",  "value", "next",   "plan"};
 
+/// What is taken or let go.
+Json hold_json(const world::World& world, const NodeEvent& event, double time) {
+  const world::RobotModel& robot = world.robots[event.by.robot];
+  return {{"time", time},
+          {"event", event.kind == NodeEvent::Kind::Take ? "take" : "release"},
+          {"robot", robot.name},
+          {"object", world.objects[event.object].name},
+          {"link", robot.kinematics.links[event.by.link].name}};
+}
+
 /// How a step goes on: what decides it and what is sensed, at its end.
 /// @param unplanned  of those that no branch is for, its number: the plan is not known yet
 Json way_json(const plan::RunStep& step, double end, std::size_t unplanned) {
@@ -146,15 +156,6 @@ void Timeline::add(const plan::RunStep& step) {
     }
   }
   Held held = held_in(before->state);
-  const auto event_json = [&](const NodeEvent& event, double time) {
-    const bool takes = event.kind == NodeEvent::Kind::Take;
-    const world::RobotModel& robot = world_.robots[event.by.robot];
-    return Json{{"time", time},
-                {"event", takes ? "take" : "release"},
-                {"robot", robot.name},
-                {"object", world_.objects[event.object].name},
-                {"link", robot.kinematics.links[event.by.link].name}};
-  };
   const plan::Plan::Node& node = plan_->nodes[step.node];
   const std::vector<MotionPart>& parts = motions_->of(step.node, *before);
   const std::vector<NodeEvent> moving = motion_events(parts, held);
@@ -168,7 +169,7 @@ void Timeline::add(const plan::RunStep& step) {
     for (const NodeEvent& event : moving) {
       if (event.moves_fingers) {
         const Json& motion = added.at(next++);
-        Json entry = event_json(event, time);
+        Json entry = hold_json(world_, event, time);
         entry["file"] = motion["file"];
         entry["duration"] = motion["duration"];
         entry["gripper"] = to_json<Json>(finger_motion_of(parts[event.motion], world_));
@@ -177,7 +178,7 @@ void Timeline::add(const plan::RunStep& step) {
         continue;
       }
       if (event.kind != NodeEvent::Kind::Move) {
-        events.push_back(event_json(event, time));
+        events.push_back(hold_json(world_, event, time));
         continue;
       }
       if (parts[event.motion].path.empty()) continue;  // the simulation has said so
@@ -199,7 +200,7 @@ void Timeline::add(const plan::RunStep& step) {
   const double end = out["duration"].get<double>();
   Json way = way_json(step, end, unplanned);
   for (const NodeEvent& event : settling_events(after->state, held))
-    way["events"].push_back(event_json(event, end));
+    way["events"].push_back(hold_json(world_, event, end));
   if (step.next != plan::kNone) way["next"] = step_number(step.next, after->words);
   // `out` may have moved.
   Json& ways = data_->steps[number]["ways"];

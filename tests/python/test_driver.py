@@ -89,6 +89,28 @@ def test_a_gripper_closes_and_opens_once():
     assert ["failed" in a for a in answers] == [False, False, False, True, False, False, True]
 
 
+def test_a_gripper_with_joints_is_told_how_far_and_motions_begin_there():
+    class Hand(Recorder):
+        def close(self, robot, link):
+            self.calls.append(self.gripper and (self.gripper["name"], self.gripper["to"], self.gripper["within"]))
+
+        open = close
+
+        def where(self, robot):
+            return self.q[robot]
+
+    gripper = {"name": "fingers", "joint_names": ["b"], "from": [1.0], "to": [0.25], "within": 0.01, "pads": ["pad"]}
+    take = {"do": "take", "robot": "arm", "object": "o1", "link": "hand"}
+    driver = Hand()
+    answers = speak(driver, {**BEGIN, "objects": {}}, {**take, "gripper": {**gripper, "joint_names": ["c"]}}, {**take, "gripper": gripper},
+                    {"do": "move", "robot": "arm", "trajectory": trajectory()},
+                    {"do": "release", "robot": "arm", "object": "o1", "gripper": {**gripper, "to": [1.0]}}, {**take, "object": "o2"})
+    assert "failed" in answers[1] and answers[2]["done"] and len(answers[2]["q"]) == 2
+    assert "begins elsewhere" in answers[3]["failed"], "it was told to be at 0.25 since then"
+    assert [c for c in driver.calls if c is None or c[0] == "fingers"] == [("fingers", [0.25], 0.01), ("fingers", [1.0], 0.01), None]
+    assert driver.gripper is None
+
+
 def test_where_it_is_is_said():
     class Known(Recorder):
         at = [0.0, 1.0]
