@@ -158,6 +158,19 @@ def add_fingers(parser):
     parser.add_argument("--fingers", action="store_true", help="two fingers that close and hold by friction, not a hand that stays as it is")
 
 
+def necked(o, cell, name, home, base=(0, 0, 0)):
+    """An arm with a gripper for bottles: with --fingers such as close."""
+    if o.fingers:
+        cell.robot(name, parts.arm6(name, "fingers"), {**home, "finger": parts.OPEN}, base, grippers=[parts.FINGERS])
+    else:
+        cell.robot(name, parts.arm6(name, "neck"), home, base)
+
+
+def of_neck(o, grasps):
+    """Grasps at the neck of a bottle: fingers close a little farther than to the neck, which stops them."""
+    return [{**g, "opening": {"finger": parts.NECK - 0.0005}, "within": 0.001} if o.fingers else g for g in grasps]
+
+
 def domain_of(o, name):
     """The scenario's domain, with the action move where it is asked for: last, as depth-first search takes actions in order."""
     if not o.move:
