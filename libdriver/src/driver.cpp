@@ -175,8 +175,7 @@ struct Driver::Answers {
     for (const std::string& joint : out.joint_names)
       if (std::ranges::find(names, joint) == names.end() ||
           out.to.size() != out.joint_names.size() || out.from.size() != out.joint_names.size())
-        throw Failure("'" + robot + "' does not have the joint '" + joint +
-                      "' of the gripper, or there is no value of it");
+        throw Failure("there is no joint '" + joint + "', or no value for it, as of the gripper");
     driver.gripper_ = std::move(out);
   }
 

@@ -77,8 +77,7 @@ Attachment hold_by(const World& world, std::size_t robot, std::uint32_t link, co
           {variable, *find_value(grasp, model.kinematics.variables[variable].name), grasp.within});
   }
   std::ranges::sort(out.touching);
-  const auto repeated = std::ranges::unique(out.touching);
-  out.touching.erase(repeated.begin(), repeated.end());
+  out.touching.erase(std::unique(out.touching.begin(), out.touching.end()), out.touching.end());
   return out;
 }
 

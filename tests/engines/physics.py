@@ -25,16 +25,16 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(sys.argv[2]).resolve()
 
 
-def scenario(folder, name, *more):
+def scenario(folder, name, *more, out=None):
     environment = dict(os.environ, KABOUM_BIN=str(BIN), KABOUM_CACHE=str(folder / "cache"), KABOUM_ENGINES=sys.prefix)
-    done = subprocess.run([ROOT / f"examples/scenarios/{name}/run", *more, "--plan-only", "--out", folder / name], env=environment, capture_output=True,
+    done = subprocess.run([ROOT / f"examples/scenarios/{name}/run", *more, "--plan-only", "--out", folder / (out or name)], env=environment, capture_output=True,
                           text=True, check=False)
     return done, json.loads(done.stdout.splitlines()[-1]) if done.stdout else {}
 
 
-def carry_out(folder, name, *driver):
+def carry_out(folder, name, *driver, out=None):
     """The plan of a scenario that was made, by a driver with other options."""
-    at = folder / name
+    at = folder / (out or name)
     robots = [x for xml in (at / "physics").glob("*/*.xml") for x in ("--robot", f"{xml.parent.name}={xml}")]
     command = " ".join([sys.executable, str(ROOT / "examples/drivers/physics.py"), "--scene", str(at / "cell.json"), *robots, "--report", str(at / "said.json"),
                         *driver])
@@ -66,6 +66,21 @@ def main():
             for i in (1, 2):
                 told = [w for w in done.stderr.split("\n") if w.startswith(f"physics.py: o{i} weighs")]
                 check(len(told) == 1 and abs(float(told[0].split()[3]) - float(mass)) < 0.01, f"{mass} kg: {told}")
+
+        # Fingers close and hold by friction; with too little force they lose what they hold, and the run ends there.
+        for what in ("force-sensing", "bartender"):
+            done, said = scenario(folder, what, "2", "--fingers", "--physics", "1", "--blend", "0.5", out="fingers")
+            physics = said.get("physics", {})
+            check(done.returncode == 0 and physics.get("good") == 1 and physics["unplanned_contacts"] == 0, f"{what}, fingers: {physics}, {done.stderr[-500:]}")
+            executed = json.loads((folder / "fingers/physics/run-1.json").read_text())["driver"]["executed"]
+            check(executed["samples"] > 500 and executed["collisions"] == 0 and executed["margin"] < 0.003, f"{what}, fingers: {executed}")
+            if what != "force-sensing":
+                continue
+            cell = json.loads((folder / "fingers/cell.json").read_text())
+            cell["robots"][0]["grippers"][0]["force"] = 2
+            (folder / "fingers/cell.json").write_text(json.dumps(cell))
+            done, _, report = carry_out(folder, what, "--mass o1=0.6", "--mass o2=0.6", out="fingers")
+            check(done.returncode == 1 and "joint 'finger'" in report["driver"]["reason"], f"loose fingers: {report['driver']}")
 
         # What goes wrong is not called good.
         done, _, report = carry_out(folder, "force-sensing", "--reach 0.0001")

@@ -69,6 +69,40 @@ TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
   EXPECT_LT(none, 6);
 }
 
+/// Fingers that hold something stay where they are, whatever the search tries.
+TEST(FindPath, WhatIsToStayStays) {
+  std::size_t round = 0, moved = 0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const RandomScene scene = random_scene(seed, 14);
+    const world::Checker checker(scene.world);
+    std::mt19937_64 random(seed);
+    world::Scratch scratch;
+    for (int query = 0; query < 4; ++query) {
+      const Values start = random_free(checker, random);
+      world::WorldState state = initial_state(checker.world());
+      do {
+        state.q[0] = test::random_values(checker.world().robots[0].kinematics, random);
+        state.q[0].back() = start.back();
+      } while (checker.find_contact(state, scratch));
+      PathOptions options;
+      options.most_work = 0.2;
+      for (const bool stays : {true, false}) {
+        options.still.clear();
+        if (stays) options.still = {static_cast<std::uint32_t>(start.size() - 1)};
+        const PathAnswer answer = find(checker, start, state.q[0], options);
+        if (answer.outcome != Outcome::Found || answer.straight) continue;
+        ++round;
+        for (const Values& q : answer.path) {
+          if (stays) EXPECT_EQ(q.back(), start.back());
+          moved += q.back() != start.back() ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(round, 5U);
+  EXPECT_GT(moved, 0U) << "it would move otherwise";
+}
+
 /// The arm of three links; a plate a quarter of a millimetre thick in the way of its tip.
 class BehindAPlate : public ::testing::Test {
  protected:

@@ -7,6 +7,7 @@
 #include <kaboum/robot/path_file.h>
 #include <kaboum/robot/path_options.h>
 #include <kaboum/world/check_options.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/scene.h>
 
 #include <CLI/CLI.hpp>
@@ -178,7 +179,11 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
-    return check_motions(checker, initial_state(scene.world), paths, told);
+    const world::WorldState state = initial_state(scene.world);
+    if (paths.size() > 1) return check_motions(checker, state, paths, told);
+    // Fingers that hold something stop where they touch.
+    told.around = world::finger_room(scene.world, paths[0].robot, state.attachments);
+    return check_motion(checker, state, paths[0].robot, paths[0].path, told);
   }();
   report["waypoints"] = paths.front().path.size();
   report["resolution"] = o.motion.resolution;
