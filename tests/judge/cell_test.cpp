@@ -122,6 +122,13 @@ TEST(Cell, WhatIsHeldMovesWithTheLink) {
   ASSERT_TRUE(cell.find_meeting(state));
   state.objects[0].hold->touching = {*cell.kinematics(0).find_link("b")};
   EXPECT_FALSE(cell.find_meeting(state));
+  // Pads alone: the link that it moves with may not.
+  state.objects[0].hold->link_touches = false;
+  const auto beside = cell.find_meeting(state);
+  ASSERT_TRUE(beside);
+  EXPECT_EQ(beside->names, (std::array<std::string, 2>{"r/c", "thing"}));
+  state.objects[0].hold->touching.push_back(c);
+  EXPECT_FALSE(cell.find_meeting(state));
 }
 
 }  // namespace
