@@ -487,8 +487,8 @@ Answer grasp_motion_collides(Geometry& geometry, const Question& question) {
   for (const Motion& motion : fetched.motions) {
     world::WorldState then = state;
     for (const auto& [object, held] : motion.holds) then.attachments[object] = held;
-    if (!find_obstacles(geometry.checker, then, r, motion.path, things,
-                        check_of(geometry, r, then.attachments))
+    if (!find_obstacles(geometry.checker, then, r, motion.decided(), things,
+                        check_of(geometry, r, then.attachments, motion.beside))
              .empty())
       return Answer::holds(true);
   }

@@ -35,9 +35,14 @@ std::size_t region_named(const Geometry& geometry, const std::string& name) {
 }
 
 world::MotionOptions check_of(const Geometry& geometry, std::size_t robot,
-                              const std::vector<std::optional<world::Attachment>>& attachments) {
+                              const std::vector<std::optional<world::Attachment>>& attachments,
+                              const std::vector<double>& beside) {
   world::MotionOptions out = geometry.check;
   out.around = finger_room(geometry.world, robot, attachments);
+  if (out.around.empty())
+    out.around = beside;
+  else
+    for (std::size_t i = 0; i < beside.size(); ++i) out.around[i] += beside[i];
   return out;
 }
 

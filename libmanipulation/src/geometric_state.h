@@ -18,6 +18,13 @@ struct Motion {
   std::vector<std::pair<std::size_t, world::Attachment>> holds;  ///< objects, ascending
   Fingers fingers = Fingers::Still;
   std::size_t object = 0;  ///< that the fingers close or open about
+  /// Of a gripper with several joints: a path that comes to any combination of their values, within
+  /// `beside` of each variable. Empty: `path` does.
+  robot::Path covering = {};
+  std::vector<double> beside = {};
+
+  /// What is decided about it.
+  [[nodiscard]] const robot::Path& decided() const { return covering.empty() ? path : covering; }
 };
 
 /// What a call has led to among the things that it involves.
@@ -63,8 +70,10 @@ struct Geometry {
 };
 
 /// How motions of a robot are decided that holds something: with room for its fingers.
+/// @param beside  more room, as Motion::beside
 world::MotionOptions check_of(const Geometry& geometry, std::size_t robot,
-                              const std::vector<std::optional<world::Attachment>>& attachments);
+                              const std::vector<std::optional<world::Attachment>>& attachments,
+                              const std::vector<double>& beside = {});
 
 /// @throws Error{InvalidInput} for names that the scene does not have.
 std::size_t robot_named(const Geometry& geometry, const std::string& name);

@@ -186,8 +186,9 @@ std::vector<Involved::Thing> Involved::decide(const Performed& performed,
         if (item.robot == world::Item::kObject) state.absent[item.index] = false;
     }
     if (items.empty()) break;
-    const auto found = find_obstacles(geometry_.checker, state, motion.robot, motion.path, items,
-                                      check_of(geometry_, motion.robot, state.attachments));
+    const auto found =
+        find_obstacles(geometry_.checker, state, motion.robot, motion.decided(), items,
+                       check_of(geometry_, motion.robot, state.attachments, motion.beside));
     ++asked;
     positive += found.empty() ? 0 : 1;
     const auto is_found = [&](const Thing& thing) {

@@ -8,6 +8,7 @@
 #include <kaboum/world/grasp_family.h>
 #include <kaboum/world/gripper.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "stopwatch.h"
@@ -18,6 +19,45 @@ namespace {
 using kinematics::inverse;
 using plan::Answer;
 using world::Transform;
+
+/// Of the range of each joint of a gripper but the first, at most: these are looked at one by one.
+constexpr std::size_t kMostCells = 16;
+/// Lines of such a covering at most: of hands with many joints there are fewer cells.
+constexpr std::size_t kMostLines = 4096;
+
+/// Has a motion of several variables covered: lines along the first of them, one for each cell of
+/// the others' values. @param cells  of each of the others
+void cover_values(Motion& motion, std::size_t cells) {
+  const std::vector<double>&from = motion.path.front(), &to = motion.path.back();
+  std::vector<std::size_t> moved;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (from[i] != to[i]) moved.push_back(i);
+  motion.covering.clear();
+  motion.beside.clear();
+  if (moved.size() < 2) return;
+  motion.beside.assign(from.size(), 0);
+  std::size_t lines = 1;
+  for (std::size_t k = 1; k < moved.size(); ++k) {
+    const std::size_t i = moved[k];
+    // A little more than half a cell: middles are rounded.
+    motion.beside[i] =
+        (1 + 1e-9) * std::abs(to[i] - from[i]) / (2 * static_cast<double>(cells)) + 1e-12;
+    lines *= cells;
+  }
+  std::vector<double> q = from;
+  for (std::size_t line = 0; line < lines; ++line) {
+    std::size_t rest = line;
+    for (std::size_t k = 1; k < moved.size(); ++k, rest /= cells) {
+      const std::size_t i = moved[k];
+      const double share = (static_cast<double>(rest % cells) + 0.5) / static_cast<double>(cells);
+      q[i] = from[i] + share * (to[i] - from[i]);
+    }
+    for (const double end : {from[moved[0]], to[moved[0]]}) {
+      q[moved[0]] = end;
+      motion.covering.push_back(q);
+    }
+  }
+}
 
 }  // namespace
 
@@ -151,24 +191,33 @@ bool MotionSequence::move_fingers(std::size_t robot, std::size_t object, Motion:
     set_grippers(geometry_.world, robot, others, end);
   }
   if (end == state_.q[robot]) return true;  // suction
-  const robot::Path path{state_.q[robot], end};
-  const bool closes = how == Motion::Fingers::Close;
-  const auto motion = check_motion(geometry_.checker, state_, robot, path,
-                                   check_of(geometry_, robot, state_.attachments));
-  if (motion.outcome != world::MotionAnswer::Outcome::Free) {
-    std::string reason = std::string("the gripper does not ") +
-                         (closes ? "close on " : "open from ") +
-                         geometry_.world.objects[object].name;
-    if (motion.contact)
-      reason += ", in the way: " + geometry_.world.name_of(motion.contact->items[0]) + " and " +
-                geometry_.world.name_of(motion.contact->items[1]);
+  Motion motion;
+  motion.path = {state_.q[robot], end};
+  world::MotionAnswer answer;
+  // Fingers that do not go together come to any combination of values.
+  for (std::size_t cells = 1; cells <= kMostCells; cells *= 2) {
+    cover_values(motion, cells);
+    if (cells > 1 && motion.covering.size() > 2 * kMostLines) break;
+    answer = check_motion(geometry_.checker, state_, robot, motion.decided(),
+                          check_of(geometry_, robot, state_.attachments, motion.beside));
+    if (answer.outcome == world::MotionAnswer::Outcome::Free || motion.covering.empty()) break;
+  }
+  if (answer.outcome != world::MotionAnswer::Outcome::Free) {
+    std::string reason = "the gripper does not ";
+    reason += how == Motion::Fingers::Close ? "close on " : "open from ";
+    reason += geometry_.world.objects[object].name;
+    if (answer.contact)
+      reason += ", in the way: " + geometry_.world.name_of(answer.contact->items[0]) + " and " +
+                geometry_.world.name_of(answer.contact->items[1]);
     return fail(Answer::Kind::NotFound, std::move(reason));
   }
   const robot::Path last = last_paths_[robot];
-  record(robot, path);
+  record(robot, motion.path);
   last_paths_[robot] = last;
   motions_.back().fingers = how;
   motions_.back().object = object;
+  motions_.back().covering = std::move(motion.covering);
+  motions_.back().beside = std::move(motion.beside);
   return true;
 }
 

@@ -52,7 +52,7 @@ const char* name_of(DriverStop::Kind kind);
 std::string told_trajectory(const robot::Robot& robot, const motion::Trajectory& trajectory);
 
 /// How fingers of a gripper close on something, or open from it: what is certified of them is so
-/// wherever each joint is between the two, all at the same share, and within `within` of that.
+/// wherever each joint is between the two, and within `within` of that, in any combination.
 struct FingerMotion {
   std::string gripper;
   std::vector<std::string> joint_names;
