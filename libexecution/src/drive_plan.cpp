@@ -168,7 +168,7 @@ class Drive {
     if (!begun_) {
       begun_ = true;
       q_ = state.q;
-      driver_.begin(state);
+      driver_.begin(state, known.held);
       held_ = held_in(state);
     }
     const plan::Plan::Node& n = plan_->nodes[node];

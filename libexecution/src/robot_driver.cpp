@@ -469,8 +469,13 @@ json objects_of(const world::World& world, const judge::CellState& state) {
 
 }  // namespace
 
-void RobotDriver::begin(const judge::CellState& state) {
+void RobotDriver::begin(const judge::CellState& state,
+                        const std::vector<std::optional<world::Attachment>>& held) {
   data_->doing = "at the start";
+  for (const auto& hold : held)
+    for (const world::FingerValue& finger :
+         hold ? hold->fingers : std::vector<world::FingerValue>())
+      data_->fingers[{hold->robot, finger.variable}] = finger.within;
   const world::World& world = data_->world;
   json robots = json::object();
   for (std::size_t r = 0; r < world.robots.size(); ++r) {

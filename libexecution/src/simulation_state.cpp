@@ -139,7 +139,7 @@ std::optional<StatedState> state_of(const world::World& world, const plan::Model
     out.words += *conf + "\n";
   }
   std::vector<geom::Transform> relative(world.objects.size());
-  std::vector<std::optional<world::Attachment>> held(world.objects.size());
+  out.held.resize(world.objects.size());
   out.mounted.resize(world.objects.size());
   for (std::size_t o = 0; o < world.objects.size(); ++o) {
     const auto pose = word(model, known, "pose", world.objects[o].name, manipulation::kStart);
@@ -147,14 +147,14 @@ std::optional<StatedState> state_of(const world::World& world, const plan::Model
     const manipulation::ObjectPlace place = manipulation::place_of(*pose, world, o);
     judge::CellState::Place put{place.pose, std::nullopt, place.absent};
     if (const auto& a = place.attachment) put.hold = judged(*a);
-    held[o] = place.attachment;
+    out.held[o] = place.attachment;
     out.mounted[o] = place.mounted_on;
     relative[o] = place.pose;
     out.state.objects.push_back(std::move(put));
     out.words += *pose + "\n";
   }
   for (std::size_t r = 0; r < world.robots.size(); ++r)
-    set_grippers(world, r, held, out.state.q[r]);
+    set_grippers(world, r, out.held, out.state.q[r]);
   // What is mounted is where the object below it is, and moves with it.
   std::vector<char> resolved(world.objects.size(), 0);
   const std::function<void(std::size_t, std::size_t)> resolve = [&](std::size_t o,

@@ -15,6 +15,8 @@ namespace kaboum::execution {
 struct StatedState {
   judge::CellState state;
   std::vector<std::optional<std::size_t>> mounted;  ///< what each object is mounted on
+  /// How each object is held, by its own word; none: it is not, or mounted on what is.
+  std::vector<std::optional<world::Attachment>> held = {};
   std::string words;
 };
 

@@ -35,11 +35,11 @@ def fail(what):
     raise SystemExit(f"grippers.py: {what}")
 
 
-def plan(folder, command, *more, scene="cell.json"):
+def plan(folder, command, *more, scene="cell.json", problem="problem.kpl"):
     domain = ROOT / "examples/scenarios/force-sensing/domain.kpl"
     report = folder / "report.json"
     report.unlink(missing_ok=True)
-    done = subprocess.run([TOOLS / "kaboum-plan", command, domain, "problem.kpl", "--scene", scene, "--report", "report.json", *more], cwd=folder,
+    done = subprocess.run([TOOLS / "kaboum-plan", command, domain, problem, "--scene", scene, "--report", "report.json", *more], cwd=folder,
                           capture_output=True, text=True, timeout=300, env=dict(os.environ, PYTHONPATH=str(ROOT / "python/kaboum")))
     return done, json.loads(report.read_text()) if report.exists() else {}
 
@@ -107,6 +107,29 @@ def is_told_to_drivers(folder):
             fail(f"fingers {off} m off: {done.returncode} {done.stderr}")
 
 
+def what_is_held_at_first_is_held_so(folder):
+    """A container in the hand when the plan begins: fingers are as its grasp says, and a driver is held to it."""
+    scene = json.loads((folder / "cell.json").read_text())
+    scene["attachments"] = [{"object": "o1", "robot": "arm", "gripper": "fingers", "grasp": "side3"}]
+    (folder / "held.json").write_text(json.dumps(scene))
+    problem = (folder / "problem.kpl").read_text().replace("K(!isGrasped(o1))", "K(isGrasped(o1)), K(!isSpillable(o1))").replace("K(emptyGripper)", "K(!emptyGripper)")
+    (folder / "held.kpl").write_text(problem)
+    done, _ = plan(folder, "solve", "-o", "held-plan.json", "--no-cache", scene="held.json", problem="held.kpl")
+    if done.returncode != 0 or "contact of o1 and arm/pad_left and arm/pad_right, which hold it, is left out" not in done.stderr:
+        fail(f"held: {done.returncode} {done.stderr}")
+    liar = folder / "begun.py"
+    for off, code in ((0.0, 0), (0.002, 1)):
+        text = (ROOT / "examples/drivers/driver.py").read_text()
+        liar.write_text(text.replace("    def where(", f"    def begin(self, robots, objects):\n        self.q['arm'][-1] += {off}\n\n    def where("))
+        done, _ = plan(folder, "run", "--plan", "held-plan.json", "--robot", f'{sys.executable} {liar} --sense "isSpillable(o1)=true" --sense "isSpillable(o2)=true"',
+                       "--journal", "held.jsonl", scene="held.json", problem="held.kpl")
+        if done.returncode != code or (code and "away from where it was told to be" not in done.stderr):
+            fail(f"held, {off} m off: {done.returncode} {done.stdout} {done.stderr}")
+    begin = json.loads(json.loads((folder / "held.jsonl").read_text().splitlines()[2])["told"])
+    if begin["robots"]["arm"]["q"][-1] != 0.0115 or begin["objects"]["o1"] != {"held_by": "arm"}:
+        fail(f"begin: {begin}")
+
+
 def what_must_not_touch_is_refused(folder):
     def grasps(scene):
         return [g for o in scene["objects"] for g in o["grasps"]]
@@ -142,6 +165,7 @@ def main():
         is_planned_and_carried_out(folder)
         is_told_to_drivers(folder)
         what_must_not_touch_is_refused(folder)
+        what_is_held_at_first_is_held_so(folder)
 
 
 main()

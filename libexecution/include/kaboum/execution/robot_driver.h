@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -80,7 +81,11 @@ class RobotDriver {
   RobotDriver& operator=(const RobotDriver&) = delete;
 
   /// Says where everything is. A robot that says that it is elsewhere stops all.
-  void begin(const judge::CellState& state);
+  /// @param held  how objects are held: joints of grippers that hold some are then to be within
+  /// what
+  ///   their grasps allow
+  void begin(const judge::CellState& state,
+             const std::vector<std::optional<world::Attachment>>& held = {});
   /// Says which action is carried out from here on: "grasp(arm, o1)".
   void act(const std::string& action);
   /// @pre the trajectory begins where the robot is. A motion that has failed is told again if the
