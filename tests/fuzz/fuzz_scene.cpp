@@ -45,6 +45,10 @@ void look_at(const world::RobotModel& robot) {
   for (const world::Gripper& g : robot.grippers) {
     if (g.tool >= robot.tools.size()) fuzz::broken("a gripper", "of no tool");
     for (const std::uint32_t link : g.links) require_link(robot, link, "a finger");
+    for (const std::uint32_t link : g.pads) require_link(robot, link, "a pad");
+    for (const std::uint32_t joint : g.joints)
+      if (joint >= robot.home.size()) fuzz::broken("a gripper", "of no joint");
+    if (!g.joints.empty() && g.pads.empty()) fuzz::broken("a gripper", "with joints and no pads");
   }
 }
 
@@ -52,6 +56,9 @@ void look_at(const world::World& world) {
   if (world.attachments.size() != world.objects.size())
     fuzz::broken("attachments", "not one for each object");
   for (const world::RobotModel& robot : world.robots) look_at(robot);
+  for (const auto& held : world.attachments)
+    if (held && held->link_touches && !held->fingers.empty())
+      fuzz::broken("an attachment", "of fingers, by a link");
   // Of any scene that is read, its first state can be checked.
   world::Scratch scratch;
   const world::Checker checker(world);
