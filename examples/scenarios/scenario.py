@@ -127,6 +127,7 @@ def options(name, n, least, most, more=lambda parser: None):
     parser.add_argument("--physics", type=int, nargs="?", const=1, default=0, metavar="RUNS",
                         help="carry the plan out in MuJoCo as well, so many times; needs scripts/setup --engines [1]")
     parser.add_argument("--blend", type=float, default=0.0, metavar="SHARE", help="robots go through corners without a stop, 0 to 0.5 [0]")
+    parser.add_argument("--max-jerk", type=float, metavar="J", help="of these motions [100 rad/s³]")
     parser.add_argument("--film", action="store_true", help="pictures of the first of these runs")
     parser.add_argument("--no-cache", action="store_true", help="neither take the scene's answers from earlier runs nor keep them")
     parser.add_argument("--detail", type=int, default=1, choices=range(1, 9), metavar="K", help="K² times as many triangles, 1 to 8 [1]")
@@ -136,6 +137,9 @@ def options(name, n, least, most, more=lambda parser: None):
     parts.detail, parts.gaps = o.detail, o.gaps
     if o.physics < 0 or (o.film and o.physics == 0):
         parser.error("--physics takes a number of runs from 1 on, and --film needs it")
+    if o.max_jerk is not None and o.blend == 0:
+        parser.error("--max-jerk goes with --blend: motions from rest to rest have no limit of jerk")
+    o.motions = ["--blend", str(o.blend), *([] if o.max_jerk is None else ["--max-jerk", str(o.max_jerk)])]
     if not least <= o.n <= most:
         parser.error(f"N is from {least} to {most}")
     return o
@@ -207,6 +211,8 @@ def in_physics(o, cell, files, plan, driver_options):
         subprocess.run([*decompose, file, "-o", str(made), "--epsilon", "0.3%"], check=True, cwd=o.out)
     for name, file in cell.shapes.items():
         command += ["--set", f"{name}={out / pathlib.Path(file).with_suffix('.glb')}"]
+    page = out / "run.html"  # of the first run
+    page.unlink(missing_ok=True)
     good, most, contacts, why = 0, {"beside": 0.0, "below": 0.0, "turned": 0.0, "tracking": 0.0}, 0, []
     for k in range(o.physics):
         seed = o.seed + k
@@ -215,7 +221,8 @@ def in_physics(o, cell, files, plan, driver_options):
         robot = [*command, "--seed", str(seed), "--report", str(report), *driver_options(random.Random(seed))]
         if o.film and k == 0:
             robot += ["--film", str(out / "film")]
-        done = subprocess.run([tool("kaboum-plan"), "run", *files, "--plan", plan, "--blend", str(o.blend), "--robot", shlex.join(robot), "--journal", str(out / f"run-{seed}.jsonl"),
+        pages = ["--page", str(page)] if k == 0 else []
+        done = subprocess.run([tool("kaboum-plan"), "run", *files, "--plan", plan, *o.motions, *pages, "--robot", shlex.join(robot), "--journal", str(out / f"run-{seed}.jsonl"),
                                "--report", str(out / f"run-{seed}.json"), "--robot-timeout", "120", "--quiet"], capture_output=True, text=True, check=False)
         if not report.exists():
             why.append(f"seed {seed}: exit code {done.returncode}: {(done.stderr.strip().splitlines() or [''])[-1]}")
@@ -234,6 +241,14 @@ def in_physics(o, cell, files, plan, driver_options):
     return {"runs": o.physics, "good": good, "unplanned_contacts": contacts, **{f"most_{k}": round(v, 5) for k, v in most.items()}}
 
 
+def say(result, pages, status):
+    """The result in one line, the last one on standard output; then, on standard error, pages to look at."""
+    print(json.dumps(result), flush=True)
+    for page in pages:
+        print(f"see {page}", file=sys.stderr)
+    return status
+
+
 def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {}, driver_options=lambda chance: []):
     """All that comes after scene and problem. @param domain  None where the problem is a task in a few lines.
     @param compare  what the last line says more of a plan. @param driver_options  of examples/drivers/physics.py, for a source of chance."""
@@ -246,6 +261,8 @@ def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {
     plan, files = str(out / "plan.json"), [*([str(HERE / name / domain)] if domain else []), str(task), "--scene", str(out / "cell.json")]
     result = {"scenario": name, "n": o.n, "seed": o.seed, "solved": False, "actions": 0, "nodes": 0, "leaves": 0, "plan_s": 0.0,
               "predicate_calls": 0, "ik_calls": 0, "executed_branches": 0, "samples": 0, "collisions": 0, "limit_violations": 0}
+
+    pages = []
 
     def call(command, *arguments):
         report = out / f"{command}.json"
@@ -270,19 +287,18 @@ def run(name, o, cell, problem_text, domain="domain.kpl", compare=lambda plan: {
         if o.physics and checked == 0:
             result["physics"] = in_physics(o, cell, files, plan, driver_options)
             checked = int(result["physics"]["good"] < o.physics)
+            pages = [page for page in [out / "physics/run.html"] if page.exists()]
         if o.plan_only:
-            print(json.dumps(result))
-            return checked
-        executed, report = call("run", "--plan", plan, "--outcomes", "all", "--blend", str(o.blend))
+            return say(result, pages, checked)
+        executed, report = call("run", "--plan", plan, "--outcomes", "all", *o.motions)
         result.update(executed_branches=report.get("branches", 0), samples=report.get("samples", 0),
                       collisions=report.get("collisions", 0), limit_violations=report.get("limit_violations", 0),
                       jumps=report.get("jumps", 0))
         for drawing in (["-o", str(out / "plan.svg")], ["--html", str(out / "plan.html")]):
             subprocess.run([tool("kaboum-plan"), "show", *files, "--plan", plan, *drawing], check=True)
         status = max(checked, executed)
-        print(f"see {out / 'plan.html'}", file=sys.stderr)
-    print(json.dumps(result))
-    return status
+        pages.insert(0, out / "plan.html")
+    return say(result, pages, status)
 
 
 def grasp(name, z, y, at):

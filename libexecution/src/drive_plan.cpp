@@ -13,6 +13,7 @@
 #include "finger_motion.h"
 #include "node_events.h"
 #include "node_motions.h"
+#include "run_notes.h"
 #include "simulation_state.h"
 
 namespace kaboum::execution {
@@ -25,7 +26,12 @@ class Drive {
  public:
   Drive(const world::World& world, const judge::Cell& cell, const PlanRunRequest& request,
         const DriverOptions& options, DriveReport& report)
-      : world_(world), cell_(cell), request_(request), driver_(world, options), report_(report) {
+      : world_(world),
+        cell_(cell),
+        request_(request),
+        driver_(world, options),
+        notes_(world),
+        report_(report) {
     told_options_ = request.simulation;
     told_options_.motion.rate = options.rate;
     told_options_.progress = {};
@@ -40,6 +46,7 @@ class Drive {
         !checked.valid)
       throw DriverStop(Kind::Uncertified, "the plan does not hold: " + checked.violation);
     done_.emplace_back(world_, model, plan, told_options_);
+    if (driver_.is_noted()) driver_.note(notes_.plan(model, plan));
     prepare(done_.back());
     model_ = &done_.back().model;
     plan_ = &done_.back().plan;
@@ -48,6 +55,7 @@ class Drive {
       tell(step.node, step.before);
       settle(step.after);
       done_.back().nodes.insert(step.node);
+      if (driver_.is_noted()) driver_.note(notes_.done(step, *end_));
     };
   }
 
@@ -65,6 +73,15 @@ class Drive {
   }
 
   void finish() { driver_.finish(end_ ? &*end_ : nullptr); }
+
+  void note_planning(const plan::Unplanned& why, unsigned after) {
+    driver_.note(RunNotes::planning(why, after));
+  }
+  void note_planned(const plan::Replan& replan) { driver_.note(RunNotes::planned(replan)); }
+  /// That it has ended otherwise than at the goal.
+  void note_end(const std::string& kind, const std::string& why) { driver_.end(kind, why); }
+  /// What comes of it, judged by exact meshes. @pre it is closed
+  void note_verdict() { driver_.note(RunNotes::verdict(report_)); }
 
   /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
   void close() {
@@ -172,8 +189,9 @@ class Drive {
       held_ = held_in(state);
     }
     const plan::Plan::Node& n = plan_->nodes[node];
+    const std::string action = n.acts ? action_text(*model_, n.action) : "";
+    if (driver_.is_noted()) driver_.note(notes_.begun(node, action, state, before));
     if (!n.acts) return;
-    const std::string action = action_text(*model_, n.action);
     if (request_.simulation.progress) request_.simulation.progress(action);
     ++report_.actions;
     driver_.act(action);
@@ -231,6 +249,7 @@ class Drive {
   const judge::Cell& cell_;
   const PlanRunRequest& request_;
   RobotDriver driver_;
+  RunNotes notes_;
   SimulationOptions told_options_;  ///< of the motions as they are told
   DriveReport& report_;
   const plan::Model* model_ = nullptr;
@@ -267,6 +286,14 @@ DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const
   const plan::StepsOf steps = [&](const plan::Model& m, const plan::Plan& p) {
     return drive->take_up(m, p);
   };
+  replan.planning = [&](const plan::Unplanned& why, unsigned after) {
+    drive->note_planning(why, after);
+    if (request.replan.planning) request.replan.planning(why, after);
+  };
+  replan.planned = [&](const plan::Replan& made) {
+    drive->note_planned(made);
+    if (request.replan.planned) request.replan.planned(made);
+  };
   try {
     drive.emplace(world, cell, request, options, out);
     if (replan.most == 0)
@@ -280,13 +307,22 @@ DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const
                          "what the next action observes contradicts what is known: the plan has "
                          "not come to its end");
       drive->finish();
+    } else {
+      drive->note_end("no plan", out.run.plans.replans.back().reason);
     }
   } catch (const DriverStop& stop) {
     out.stopped = stop.kind();
     out.reason = stop.what();
+    if (drive) drive->note_end(name_of(stop.kind()), stop.what());
+  } catch (const std::exception& error) {
+    if (drive) drive->note_end("error", error.what());
+    throw;
   }
   out.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  if (drive) drive->close();
+  if (drive) {
+    drive->close();
+    drive->note_verdict();
+  }
   return out;
 }
 

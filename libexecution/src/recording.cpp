@@ -2,71 +2,19 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/recording.h>
-#include <kaboum/geom/body_polytopes.h>
-#include <kaboum/io/packed_mesh.h>
-#include <kaboum/robot/page_data.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "motion_part.h"
+#include "page_scene.h"
 #include "simulation_state.h"
 
 namespace kaboum::execution {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json mesh_json(const geom::Mesh& mesh) {
-  const io::PackedMesh packed = io::pack_mesh(mesh);
-  return {{"points", packed.points}, {"triangles", packed.triangles}};
-}
-
-Json pose_json(const geom::Transform& pose) {
-  Json out = Json::array();
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) out.push_back(pose.linear(row, column));
-  for (const double x : pose.translation) out.push_back(x);
-  return out;
-}
-
-Json robot_json(const world::RobotModel& robot) {
-  return {{"name", robot.name},
-          {"base", pose_json(robot.base)},
-          {"joints", Json::parse(robot::joints_json(robot.kinematics))}};
-}
-
-Json shape_json(const world::World& world, const world::Item& item) {
-  Json out = {{"name", world.name_of(item)}};
-  if (item.robot == world::Item::kObject) {
-    out["object"] = item.index;
-  } else {
-    out["robot"] = item.robot;
-    out["link"] = world.robots[item.robot].shapes[item.index].link;
-  }
-  Json bodies = Json::array();
-  const world::BoundingSet& set = world.outer(item);
-  for (std::size_t i = 0; i < set.size(); ++i)
-    bodies.push_back(mesh_json(geom::surface_of(set.body(i))));
-  out["bodies"] = std::move(bodies);
-  return out;
-}
-
-Json state_json(const judge::CellState& state) {
-  Json places = Json::array();
-  for (const judge::CellState::Place& place : state.objects) {
-    if (place.away)
-      places.push_back({{"away", true}});
-    else if (place.hold)
-      places.push_back({{"robot", place.hold->robot},
-                        {"link", place.hold->link},
-                        {"pose", pose_json(place.hold->pose)}});
-    else
-      places.push_back({{"pose", pose_json(place.pose)}});
-  }
-  return {{"q", state.q}, {"places", std::move(places)}};
-}
 
 }  // namespace
 
@@ -150,29 +98,11 @@ void Recording::end_unplanned() {
 }
 
 std::string Recording::json(const std::vector<world::ExactMesh>& exact) const {
-  Json out = {{"kaboum_player", 1}, {"unit", world_.unit}};
-  out["robots"] = Json::array();
-  for (const world::RobotModel& robot : world_.robots) out["robots"].push_back(robot_json(robot));
-  auto& shapes = out["shapes"] = Json::array();
-  const auto add = [&](const world::Item& item) {
-    shapes.push_back(shape_json(world_, item));
-    for (const world::ExactMesh& mesh : exact)
-      if (mesh.item == item) shapes.back()["exact"] = mesh_json(mesh.mesh);
-  };
-  for (std::size_t r = 0; r < world_.robots.size(); ++r)
-    for (std::size_t s = 0; s < world_.robots[r].shapes.size(); ++s) add({r, s});
-  for (std::size_t o = 0; o < world_.objects.size(); ++o) add({world::Item::kObject, o});
+  Json out = {{"kaboum_player", 1}};
+  add_scene(out, world_, exact);
   out["root"] = data_->steps.empty() ? Json(nullptr) : Json(0);
   out["states"] = data_->states;
-  if (data_->states.empty()) {
-    const world::WorldState first = initial_state(world_);
-    judge::CellState state{first.q, {}};
-    for (std::size_t o = 0; o < world_.objects.size(); ++o) {
-      state.objects.push_back({first.poses[o], std::nullopt, false});
-      if (const auto& a = first.attachments[o]) state.objects.back().hold = judged(*a);
-    }
-    out["states"].push_back(state_json(state));
-  }
+  if (data_->states.empty()) out["states"].push_back(initial_state_json(world_));
   out["nodes"] = data_->nodes;
   out["steps"] = data_->steps;
   return out.dump();

@@ -4,18 +4,17 @@
 #include <kaboum/base/json_damage.h>
 #include <kaboum/execution/robot_driver.h>
 #include <kaboum/external/line_channel.h>
-#include <kaboum/io/mesh_io.h>
 
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "finger_motion.h"
+#include "journal.h"
 
 namespace kaboum::execution {
 namespace {
@@ -28,10 +27,6 @@ constexpr std::size_t kExcerpt = 200;    // characters of a line in a message
 constexpr double kLastWords = 0.2;       // for telling a driver to stop [s]
 constexpr double kRoundedFinger = 1e-9;  // of an answer in decimals [rad or length]
 constexpr double kSlower = 1.5;          // a motion may take so many times as long as it is
-
-std::string dump(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
 
 /// With a sign in place of what is no UTF-8.
 std::string utf8(const std::string& text) { return json::parse(dump(text)).get<std::string>(); }
@@ -117,19 +112,17 @@ class Program final : public Side {
 class Replayed final : public Side {
  public:
   explicit Replayed(std::string file) : file_(std::move(file)) {
-    const std::vector<char> bytes = io::read_file(file_);
-    std::string line;
-    std::size_t number = 0;
-    for (const char c : bytes) {
-      if (c != '\n') {
-        line += c;
-        continue;
-      }
-      add(line, ++number);
-      line.clear();
-    }
-    // A last line without its end was cut when the run was killed.
-    if (number == 0) fail(1, "is empty");
+    read_journal(file_, [this](const std::string& /*line*/, json entry, std::size_t number) {
+      if (number == 1) return;
+      for (const char* key : {"told", "heard", "unasked", "none", "why"})
+        if (entry.contains(key) && !entry[key].is_string())
+          refuse_journal(file_, number, "'" + std::string(key) + "' is no text");
+      for (const char* key : {"told", "heard", "unasked", "none"})
+        if (entry.contains(key)) {
+          entries_.push_back(std::move(entry));
+          return;
+        }
+    });
   }
 
   Heard hear(double /*seconds*/) override {
@@ -167,30 +160,6 @@ class Replayed final : public Side {
   void end(bool /*finished*/) override {}
 
  private:
-  [[noreturn]] void fail(std::size_t number, const std::string& what) const {
-    throw Error(ErrorCode::InvalidInput, file_ + ", line " + std::to_string(number) + ": " + what +
-                                             "; a journal is what a run wrote («journal»)");
-  }
-
-  void add(const std::string& line, std::size_t number) {
-    if (is_nested_too_deep(line)) fail(number, "has " + describe_json_depth());
-    json entry = json::parse(line, nullptr, false);
-    if (!entry.is_object()) fail(number, "is no JSON object");
-    if (number == 1) {
-      if (!entry.contains("kaboum_journal") || entry["kaboum_journal"] != 1)
-        fail(number, R"(is not {"kaboum_journal": 1, ...})");
-      return;
-    }
-    for (const char* key : {"told", "heard", "unasked", "none", "why"})
-      if (entry.contains(key) && !entry[key].is_string())
-        fail(number, "'" + std::string(key) + "' is no text");
-    for (const char* key : {"told", "heard", "unasked", "none"})
-      if (entry.contains(key)) {
-        entries_.push_back(std::move(entry));
-        return;
-      }
-  }
-
   std::string file_;
   std::deque<json> entries_;
 };
@@ -230,31 +199,24 @@ const char* name_of(DriverStop::Kind kind) {
 struct RobotDriver::Data {
   using Clock = std::chrono::steady_clock;
 
-  Data(const world::World& w, const DriverOptions& o) : world(w), options(o) {
+  Data(const world::World& w, const DriverOptions& o)
+      : world(w), options(o), side(side_of(o)), journal(o) {}
+
+  static std::unique_ptr<Side> side_of(const DriverOptions& o) {
     if (!(o.most_seconds > 0) || !(o.rate > 0) || !(o.tracking > 0))
       throw Error(ErrorCode::InvalidArgument, "a driver's times, rates and widths are above 0");
-    if (o.replayed.empty())
-      side = std::make_unique<Program>(o.command);
-    else
-      side = std::make_unique<Replayed>(o.replayed);
-    if (!o.journal.empty()) {
-      journal.open(o.journal);
-      if (!journal) throw Error(ErrorCode::OutputFailed, o.journal + ": cannot be written");
-      note({{"kaboum_journal", 1}, {"driver", o.command}});
-    }
+    if (o.replayed.empty()) return std::make_unique<Program>(o.command);
+    return std::make_unique<Replayed>(o.replayed);
   }
 
-  /// A line of the journal: there at once, whatever happens next.
-  void note(json entry) {
-    if (!journal.is_open()) return;
-    entry["t"] = std::chrono::duration<double>(Clock::now() - start).count();
-    journal << dump(entry) << std::endl;  // NOLINT(performance-avoid-endl)
-    if (!journal) throw Error(ErrorCode::OutputFailed, options.journal + ": cannot be written");
+  /// The last thing that is said of the driver, once.
+  void end(const char* kind, const std::string& why) {
+    if (!over) journal.note({{"stopped", kind}, {"why", why}});
+    over = true;
   }
 
   [[noreturn]] void stop(Kind kind, const std::string& why) {
-    over = true;
-    note({{"stopped", name_of(kind)}, {"why", why}});
+    end(name_of(kind), why);
     throw DriverStop(kind, "the driver, " + doing + ": " + why);
   }
 
@@ -265,10 +227,10 @@ struct RobotDriver::Data {
     answered = Clock::now();
     waited += std::chrono::duration<double>(*answered - before).count();
     if (heard.none) {
-      note({{"none", name_of(*heard.none)}, {"why", heard.why}});
+      journal.note({{"none", name_of(*heard.none)}, {"why", heard.why}});
       stop(*heard.none, heard.why);
     }
-    note({{"heard", heard.line}});
+    journal.note({{"heard", heard.line}});
     if (is_nested_too_deep(heard.line))
       stop(Kind::Nonsense,
            "it answered " + excerpt(heard.line) + ", with " + describe_json_depth());
@@ -283,7 +245,7 @@ struct RobotDriver::Data {
   void require_silence() {
     const auto more = side->unasked();
     if (!more) return;
-    note({{"unasked", *more}});
+    journal.note({{"unasked", *more}});
     stop(Kind::Nonsense, "it said what nobody asked: " + excerpt(*more));
   }
 
@@ -298,11 +260,11 @@ struct RobotDriver::Data {
       text.pop_back();
       text += R"(,"trajectory":)" + trajectory + '}';
     }
-    if (journal.is_open()) note({{"told", text}});
+    if (journal.is_kept()) journal.note_text("told", text);
     if (answered && messages > 1)
       between += std::chrono::duration<double>(Clock::now() - *answered).count();
     if (const auto refused = side->tell(text)) {
-      note({{"none", name_of(*refused->none)}, {"why", refused->why}});
+      journal.note({{"none", name_of(*refused->none)}, {"why", refused->why}});
       stop(*refused->none, refused->why);
     }
     json answer = hear(seconds);
@@ -423,8 +385,7 @@ struct RobotDriver::Data {
   const world::World& world;
   DriverOptions options;
   std::unique_ptr<Side> side;
-  std::ofstream journal;
-  Clock::time_point start = Clock::now();
+  Journal journal;
   std::optional<Clock::time_point> answered;
   std::string doing = "when it was started", line;
   std::uint64_t messages = 0;
@@ -440,6 +401,12 @@ RobotDriver::RobotDriver(const world::World& world, const DriverOptions& options
   if (!first.contains("kaboum_driver") || first["kaboum_driver"] != 1)
     data_->stop(Kind::Nonsense,
                 R"(its first line is {"kaboum_driver": 1}, not )" + excerpt(data_->line));
+}
+
+bool RobotDriver::is_noted() const { return data_->journal.is_kept(); }
+void RobotDriver::note(std::string entry) { data_->journal.add(std::move(entry)); }
+void RobotDriver::end(const std::string& kind, const std::string& why) {
+  data_->end(kind.c_str(), why);
 }
 
 RobotDriver::~RobotDriver() { data_->side->end(data_->finished); }
@@ -581,7 +548,7 @@ void RobotDriver::finish(const judge::CellState* end) {
   data_->ask_again(told, data_->options.most_seconds, "done");
   data_->require_silence();
   data_->finished = data_->over = true;
-  data_->note({{"finished", true}});
+  data_->journal.note({{"finished", true}});
 }
 
 std::uint64_t RobotDriver::messages() const { return data_->messages; }

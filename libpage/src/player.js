@@ -8,66 +8,21 @@
   const canvas = $('canvas');
   const view = V.create(canvas, () => draw());
 
+  const cell = KaboumCell(data, view);
+
   // Scene --------------------------------------------------------------------------------------
-
-  const robotColours = [[0.68, 0.7, 0.73], [0.86, 0.72, 0.5], [0.62, 0.75, 0.66], [0.76, 0.66, 0.76]];
-  const isRobots = (shape) => shape.robot !== undefined;
-  const drawn = [];
-  if (view) {
-    for (const shape of data.shapes)
-      drawn.push({shape, sets: shape.bodies ? view.upload(shape.bodies.map(S.mesh), drawn.length) : null,
-                  exact: shape.exact ? view.upload([S.mesh(shape.exact)], 0) : null,
-                  colour: isRobots(shape) ? robotColours[shape.robot % robotColours.length] : V.palette[shape.object % V.palette.length]});
-  } else {
-    $('message').textContent = 'This browser has no WebGL: the scene cannot be drawn.';
-  }
-  for (const what of ['sets', 'exact'])
-    if (view && !drawn.some((d) => d[what])) {
-      $('shapes').querySelector(`[value=${what}]`).disabled = $('shapes').querySelector('[value=both]').disabled = true;
-      $('shapes').value = what === 'sets' ? 'exact' : 'sets';
-    }
-
-  /// What is to be in view at the beginning: robots, and what does not dwarf them.
-  function boxes() {
-    const placed = drawn.map((d) => ({...(d.sets || d.exact || {corners: []}), pose: S.shapePose(data, data.states[0], d.shape), shape: d.shape}))
-      .filter((b) => b.pose && b.corners.length > 0);
-    const size = (b) => Math.hypot(...V.minus(b.corners[7], b.corners[0]));
-    const robots = placed.filter((b) => isRobots(b.shape));
-    const span = (of) => {  // of the middles, and the largest
-      const at = of.map((b) => b.pose.slice(9)), wide = [0, 1, 2].map((i) => Math.max(...at.map((p) => p[i])) - Math.min(...at.map((p) => p[i])));
-      return Math.hypot(...wide) + Math.max(...of.map(size));
-    };
-    // Grounds and walls would hide how large the rest is.
-    const most = robots.length > 0 ? 2 * span(robots) : Infinity;
-    return placed.filter((b) => isRobots(b.shape) || size(b) <= most);
-  }
-
-  /// Adds what is drawn of a state.
-  function addState(items, state, kind, alpha, only) {
-    const links = data.robots.map((robot, r) => S.forward(robot, state.q[r]));
-    for (const d of drawn) {
-      if (only && !only(d.shape)) continue;
-      if (!$(isRobots(d.shape) ? 'robots' : 'objects').checked) continue;
-      const buffers = d[kind] || d.sets || d.exact, pose = S.shapePose(data, state, d.shape, links);
-      if (!pose || !buffers) continue;
-      items.push({buffers, pose, colour: d.colour, alpha, explode: Number($('explode').value),
-                  paint: $('bodies').checked && buffers === d.sets ? 'body' : 'colour', edges: $('edges').checked && alpha >= 0.3});
-    }
-  }
 
   const kTraces = 12;
 
   function draw() {
     if (!view) return;
-    const now = S.at(data, played, time), kind = $('shapes').value, items = [];
-    addState(items, now.state, kind === 'both' ? 'exact' : kind, 1);
-    if (kind === 'both') addState(items, now.state, 'sets', 0.35, (shape) => shape.exact);
+    const now = S.at(data, played, time), kind = $('shapes').value, items = cell.items(now.state);
     const step = played.steps[now.index];
     if ($('trace').checked && step && step.parts.length > 0)
       for (let k = 0; k < kTraces; ++k) {
         const then = step.begin + (step.end - step.begin) * k / kTraces;
         const moving = step.parts.filter((p) => p.begin <= then).pop().motion;
-        addState(items, S.at(data, played, then).state, kind, 0.12, (shape) => shape.robot === moving.robot ||
+        cell.addState(items, S.at(data, played, then).state, kind, 0.12, (shape) => shape.robot === moving.robot ||
           (shape.object !== undefined && moving.holds[shape.object] !== undefined));
       }
     view.draw(items);
@@ -176,7 +131,7 @@
   // #t=12.5 begins there: for pictures of a page.
   V.setWanted();
   if (view) {
-    view.frame(boxes());
+    view.frame(cell.boxes());
     view.place();
   }
   const unplanned = new Set(data.steps.flatMap((step) => step.ways.filter((way) => way.unplanned).map((way) => way.outcome)));

@@ -9,7 +9,7 @@ const fs = require('fs'), path = require('path'), zlib = require('zlib'), assert
 const {spawnSync} = require('child_process');
 
 const [chromium, scene, picture, ...words] = process.argv.slice(2);
-const S = require(path.resolve(scene));
+const S = require(path.resolve(scene)), R = require(path.join(path.dirname(path.resolve(scene)), 'run.js'));
 const kWidth = 480, kHeight = 360, kColumns = 3;  // of a page in the window
 
 const looks = words.map((word, index) => {
@@ -38,6 +38,14 @@ const boxMiddle = (points) => [0, 1, 2].map((k) => {
   return (low + high) / 2;
 });
 
+/// Of a plan's page or a run's, at a time.
+function stateOf(data, time) {
+  if (data.kaboum_player) return S.at(data, S.branch(data, []), time).state;
+  const run = R.create(data);
+  data.events.forEach(run.add);
+  return run.at(time).state;
+}
+
 /// Triangles in the world: corners and how each is coloured, of what the controls show.
 function trianglesOf({data, controls}) {
   const out = [];
@@ -54,8 +62,8 @@ function trianglesOf({data, controls}) {
       }
     });
   };
-  if (data.kaboum_player) {
-    const played = S.branch(data, []), {state} = S.at(data, played, Number(controls.get('t') || 0)), what = controls.get('shapes') || 'sets';
+  if (data.kaboum_player || data.kaboum_run) {
+    const state = stateOf(data, Number(controls.get('t') || 0)), what = controls.get('shapes') || 'sets';
     for (const shape of data.shapes) {
       const pose = S.shapePose(data, state, shape);
       if (pose) add(what === 'exact' ? [shape.exact] : shape.bodies, pose,

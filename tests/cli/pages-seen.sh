@@ -19,7 +19,8 @@ node "$HERE/look_at_pages.js" "$CHROMIUM" "$HERE/../../libpage/src/scene.js" see
   "$PAGES/plan.html" "$PAGES/plan.html#shapes=exact&t=4" "whole:$PAGES/assumed.html#t=2" \
   "outline:still.html#layer0=hidden&layer1=shown&explode=1" "colours:dark.html#layer0=hidden&layer1=shown" \
   console:broken.html || fail "what is seen"
-# A browser keeps 16 drawings at a time, so this one is looked at by itself.
+# A browser keeps 16 drawings at a time, so these are looked at by themselves.
 node "$HERE/look_at_pages.js" "$CHROMIUM" "$HERE/../../libpage/src/scene.js" moved.png \
-  "$PAGES/hand.html#layer0=hidden&layer1=shown&colours=bodies&joint0=1&joint1=-2&joint2=0.2" || fail "a robot whose joints are moved"
+  "$PAGES/hand.html#layer0=hidden&layer1=shown&colours=bodies&joint0=1&joint1=-2&joint2=0.2" \
+  "$PAGES/run.html" "$PAGES/run.html#shapes=exact&t=4" "whole:$PAGES/run.html#t=4" || fail "a robot whose joints are moved, or a run"
 finish

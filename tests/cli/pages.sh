@@ -194,6 +194,8 @@ expect 0 solved "$P" solve "$@" -o plan.json
 expect 0 '' "$P" show "$@" --plan plan.json --html plan.html
 node "$HERE/play_page.js" plan.html "$PLAYER" >said.txt 2>&1 || fail "plan.html: $(tail -5 said.txt)"
 grep -q ' 0 left out' said.txt || fail "plan.html: $(cat said.txt)"
+expect 0 '' "$P" run "$@" --plan plan.json --robot "python3 '$HERE/../../examples/drivers/driver.py'" --page run.html
+node "$HERE/play_run.js" run.html "$PLAYER" >said.txt 2>&1 || fail "run.html: $(tail -5 said.txt)"
 python3 - "$S/remove/domain.kpl" >weighed.kpl <<'END_OF_DOMAIN' || fail "domain with weights"
 import sys
 text = open(sys.argv[1]).read().replace("isHeld(block)", "isHeld(block), isHeavy(block)")
@@ -211,6 +213,6 @@ grep -q ' 2 left out' said.txt || fail "assumed.html: $(cat said.txt)"
 
 if [ -n "$PAGES" ]; then
   mkdir -p "$PAGES"
-  cp bodies.html outer.html hand.html swept.html plan.html assumed.html "$PAGES/" || fail "pages for pages-seen.sh"
+  cp bodies.html outer.html hand.html swept.html plan.html assumed.html run.html "$PAGES/" || fail "pages for pages-seen.sh"
 fi
 finish

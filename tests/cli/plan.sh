@@ -85,7 +85,7 @@ expect 3 'deep.json: more than 64 lists and objects in each other' \
   "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan deep.json
 # Commands that are misspelt, or lacking.
 expect 2 "unknown command 'sovle'; did you mean 'solve'?" "$BIN/kaboum-plan" sovle x.kpl
-expect 2 "unknown command 'x.kpl'; commands: solve, check, show, run, convert" "$BIN/kaboum-plan" x.kpl
+expect 2 "unknown command 'x.kpl'; commands: solve, check, show, run, page, convert" "$BIN/kaboum-plan" x.kpl
 expect 2 'a command is to come first: solve, check' "$BIN/kaboum-plan"
 expect 2 'unknown option --tre; did you mean --tree?' "$BIN/kaboum-plan" solve x.kpl --tre
 # The example of docs/planning/language.md, as it stands there.

@@ -7,10 +7,10 @@ const assert = require('assert');
 
 const page = fs.readFileSync(process.argv[2], 'utf8');
 const scripts = [...page.matchAll(/<script([^>]*)>\n?([^]*?)<\/script>/g)];
-assert.strictEqual(scripts.length, 4, 'data and three scripts');
+assert.strictEqual(scripts.length, 5, 'data and four scripts');
 const data = JSON.parse(scripts[0][2]);
 for (const [, , code] of scripts.slice(1)) new vm.Script(code);  // throws where it is no JavaScript
-const sources = ['scene.js', 'view.js', 'player.js'].map((name) => require('path').resolve(process.argv[3], name));
+const sources = ['scene.js', 'view.js', 'cell.js', 'player.js'].map((name) => require('path').resolve(process.argv[3], name));
 sources.forEach((file, i) => assert.strictEqual(scripts[i + 1][2].trim(), fs.readFileSync(file, 'utf8').trim()));
 const S = require(sources[0]);
 

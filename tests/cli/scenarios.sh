@@ -53,9 +53,9 @@ reader = Reader()
 reader.feed(page)
 assert "http" not in page.replace("http://www.w3.org/2000/svg", "") and "{{" not in page
 data = json.loads(reader.scripts[0])
-for script, file in zip(reader.scripts[1:], ("scene.js", "view.js", "player.js"), strict=True):
+for script, file in zip(reader.scripts[1:], ("scene.js", "view.js", "cell.js", "player.js"), strict=True):
     assert script.strip() == open(f"{player}/{file}", encoding="utf-8").read().strip(), file
-used = set(re.findall(r"\$\('([a-z]+)'\)", reader.scripts[3]))
+used = set(re.findall(r"\$\('([a-z]+)'\)", reader.scripts[3] + reader.scripts[4]))
 assert used and used <= reader.ids, used - reader.ids
 cell, plan = json.load(open(f"{name}/cell.json")), json.load(open(f"{name}/plan.json"))
 links = [f"{r['name']}/{l['link']}" for r in cell["robots"] for l in r["links"]]

@@ -138,5 +138,24 @@ TEST(Drawing, AnEmptyPlanIsAGoal) {
   EXPECT_EQ(picture.edges.size(), 1U);
 }
 
+TEST(Drawing, GraphsThatAreNoneOfAPlanAreRefused) {
+  const auto refused = [](const PlanGraph& graph, const std::string& why) {
+    try {
+      plan_svg(graph);
+      ADD_FAILURE() << "drawn, though it " << why;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+      EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+    }
+  };
+  const PlanGraph::Node end{"a", {{kNone, ""}}, false}, to_first{"b", {{0, ""}}, false};
+  refused({{end}, 1}, "begins at a node that is not there");
+  refused({{{"a", {{3, ""}}, false}}, 0}, "goes on at a node that is not there");
+  refused({{{"a", {}, false}}, 0}, "ends where there is no goal");
+  refused({{to_first}, 0}, "cycle");
+  refused({{{"a", {{1, "p"}, {kNone, "!p"}}, true}, to_first}, 0}, "cycle");
+  EXPECT_NE(plan_svg(PlanGraph{{end, to_first}, 1}).find("id=\"node-1\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace kaboum::plan::test

@@ -199,6 +199,54 @@ TEST(Replan, KnowledgeOfEveryKindIsTakenOver) {
   EXPECT_EQ(s.replans[0].outcome, "s");
 }
 
+TEST(Replan, WhatIsKnownIsSaidInSentences) {
+  const Case c(
+      "types: v\nconstants: v a, b, c\npredicates: p(v), q, r, s, done\nfunctions: f(v) : v, g : "
+      "v\n"
+      "init: Kx(p(a) | q), Or(!q | r), K(f(b) != a), K(g = c), K(!done)\n"
+      "action look preconds: !Kw(s) effects: add(Kw, s)\n"
+      "action easy preconds: K(!s) effects: add(Kf, done)\n"
+      "action hard preconds: K(s) effects: add(Kf, done)\n"
+      "goal: K(done)",
+      {});
+  using Sentences = std::set<std::string>;
+  const Sentences first{"!done", "f(b) != a", "g = c", "one of p(a), q", "!q or r"};
+  int looked = 0;
+  run(c.model, c.plan, {}, [&](const RunStep& step) {
+    if (action_text(c.model, c.plan.nodes[step.node].action) != "look") return;
+    EXPECT_EQ(sentences_of(step.before.facts()), first);
+    Sentences then = first;
+    then.insert(step.outcome);
+    ++looked;
+    EXPECT_EQ(sentences_of(step.after.facts()), then);
+  });
+  EXPECT_EQ(looked, 2);
+}
+
+TEST(Replan, WhyItIsPlannedAgainIsToldBeforeAndAfter) {
+  const Case c(weighing(2), all_light(2));
+  ReplanOptions options;
+  options.run.outcomes = RunOptions::Outcomes::Given;
+  options.run.given = {{"isHeavy(o1)", "true"}, {"isHeavy(o2)", "true"}};
+  options.solve.assumed = all_light(2);
+  std::vector<std::string> told;
+  options.planning = [&](const Unplanned& why, unsigned after) {
+    const std::set<std::string> known = sentences_of(why.known);
+    EXPECT_TRUE(known.contains(why.outcome)) << why.outcome;
+    told.push_back(std::to_string(after) + " lacks " + why.outcome);
+  };
+  options.planned = [&](const Replan& made) {
+    EXPECT_EQ(made.result, Outcome::Solved);
+    told.push_back("plan " + std::to_string(made.plan) + " for " + made.outcome);
+  };
+  std::vector<std::string> done;
+  const ReplanSummary s = c.carry_out(options, done);
+  ASSERT_EQ(s.replans.size(), 2U);
+  const std::string first = s.replans[0].outcome, second = s.replans[1].outcome;
+  EXPECT_EQ(told, (std::vector<std::string>{"0 lacks " + first, "plan 1 for " + first,
+                                            "1 lacks " + second, "plan 2 for " + second}));
+}
+
 /// Looks, and is done if s does not hold; else by p, q or r, after looking at p or q.
 std::string by_one_of(const std::string& initial, const std::string& actions = "") {
   return "predicates: p, q, r, s, ready, done\n"

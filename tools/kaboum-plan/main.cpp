@@ -3,6 +3,8 @@
 #include "commands.h"
 
 #include <CLI/CLI.hpp>
+
+#include "page.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
@@ -15,6 +17,7 @@ int main(int argc, char** argv) {
   const CLI::App* check = tools::add_check_command(app, o);
   const CLI::App* show = tools::add_show_command(app, o);
   const CLI::App* run = tools::add_run_command(app, o);
+  const CLI::App* page = tools::add_page_command(app, o);
   tools::add_convert_command(app, o);
   app.footer(
       "With --engine fcl, bullet or ode nothing is certified: contacts are what that library says, "
@@ -30,6 +33,7 @@ int main(int argc, char** argv) {
     if (check->parsed()) return tools::check(o);
     if (show->parsed()) return tools::show(o);
     if (run->parsed()) return tools::run_plan(o);
+    if (page->parsed()) return tools::write_run_page(o);
     return tools::convert(o);
   });
 }

@@ -30,6 +30,9 @@ struct PlanOptions {
   std::string outcomes = "all", trajectories;  ///< of run
   std::string assume;                          ///< of solve: a file
   std::string html;                            ///< of show
+  std::string live;                            ///< of run: a port; empty: none
+  double live_linger = 0;                      ///< of run [s]
+  std::string run_page, journal;               ///< of run and page; of page
   CommonOptions common;
 };
 

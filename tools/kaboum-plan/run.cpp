@@ -4,15 +4,20 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/execution/drive_plan.h>
+#include <kaboum/execution/run_page.h>
 #include <kaboum/execution/task_options.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <functional>
 #include <iostream>
+#include <optional>
+#include <vector>
 
 #include "common/files.h"
 #include "common/request_options.h"
 #include "input.h"
+#include "page.h"
 
 namespace kaboum::tools {
 namespace {
@@ -119,11 +124,67 @@ void require_driver_meaning(const PlanOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--trajectories: the robot is told them; --journal has them");
   for (const char* name :
-       {"journal", "robot-timeout", "robot-rate", "robot-tracking", "robot-retries"})
+       {"journal", "robot-timeout", "robot-rate", "robot-tracking", "robot-retries", "page"})
     if (!drives && o.stated.contains(name))
       throw Error(ErrorCode::InvalidArgument,
                   "--" + std::string(name) + " is of a robot's program; give --robot COMMAND");
+  if (!drives && !o.live.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--live is of a robot's program; give --robot COMMAND (show --html plays a plan)");
+  if (o.live.empty() && o.stated.contains("live-linger"))
+    throw Error(ErrorCode::InvalidArgument, "--live-linger is of --live");
 }
+
+/// The port of --live; 0: a free one.
+std::uint16_t live_port(const PlanOptions& o) {
+  std::uint16_t port = 0;
+  const char *begin = o.live.data(), *end = begin + o.live.size();
+  const auto [stop, error] = std::from_chars(begin, end, port);
+  if (error != std::errc() || stop != end)
+    throw Error(ErrorCode::InvalidArgument,
+                "--live: expected a port from 0 to 65535, not '" + o.live + "'");
+  return port;
+}
+
+/// The page of a run, for browsers that follow it and as a file.
+class Seen {
+ public:
+  Seen(const PlanOptions& o, const execution::PlanningTask& task) : o_(o), task_(task) {
+    if (o.live.empty()) return;
+    live_.emplace(task.scene()->world, task.files().scene, live_port(o), o.run.packages);
+    for (const std::string& note : live_->notes()) log(o.common.quiet, note);
+    std::cerr << "kaboum-plan: the run is shown at " << live_->address() << std::endl;
+  }
+
+  /// Who is told the lines of the journal; empty: nobody.
+  std::function<void(const std::string&)> noted() {
+    if (!live_ && o_.run_page.empty()) return {};
+    return [this](const std::string& line) {
+      if (live_) live_->note(line);
+      if (!o_.run_page.empty()) lines_.push_back(line);
+    };
+  }
+
+  /// When all is said. Browsers get what they do not have yet, for a second.
+  void end() {
+    if (!o_.run_page.empty()) {
+      const execution::PlanPage page =
+          execution::run_page(task_.scene()->world, task_.files().scene, lines_, o_.run.packages);
+      for (const std::string& note : page.notes) log(o_.common.quiet, note);
+      io::write_file(o_.run_page, page.html);
+    }
+    if (!live_) return;
+    live_->finish(1, o_.live_linger);
+    if (const std::string why = live_->failure(); !why.empty())
+      std::cerr << "kaboum-plan: the run was not shown to its end: " << why << '\n';
+  }
+
+ private:
+  const PlanOptions& o_;
+  const execution::PlanningTask& task_;
+  std::optional<execution::LiveRun> live_;
+  std::vector<std::string> lines_;
+};
 
 }  // namespace
 
@@ -145,6 +206,20 @@ CLI::App* add_run_command(CLI::App& app, PlanOptions& o) {
       ->each([&o](const std::string&) { o.stated.insert("outcomes"); });
   add_request_options(*r, execution::run_options(), o.run, o.stated);
   add_request_options(*r, execution::driver_options(), o.driver, o.stated);
+  r->add_flag("--live{0}", o.live,
+              "Show the run in a browser on this machine while it goes on: serve a page at this "
+              "port of 127.0.0.1, 0 is a free one, and print its address (docs/pages.md#runs)")
+      ->type_name("PORT");
+  r->add_option("--live-linger", o.live_linger,
+                "Serve that page for so long after the run [0; browsers that follow have a second "
+                "to get the rest]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("SECONDS")
+      ->each([&o](const std::string&) { o.stated.insert("live-linger"); });
+  r->add_option("--page", o.run_page, "Write that page as a file when the run has ended")
+      ->check(page_name())
+      ->type_name("FILE")
+      ->each([&o](const std::string&) { o.stated.insert("page"); });
   r->add_option("--trajectories", o.trajectories,
                 "Write each motion's samples into this folder, and what happens between them: "
                 "plan.json, events.csv")
@@ -166,15 +241,20 @@ int run_plan(const PlanOptions& o) {
   std::vector<std::string> inputs = task.scene()->inputs;
   for (const std::string& file : {o.plan, o.task.domain, o.task.problem, o.driver.replayed})
     if (!file.empty()) inputs.push_back(file);
-  require_apart({{"--report", o.common.report}, {"--journal", o.driver.journal}}, inputs);
+  require_apart(
+      {{"--report", o.common.report}, {"--journal", o.driver.journal}, {"--page", o.run_page}},
+      inputs);
   const plan::Model model = task.load();
   const plan::Plan plan = read_plan_file(model, o);
   execution::DriveReport drive;
+  Seen seen(o, task);
+  execution::DriverOptions driver = o.driver;
+  driver.noted = seen.noted();
   {
     Progress progress(o.common.quiet);
     request.simulation.progress = [&](const std::string& stage) { progress.show(stage); };
     if (drives)
-      drive = execution::drive_plan(task, model, plan, request, o.driver);
+      drive = execution::drive_plan(task, model, plan, request, driver);
     else
       drive.run = execution::run_plan(task, model, plan, request);
   }
@@ -219,6 +299,8 @@ int run_plan(const PlanOptions& o) {
               << " s apart, joints are within " << e.most_strayed
               << " of the trajectories, and points within " << e.margin << '\n';
   const int missing = say_missing(replans);
+  std::cout.flush();
+  seen.end();
   if (!r.good() || drive.stopped) return kNo;
   return good || missing != kDone ? missing : kNo;
 }

@@ -19,6 +19,13 @@ namespace {
 
 constexpr std::uint64_t kMostBranches = 1'000'000'000'000'000'000ULL;
 
+KnownFacts::Term named(const Model& model, const QueryEvaluator& evaluator, const Fact& f) {
+  const std::vector<Symbol>& symbols = f[0] == 1 ? model.functions : model.predicates;
+  KnownFacts::Term out{symbols[f[1]].name};
+  for (std::size_t i = 2; i < f.size(); ++i) out.push_back(evaluator.name(f[i]));
+  return out;
+}
+
 class NamedKnowledge final : public KnownState {
  public:
   NamedKnowledge(const Model& model, const QueryEvaluator& evaluator, const RuntimeKnowledge& k)
@@ -36,6 +43,25 @@ class NamedKnowledge final : public KnownState {
     }
     const Index* v = k_.value(f);
     return v == nullptr ? std::nullopt : std::optional(evaluator_.name(*v));
+  }
+
+  KnownFacts facts() const override {
+    const auto term = [&](const Fact& f) { return named(model_, evaluator_, f); };
+    KnownFacts out;
+    for (const auto& [f, truth] : k_.atoms()) out.atoms[term(f)] = truth;
+    for (const auto& [f, value] : k_.values()) out.values[term(f)] = evaluator_.name(value);
+    for (const auto& [f, values] : k_.excluded())
+      for (const Index v : values) out.excluded[term(f)].insert(evaluator_.name(v));
+    for (const auto& [entry, open] : k_.exclusive()) {
+      out.exclusive.emplace_back();
+      for (const Fact& f : open) out.exclusive.back().insert(term(f));
+    }
+    for (const std::set<FactLiteral>& literals : k_.some()) {
+      out.some.emplace_back();
+      for (const auto& [f, truth] : literals) out.some.back().emplace(term(f), truth);
+    }
+    out.cut = model_.cut || k_.cut();
+    return out;
   }
 
  private:
@@ -120,7 +146,7 @@ class Run {
       step_(step);
       const std::uint64_t done = actions + (n.acts ? 1 : 0);
       if (!next) {
-        options_.unplanned({outcome, named(then), done});
+        options_.unplanned({outcome, after_names.facts(), done});
         ways = std::min(kMostBranches, ways + 1);
         continue;
       }
@@ -155,31 +181,6 @@ class Run {
     slots.at(q.value->index) =
         evaluator_.named(model_.externals[q.symbol].range, n.calls[used].value);
     ++used;
-  }
-
-  [[nodiscard]] KnownFacts::Term named(const Fact& f) const {
-    const std::vector<Symbol>& symbols = f[0] == 1 ? model_.functions : model_.predicates;
-    KnownFacts::Term out{symbols[f[1]].name};
-    for (std::size_t i = 2; i < f.size(); ++i) out.push_back(evaluator_.name(f[i]));
-    return out;
-  }
-
-  [[nodiscard]] KnownFacts named(const RuntimeKnowledge& k) const {
-    KnownFacts out;
-    for (const auto& [f, truth] : k.atoms()) out.atoms[named(f)] = truth;
-    for (const auto& [f, value] : k.values()) out.values[named(f)] = evaluator_.name(value);
-    for (const auto& [f, values] : k.excluded())
-      for (const Index v : values) out.excluded[named(f)].insert(evaluator_.name(v));
-    for (const auto& [entry, open] : k.exclusive()) {
-      out.exclusive.emplace_back();
-      for (const Fact& f : open) out.exclusive.back().insert(named(f));
-    }
-    for (const std::set<FactLiteral>& literals : k.some()) {
-      out.some.emplace_back();
-      for (const auto& [f, truth] : literals) out.some.back().emplace(named(f), truth);
-    }
-    out.cut = model_.cut || k.cut();
-    return out;
   }
 
   /// Where a branch goes, nullopt: it has no case for what was sensed; and what that says.
@@ -252,10 +253,7 @@ class Run {
 
   /// "isSpillable(o1)".
   [[nodiscard]] std::string fact_text(const Fact& f) const {
-    const KnownFacts::Term term = named(f);
-    std::string out = term.front();
-    for (std::size_t i = 1; i < term.size(); ++i) out.append(i > 1 ? ", " : "(").append(term[i]);
-    return term.size() > 1 ? out + ")" : out;
+    return text_of(named(model_, evaluator_, f));
   }
 
   /// Whether what is known is as given.

@@ -1,6 +1,7 @@
 // A plan as a picture: steps in rows from the start down, every outcome of a branch with its own
 // edge and label, every run's end a goal of its own.
 
+#include <kaboum/base/error.h>
 #include <kaboum/base/xml_text.h>
 #include <kaboum/plan/plan.h>
 
@@ -26,10 +27,15 @@ struct Rows {
   std::vector<Index> row;  ///< per step of the plan
 };
 
-Rows rows_of(const Model& model, const Plan& plan) {
+/// @throws Error{InvalidInput} for graphs that are none of a plan
+Rows rows_of(const PlanGraph& plan) {
+  const auto fail = [](const std::string& what) {
+    throw Error(ErrorCode::InvalidInput, "a plan's graph " + what);
+  };
   Rows rows;
   rows.row.assign(plan.nodes.size(), 0);
   if (plan.root == kNone) return rows;
+  if (plan.root >= plan.nodes.size()) fail("begins at a node that is not there");
   std::vector<std::size_t> incoming(plan.nodes.size(), 0);
   std::vector<char> reached(plan.nodes.size(), 0);
   std::vector<Index> todo{plan.root};
@@ -37,8 +43,10 @@ Rows rows_of(const Model& model, const Plan& plan) {
   while (!todo.empty()) {
     const Index n = todo.back();
     todo.pop_back();
-    for (const PlanEdge& e : plan_edges(model, plan.nodes[n])) {
+    if (plan.nodes[n].next.empty()) fail("ends where there is no goal");
+    for (const PlanGraph::Edge& e : plan.nodes[n].next) {
       if (e.to == kNone) continue;
+      if (e.to >= plan.nodes.size()) fail("goes on at a node that is not there");
       ++incoming[e.to];
       if (reached[e.to]) continue;
       reached[e.to] = 1;
@@ -50,14 +58,17 @@ Rows rows_of(const Model& model, const Plan& plan) {
     const Index n = todo.back();
     todo.pop_back();
     rows.order.push_back(n);
-    std::vector<PlanEdge> next = plan_edges(model, plan.nodes[n]);
+    std::vector<PlanGraph::Edge> next = plan.nodes[n].next;
     std::reverse(next.begin(), next.end());  // the first outcome is drawn first
-    for (const PlanEdge& e : next) {
+    for (const PlanGraph::Edge& e : next) {
       if (e.to == kNone) continue;
       rows.row[e.to] = std::max(rows.row[e.to], rows.row[n] + 1);
       if (--incoming[e.to] == 0) todo.push_back(e.to);
     }
   }
+  // Of a cycle no node comes to have all before it in order.
+  if (rows.order.size() != static_cast<std::size_t>(std::ranges::count(reached, 1)))
+    fail("has a cycle");
   return rows;
 }
 
@@ -66,9 +77,8 @@ enum class Kind : char { Start, Step, Branch, Goal, Reference, Label, Bend };
 /// The drawing: the graph's node k is items[k]. Steps stand in even rows, labels in odd ones.
 class Drawing {
  public:
-  Drawing(const Model& model, const Plan& plan, const PlanProgress& progress)
-      : progress_(progress) {
-    const Rows rows = rows_of(model, plan);
+  Drawing(const PlanGraph& plan, const PlanProgress& progress) : progress_(progress) {
+    const Rows rows = rows_of(plan);
     const std::size_t start = add(0, Kind::Start, "");
     std::vector<std::size_t> item(plan.nodes.size(), 0);
     std::vector<char> referred(plan.nodes.size(), 0);
@@ -77,11 +87,11 @@ class Drawing {
       return rows.row[to] - rows.row[from] > kLongestEdge;
     };
     for (const Index n : rows.order)
-      for (const PlanEdge& e : plan_edges(model, plan.nodes[n]))
+      for (const PlanGraph::Edge& e : plan.nodes[n].next)
         if (e.to != kNone && far(n, e.to)) referred[e.to] = 1;
     for (const Index n : rows.order) {
       look();
-      std::string text = node_label(model, plan.nodes[n]);
+      std::string text = plan.nodes[n].text;
       if (referred[n]) text += "  #" + std::to_string(n);
       item[n] = add(row(n), plan.nodes[n].branches ? Kind::Branch : Kind::Step, text);
       items_[item[n]].node = n;
@@ -93,7 +103,7 @@ class Drawing {
     }
     for (const Index n : rows.order) {
       look();
-      for (const PlanEdge& e : plan_edges(model, plan.nodes[n])) {
+      for (const PlanGraph::Edge& e : plan.nodes[n].next) {
         const std::size_t below = row(n) + 2;
         if (e.to == kNone) {
           lead(item[n], row(n), e.label, add(below, Kind::Goal, "goal"), below);
@@ -235,9 +245,25 @@ class Drawing {
 
 }  // namespace
 
-std::string plan_svg(const Model& model, const Plan& plan, const PlanProgress& progress) {
+PlanGraph plan_graph(const Model& model, const Plan& plan) {
   measure(model, plan);  // refuses cycles
-  return Drawing(model, plan, progress).svg();
+  PlanGraph out;
+  out.root = plan.root;
+  for (const Plan::Node& n : plan.nodes) {
+    PlanGraph::Node& node = out.nodes.emplace_back();
+    node.text = node_label(model, n);
+    node.branches = n.branches;
+    for (PlanEdge& e : plan_edges(model, n)) node.next.push_back({e.to, std::move(e.label)});
+  }
+  return out;
+}
+
+std::string plan_svg(const PlanGraph& graph, const PlanProgress& progress) {
+  return Drawing(graph, progress).svg();
+}
+
+std::string plan_svg(const Model& model, const Plan& plan, const PlanProgress& progress) {
+  return plan_svg(plan_graph(model, plan), progress);
 }
 
 }  // namespace kaboum::plan

@@ -48,6 +48,7 @@ class Runs {
     made.outcome = what.outcome;
     made.actions = what.actions;
     made.after = after;
+    if (options_.planning) options_.planning(what, after);
     const auto number = static_cast<unsigned>(summary_.replans.size()) + 1;
     const auto [known, fresh] = known_.try_emplace(what.known, number);
     if (!fresh) {
@@ -59,13 +60,13 @@ class Runs {
       made.reason = made.circle ? "the plan for this leads back to it" : then.reason;
       made.nodes = then.nodes;
       goes_on_[after].push_back(known->second);
-      summary_.replans.push_back(std::move(made));
+      add(std::move(made));
       return;
     }
     goes_on_[after].push_back(number);
     if (plans_.size() >= options_.most) {
       made.reason = "more than " + std::to_string(options_.most) + " new plans are needed";
-      summary_.replans.push_back(std::move(made));
+      add(std::move(made));
       return;
     }
     const auto started = std::chrono::steady_clock::now();
@@ -81,10 +82,15 @@ class Runs {
                                                           : "";
     made.nodes = found.plan.nodes.size();
     if (found.outcome == Outcome::Solved) made.plan = static_cast<unsigned>(plans_.size()) + 1;
-    summary_.replans.push_back(std::move(made));
+    add(std::move(made));
     if (found.outcome != Outcome::Solved) return;
     plans_.emplace_back(std::move(model), std::move(found.plan));
     carry_out(plans_.back().first, plans_.back().second, number);
+  }
+
+  void add(Replan made) {
+    summary_.replans.push_back(std::move(made));
+    if (options_.planned) options_.planned(summary_.replans.back());
   }
 
   /// Whether carrying out the plan `from` has come to that of number `to`.

@@ -6,6 +6,7 @@
 #include <kaboum/world/world.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -20,8 +21,10 @@ struct DriverOptions {
   /// A run that is repeated from its journal instead: what it was told has to be the same, and what
   /// it answered is taken from there. Empty: the command.
   std::string replayed = {};
-  /// Every message is written into this file as it comes; empty: none.
+  /// Every message is written into this file as it comes, and what the plan is at; empty: none.
   std::string journal = {};
+  /// Is told every line of the journal as well, by the thread of the run: it must not wait.
+  std::function<void(const std::string& line)> noted = {};
   double most_seconds = 10;  ///< for an answer, beside the time of what it is asked to do. > 0 [s]
   double rate = 100;         ///< points of a trajectory that are sent. > 0 [1/s]
   /// How far each joint may be from where it is told to be when a driver says that it is done. > 0
@@ -104,6 +107,13 @@ class RobotDriver {
   /// Says that the plan has come to its end. @param end  where the plan has everything then; null:
   ///   nothing was carried out
   void finish(const judge::CellState* end);
+
+  /// Whether there is a journal, or somebody who is told its lines.
+  [[nodiscard]] bool is_noted() const;
+  /// Adds to the journal. @param entry  a JSON object with members, without its time
+  void note(std::string entry);
+  /// Notes that nothing is told any more, and why, unless that was noted.
+  void end(const std::string& kind, const std::string& why);
 
   [[nodiscard]] std::uint64_t messages() const;
   [[nodiscard]] double waited() const;         ///< for answers [s]

@@ -28,4 +28,11 @@ struct KnownFacts {
   [[nodiscard]] auto operator<=>(const KnownFacts&) const = default;
 };
 
+/// "isSpillable(o1)", "place(o2)".
+std::string text_of(const KnownFacts::Term& term);
+
+/// What is known, a sentence each: "isSpillable(o1)", "!isSpillable(o1)", "place(o2) = shelf",
+/// "place(o2) != shelf", "one of a(x), b(y)", "a(x) or !b(y)".
+std::set<std::string> sentences_of(const KnownFacts& known);
+
 }  // namespace kaboum::plan

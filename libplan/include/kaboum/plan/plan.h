@@ -88,11 +88,32 @@ std::string write_plan(const Model& model, const Plan& plan);
 /// @throws Error{InvalidInput} on anything but a well-formed plan of this model's domain and names.
 Plan read_plan(const Model& model, const std::string& json, const std::string& file_name);
 
+/// A plan's graph in words: what drawings show of it.
+struct PlanGraph {
+  struct Edge {
+    Index to = kNone;  ///< kNone: the goal
+    std::string label = {};
+  };
+  struct Node {
+    std::string text;
+    std::vector<Edge> next;
+    bool branches = false;
+  };
+  std::vector<Node> nodes;
+  Index root = kNone;
+};
+
+/// @throws Error as measure
+PlanGraph plan_graph(const Model& model, const Plan& plan);
+
 /// An indented text, Graphviz DOT, or a drawing.
 /// @throws Error{LimitReached} if the text's indentation would take more than 256 MiB.
 std::string plan_text(const Model& model, const Plan& plan, const PlanProgress& progress = {});
 std::string plan_dot(const Model& model, const Plan& plan, const PlanProgress& progress = {});
 std::string plan_svg(const Model& model, const Plan& plan, const PlanProgress& progress = {});
+/// The same drawing. @throws Error{InvalidInput} for a cycle, a missing node, or one without a
+/// next one
+std::string plan_svg(const PlanGraph& graph, const PlanProgress& progress = {});
 
 /// "name(a, b)"; of a case "p(a)" or "!p(a)" or "f(a) = c".
 std::string action_text(const Model& model, const PlanAction& step);

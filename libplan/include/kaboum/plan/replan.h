@@ -19,12 +19,6 @@ struct TaskTexts {
   ExternalBindings bindings = {};
 };
 
-struct ReplanOptions {
-  RunOptions run = {};      ///< `unplanned` is not looked at
-  SolveOptions solve = {};  ///< how it is planned again
-  std::size_t most = 100;   ///< new plans; those that are needed beyond are not made
-};
-
 /// A plan that was made during a run.
 struct Replan {
   std::string outcome;        ///< that no branch was there for: "!isSpillable(o1)"
@@ -37,6 +31,16 @@ struct Replan {
   unsigned plan = 0;      ///< that is carried out then: which new one, from 1; 0: there is none
   bool reached = false;   ///< the same was known before: that plan is carried out
   bool circle = false;    ///< that plan, or one that took over from it, has led here
+};
+
+struct ReplanOptions {
+  RunOptions run = {};      ///< `unplanned` is not looked at
+  SolveOptions solve = {};  ///< how it is planned again
+  std::size_t most = 100;   ///< new plans; those that are needed beyond are not made
+  /// Is told, before it is planned again, why. @param after  as Replan::after
+  std::function<void(const Unplanned&, unsigned after)> planning = {};
+  /// Is told what has come of that, before a new plan is carried out.
+  std::function<void(const Replan&)> planned = {};
 };
 
 struct ReplanSummary {

@@ -21,6 +21,8 @@ class KnownState {
   /// or the model has no such term.
   [[nodiscard]] virtual std::optional<std::string> value(
       const std::string& function, const std::vector<std::string>& arguments) const = 0;
+  /// All that is known.
+  [[nodiscard]] virtual KnownFacts facts() const = 0;
 };
 
 /// What an action has sensed of several values that were possible: "isSpillable(o1)", "true".
