@@ -82,6 +82,42 @@ TEST(SimpleBodies, MixedTakesCheapKinds) {
   EXPECT_EQ(found.bodies[0].core.vertices.size(), 2U);
 }
 
+// A point that no body holds, within epsilon beside the solid: one body more at most, and the rest
+// is still held.
+TEST(SimpleBodies, PointsThatWereLeftOutAreHeld) {
+  const Mesh l = kaboum::test::merged({bar({4, 1, 1}), bar({1, 4, 1})});
+  const geom::Prepared solid = geom::prepare(l, {});
+  SimpleBodyOptions options;
+  options.kinds.boxes = true;
+  options.epsilon = 0.3;
+  options.effort = Effort::Fast;
+  SimpleBodySearch search(solid.solid, options);
+  const CoverCandidate before = search.find();
+  const auto holds = [](const CoverCandidate& found, const Vec3& p) {
+    // The hull of a box and a point of it has no other corner.
+    return std::ranges::any_of(found.bodies, [&](const geom::ConvexBody& body) {
+      std::vector<Vec3> with = body.core.vertices;
+      with.push_back(p);
+      return geom::convex_hull(with)->vertices.size() == body.core.vertices.size();
+    });
+  };
+  std::vector<Vec3> beside;
+  for (double t = 0.05; t < 4; t += 0.05)
+    for (const Vec3& p : {Vec3(t, 0.5, 1.27), Vec3(0.5, t, -0.27), Vec3(4.27, 0.5, 0.5)})
+      if (!holds(before, p)) beside.push_back(p);
+  ASSERT_FALSE(beside.empty());
+  const Vec3 missing = beside[beside.size() / 2];
+  const CoverCandidate after = search.hold(std::vector{missing});
+  EXPECT_TRUE(holds(after, missing));
+  EXPECT_LE(after.bodies.size(), before.bodies.size() + 1);
+  geom::ConvexSet set;
+  set.bodies = after.bodies;
+  const verify::Cover found = verify::verify_cover(l, set);
+  EXPECT_EQ(found.inclusion.solid.answer, verify::Answer::Verified);
+  EXPECT_EQ(found.inclusion.surface.answer, verify::Answer::Verified);
+  EXPECT_EQ(verify::verify_excess(set, l, 0.3, true).answer, verify::Answer::Verified);
+}
+
 TEST(SimpleBodies, ByNumber) {
   SimpleBodyOptions options;
   options.kinds.boxes = true;
