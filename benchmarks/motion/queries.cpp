@@ -267,20 +267,27 @@ class JudgedBatches {
         state_(std::move(state)),
         random_(seed) {}
 
+  /// @throws Error{LimitReached} where so many cannot be had
   void run(std::size_t configurations, std::size_t motions) {
     constexpr std::size_t kAtOnce = 20'000;
-    std::size_t left = motions;
-    for (std::size_t done = 0; done < configurations;) {
-      const std::size_t count = std::min(kAtOnce, configurations - done);
-      const Values rows = drawn(count / 2), near = halved(count - count / 2);
-      judge_rows(rows, drawn_);
-      const Values free = judge_rows(near, near_);
-      done += count;
-      const std::size_t share =
-          done < configurations ? std::min(left, motions * count / configurations) : left;
-      left -= judge_motions(free, share);
+    constexpr int kTurns = 1000;  // without anything to judge
+    const std::size_t half = configurations / 2;
+    while (drawn_.rows < half) judge_rows(drawn(std::min(kAtOnce, half - drawn_.rows)), drawn_);
+    int idle = 0;
+    const auto count_idle = [&](bool more) {
+      idle = more ? 0 : idle + 1;
+      if (idle >= kTurns)
+        throw Error(ErrorCode::LimitReached, "nothing is found to be free, or all is");
+    };
+    while (near_.rows < configurations - half || free_motions_ < motions) {
+      const std::size_t known = near_.rows + free_motions_;
+      const Values free = judge_rows(halved(kAtOnce / 8), near_);
+      if (free_motions_ < motions) {
+        const std::size_t left = motions - free_motions_;
+        judge_motions(free, near_.rows < configurations - half ? left / 8 + 1 : left);
+      }
+      count_idle(near_.rows + free_motions_ > known);
     }
-    while (left > 0) left -= std::min(left, judge_motions(halved(2000), left));
   }
 
   json said() const {
@@ -300,6 +307,8 @@ class JudgedBatches {
               {"samples of pairs looked at", looked_},
               {"missed", missed_motions_}}}};
   }
+  /// Of what is not free: the judge sees contacts.
+  [[nodiscard]] bool has_found_contacts() const { return drawn_.other_in_contact > 0; }
   [[nodiscard]] std::size_t missed() const {
     return drawn_.missed + near_.missed + missed_motions_;
   }
@@ -440,6 +449,8 @@ int judge_batches(char** argv) {
   JudgedBatches batches(all, *cell, state, std::strtoull(argv[7], nullptr, 10));
   batches.run(std::strtoull(argv[5], nullptr, 10), std::strtoull(argv[6], nullptr, 10));
   std::cout << batches.said() << '\n';
+  if (!batches.has_found_contacts())
+    throw Error(ErrorCode::InvalidInput, "the meshes meet nowhere: what they say is worth nothing");
   return batches.missed() == 0 ? 0 : 1;
 }
 

@@ -149,10 +149,9 @@ class BodySearch {
   CoverCandidate hold(std::span<const Vec3> points) {
     points_.insert(points_.end(), points.begin(), points.end());
     inner_.insert(inner_.end(), points.begin(), points.end());
-    if (options_.max_bodies) return find();
+    if (options_.max_bodies || bodies_.empty()) return find();
     bodies_ = completed(std::move(bodies_), kAny);
     if (bodies_.empty()) return find();
-    for (SimpleBody& one : bodies_) one = written(one);
     return candidate();
   }
 
@@ -162,16 +161,19 @@ class BodySearch {
   /// The bodies of the last search, as they are handed over.
   [[nodiscard]] CoverCandidate candidate() const {
     CoverCandidate out;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      out.bodies.push_back(convex_body(bodies_[i], i));
+    std::vector<SimpleBody> bodies;
+    bodies.reserve(bodies_.size());
+    for (const SimpleBody& one : bodies_) bodies.push_back(written(one));
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      out.bodies.push_back(convex_body(bodies[i], i));
       const std::size_t vertices = out.bodies.back().core.vertices.size();
       out.statistics.vertices += vertices;
       out.statistics.largest = std::max(out.statistics.largest, vertices);
     }
-    out.statistics.leaves = bodies_.size();
+    out.statistics.leaves = bodies.size();
     // Half of what is left is for who rounds the bodies.
     out.excess_upper = epsilon_ * (1 - 0.5 * kLeft);
-    out.excess_lower = std::min(farthest(bodies_), out.excess_upper);
+    out.excess_lower = std::min(farthest(bodies), out.excess_upper);
     if (options_.epsilon && !(out.excess_upper <= *options_.epsilon))
       out.stop = Stop::TooManyBodies;
     return out;
@@ -882,7 +884,7 @@ class BodySearch {
     });
     std::vector<Vec3> all;
     for (const std::vector<Vec3>& some : found) all.insert(all.end(), some.begin(), some.end());
-    const double spare = kTriangleSpare * finest_;
+    const double spare = kTriangleSpare * finest_ + 4 * spacing_;
     if (all.empty())
       for (const Vec3& p : inner_)
         if (std::ranges::none_of(all_written,
@@ -1003,10 +1005,7 @@ class BodySearch {
       candidates_.insert(candidates_.end(), bodies.begin(), bodies.end());
     }
     if (!best.empty() && !free_points(best).empty()) best = completed(std::move(best), most);
-    if (best.size() <= most && !best.empty()) {
-      for (SimpleBody& one : best) one = written(one);
-      return best;
-    }
+    if (best.size() <= most && !best.empty()) return best;
     if (most == kAny)
       throw Error(ErrorCode::LimitReached,
                   "no capsules or boxes were found that hold all triangles within epsilon; allow a "
@@ -1075,7 +1074,7 @@ class BodySearch {
   double spare_ = 0;
   std::unique_ptr<RegionalBody> body_;  ///< what bodies may not leave
   std::vector<SurfacePoint> surface_;
-  std::vector<SimpleBody> bodies_;  ///< of the last search, as they are written
+  std::vector<SimpleBody> bodies_;  ///< of the last search, before they are rounded
   std::vector<Vec3> points_;        ///< to be held
   std::vector<Vec3> inner_;         ///< of the inside, that are looked at when triangles are held
   std::vector<Eigen::Matrix3d> frames_;

@@ -30,8 +30,9 @@ namespace {
 constexpr std::array<double, 3> kSafety{1, 64, 4096};
 /// So often places that inner bodies must not reach are handed to another search.
 constexpr int kAvoided = 5;
-/// So often places that spheres leave out are handed to another search.
-constexpr int kHeld = 100;
+/// So often places that bodies leave out are handed to another search; to one that goes on from
+/// what was found.
+constexpr int kHeld = 20, kHeldOn = 100;
 /// Of epsilon, that a wrap round the input may take; the bodies have what it leaves.
 constexpr double kWrapShare = 0.5;
 /// For sums of three lengths.
@@ -230,6 +231,7 @@ class Search {
                                  least_thickness(request, diagonal)};
     else
       inner_ = inner_of(request, diagonal, hooks);
+    if (simple_ && !request.max_bodies) most_held_ = kHeldOn;
   }
 
   Candidate run() {
@@ -273,7 +275,7 @@ class Search {
     if (balls_ || simple_) {
       left_out_ = found.left_out;
       if (balls_) balls_->held.insert(balls_->held.end(), left_out_.begin(), left_out_.end());
-      tried_ = ++held_ < kHeld && !found.left_out.empty() ? 0 : kSafety.size();
+      tried_ = ++held_ < most_held_ && !found.left_out.empty() ? 0 : kSafety.size();
       return "to hold the places found";
     }
     if (simplified_) {
@@ -316,7 +318,7 @@ class Search {
   std::optional<bcd::InnerBallOptions> inner_balls_;
   std::vector<geom::Vec3> left_out_;  // by what was found last
   std::size_t tried_ = 0;             // allowances for rounding
-  int avoided_ = 0, held_ = 0;
+  int avoided_ = 0, held_ = 0, most_held_ = kHeld;
   bool simplified_ = false;
 };
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace kaboum::judge {
@@ -171,7 +170,7 @@ std::vector<std::uint32_t> Cell::to_root(const robot::Robot& robot, std::uint32_
 }
 
 double Cell::approach(const PosedThing& a, const PosedThing& b, std::size_t robot,
-                      const std::vector<double>& change) const {
+                      const std::vector<double>& begin, const std::vector<double>& end) const {
   const robot::Robot& kinematics = robots_[robot].kinematics;
   const auto chain = [&](const PosedThing& p) -> std::vector<std::uint32_t> {
     if (p.mover != robot) return {};
@@ -190,17 +189,15 @@ double Cell::approach(const PosedThing& a, const PosedThing& b, std::size_t robo
       // Of joints above both, both follow.
       if (std::ranges::find(*other, link) != other->end()) break;
       const robot::Joint& joint = kinematics.joints[link - 1];
-      const double moved = joint.type == robot::JointType::Fixed
-                               ? 0
-                               : std::abs(joint.multiplier * change[joint.variable]);
+      const bool is_fixed = joint.type == robot::JointType::Fixed;
+      const double from = is_fixed ? 0 : begin[joint.variable];
+      const double to = is_fixed ? 0 : end[joint.variable];
+      const double moved = std::abs(joint.multiplier * (to - from));
       out += moved * (joint.type == robot::JointType::Revolute ? reach : 1);
       reach += joint.origin.translation.norm();
-      if (joint.type != robot::JointType::Prismatic) continue;
-      const robot::Variable& v = kinematics.variables[joint.variable];
-      constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-      reach += std::abs(joint.offset) +
-               std::abs(joint.multiplier) * std::max(std::abs(v.lower.value_or(kAnywhere)),
-                                                     std::abs(v.upper.value_or(kAnywhere)));
+      if (joint.type == robot::JointType::Prismatic)
+        reach += std::abs(joint.offset) +
+                 std::abs(joint.multiplier) * std::max(std::abs(from), std::abs(to));
     }
   }
   return out;
@@ -210,16 +207,14 @@ std::optional<Meeting> Cell::find_meeting_on(const CellState& from, const CellSt
                                              std::size_t robot, std::size_t samples,
                                              std::size_t& looked) const {
   const std::vector<double>&begin = from.q[robot], &end = to.q[robot];
-  std::vector<double> change(begin.size());
-  for (std::size_t i = 0; i < change.size(); ++i) change[i] = end[i] - begin[i];
   std::vector<std::vector<PosedThing>> placed(samples + 1);
   const auto at = [&](std::size_t k) -> const std::vector<PosedThing>& {
     if (!placed[k].empty()) return placed[k];
     CellState state = from;
     const double share =
         static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(samples, 1));
-    for (std::size_t i = 0; i < change.size(); ++i)
-      state.q[robot][i] = begin[i] + share * change[i];
+    for (std::size_t i = 0; i < begin.size(); ++i)
+      state.q[robot][i] = begin[i] + share * (end[i] - begin[i]);
     return placed[k] = place(state);
   };
   // How far two things are apart, at least.
@@ -237,7 +232,7 @@ std::optional<Meeting> Cell::find_meeting_on(const CellState& from, const CellSt
     for (std::size_t j = i + 1; j < first.size(); ++j) {
       if (first[i].mover != robot && first[j].mover != robot) continue;
       if (!is_looked_at(first[i], first[j])) continue;
-      const double way = kLarger * approach(first[i], first[j], robot, change) /
+      const double way = kLarger * approach(first[i], first[j], robot, begin, end) /
                          static_cast<double>(std::max<std::size_t>(samples, 1));
       for (std::size_t k = 0;;) {
         const PosedThing &a = at(k)[i], &b = at(k)[j];
@@ -247,8 +242,9 @@ std::optional<Meeting> Cell::find_meeting_on(const CellState& from, const CellSt
             a.thing->solid->meets(a.at, *b.thing->solid, b.at))
           return Meeting{{a.thing->name, b.thing->name}};
         if (k == samples) break;
+        // Where nothing moves, the start stands for all.
         const double steps =
-            way > 0 ? std::floor(apart(a, b, way) / way) : static_cast<double>(samples);
+            way == 0 ? static_cast<double>(samples) : std::floor(apart(a, b, way) / way);
         k = steps < static_cast<double>(samples - k) ? k + static_cast<std::size_t>(steps) + 1
                                                      : samples;
       }

@@ -91,8 +91,10 @@ bool are_beyond(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, doub
   const Vec3 gap = (low(a) - high(b)).cwiseMax(low(b) - high(a)).cwiseMax(0.0);
   if (gap.squaredNorm() > reach * reach) return true;
   for (const auto& [t, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    const Vec3 n = ((*t)[1] - (*t)[0]).cross((*t)[2] - (*t)[0]);
-    const double most = reach * n.norm();
+    const Vec3 along = (*t)[1] - (*t)[0], across = (*t)[2] - (*t)[0], n = along.cross(across);
+    // The normal of a sliver is not known well enough.
+    if (n.norm() < 1e-6 * along.norm() * across.norm()) continue;
+    const double most = reach * n.norm() * (1 + 1e-9);
     std::array<double, 3> height{};
     for (std::size_t i = 0; i < 3; ++i) height[i] = n.dot((*other)[i] - (*t)[0]);
     if (std::ranges::all_of(height, [&](double h) { return h > most; }) ||

@@ -183,7 +183,7 @@
     const source = new EventSource('events');
     let last = 0;
     source.onmessage = (message) => {
-      const number = Number(message.lastEventId);
+      const number = Number(message.lastEventId.split('-')[1]);  // RUN-NUMBER
       if (number !== last + 1) return;  // one that is here already
       last = number;
       lost = false;

@@ -194,4 +194,20 @@ print('<robot name="r"><link name="a">' + "".join(
     '</link></robot>')
 P
 shows 0 '^verified' "$V" robot corner.urdf --bodies touching.urdf
+# What needs a whole ball: corners on its surface.
+{
+  printf 'OFF\n6 8 0\n'
+  for p in '0.25 0 0' '-0.25 0 0' '0 0.25 0' '0 -0.25 0' '0 0 0.25' '0 0 -0.25'; do echo "$p"; done
+  for t in '0 2 4' '2 1 4' '1 3 4' '3 0 4' '2 0 5' '1 2 5' '3 1 5' '0 3 5'; do echo "3 $t"; done
+} >octahedron.off
+link '<geometry><mesh filename="octahedron.off"/></geometry>' >octahedron.urdf
+part() { echo "<collision><origin xyz=\"0 0 $1\"/><geometry><$2/></geometry></collision>"; }
+{
+  echo '<robot name="r"><link name="a">'
+  part 0 'sphere radius="0.25"'
+  part 1 'sphere radius="0.25"'
+  part 0.5 'cylinder radius="0.25" length="1"'
+  echo '</link></robot>'
+} >ends.urdf
+shows 0 '^verified' "$V" robot octahedron.urdf --bodies ends.urdf
 finish

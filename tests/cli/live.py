@@ -80,7 +80,8 @@ class Follower:
         self.answer = self.connection.getresponse()
         if self.answer.status != 200 or self.answer.headers["Content-Type"] != "text/event-stream":
             fail(f"events: {self.answer.status}")
-        self.events, self.next = [], 1 if after is None else after + 1
+        self.run = None if after is None else after.split("-")[0]
+        self.events, self.next = [], 1 if after is None else int(after.split("-")[1]) + 1
 
     def read(self):
         """One more; None: there are no more."""
@@ -92,7 +93,8 @@ class Follower:
             if lines == [":\n"]:
                 lines = []
                 continue
-            if len(lines) != 2 or lines[0] != f"id: {self.next}\n" or not lines[1].startswith("data: "):
+            self.run = self.run or lines[0][4:].split("-")[0]
+            if len(lines) != 2 or lines[0] != f"id: {self.run}-{self.next}\n" or not lines[1].startswith("data: "):
                 fail(f"an event is {lines}")
             self.next += 1
             self.events.append(json.loads(lines[1][6:]))
@@ -248,7 +250,9 @@ def refuses(port):
             (b"GET / HTTP/1.0\r\n" + host + b"\r\n", 505), (b"GET / HTTP/2.0\r\n" + host + b"\r\n", 505), (b"GET /\r\n" + host + b"\r\n", 400),
             (b"GET / HTTP/1.1\r\n folded: x\r\n" + host + b"\r\n", 400), (b"GET / HTTP/1.1\r\nno colon\r\n" + host + b"\r\n", 400),
             (b"GET / HTTP/1.1\r\nX : y\r\n" + host + b"\r\n", 400), (b"GET / HTTP/1.1\r\nX: \x00\r\n" + host + b"\r\n", 400),
-            (b"GET /events HTTP/1.1\r\n" + host + b"Last-Event-ID: -1\r\n\r\n", 400), (b"GET /\xff HTTP/1.1\r\n" + host + b"\r\n", 400),
+            (b"GET /events HTTP/1.1\r\n" + host + b"Last-Event-ID: -1\r\n\r\n", 400),
+            (b"GET /events HTTP/1.1\r\n" + host + b"Last-Event-ID: another-2\r\n\r\n", 204),
+            (b"GET /events HTTP/1.1\r\n" + host + b"Sec-Fetch-Site: cross-site\r\n\r\n", 403), (b"GET /\xff HTTP/1.1\r\n" + host + b"\r\n", 400),
             (b"\r\n\r\n", 400), (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 400), (b"GET / HTTP/1.1\n" + host + b"\n\r\n\r\n", 400),
             (b"GET / HTTP/1.1\r\n" + host + b"X: " + 8192 * b"a" + b"\r\n\r\n", 431), (70000 * b"a", 431),
             (b"GET / HTTP/1.1\r\n" + host + 4000 * b"a: b\r\n" + b"\r\n", 431)):
@@ -294,7 +298,7 @@ def main():
             fail("what is sensed is seen when the run is over")
         refuses(run.port)
         late = Follower(run.port)  # who comes later gets all as well
-        middle = Follower(run.port, after=len(follower.events) - 2)
+        middle = Follower(run.port, after=f"{follower.run}-{len(follower.events) - 2}")
         run.allow("sense")
         for client in (follower, late):
             client.read_until(lambda e: "verdict" in e)

@@ -5,6 +5,7 @@
 #include <kaboum/judge/placement.h>
 
 #include <cmath>
+#include <random>
 
 namespace kaboum::judge {
 namespace {
@@ -97,6 +98,66 @@ TEST(Cell, DisplacementBoundsAllPoints) {
   to.objects[0] = from.objects[0];
   to.q = {{0, 0.01}};
   EXPECT_GE(cell.displacement(from, to, 0), 3 * 2 * std::sin(0.005));
+}
+
+/// At every sample, one after the other.
+bool meets_somewhere(const Cell& cell, const CellState& from, const CellState& to, int samples) {
+  CellState state = from;
+  for (int k = 0; k <= samples; ++k) {
+    for (std::size_t i = 0; i < state.q[0].size(); ++i)
+      state.q[0][i] = from.q[0][i] + static_cast<double>(k) / samples * (to.q[0][i] - from.q[0][i]);
+    if (cell.find_meeting(state)) return true;
+  }
+  return false;
+}
+
+// Motions past a thin thing, and by it: the same as by all samples, with fewer looked at.
+TEST(Cell, MotionsMeetWhatTheirSamplesMeet) {
+  const Cell cell = make_cell();
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> turn(-3, 3);
+  constexpr int kSamples = 300;
+  int meetings = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    CellState from = far_away();
+    from.objects[0].pose.translation = {1 + 0.7 * turn(random), 0.7 * turn(random), 0};
+    from.q[0] = {turn(random), turn(random)};
+    CellState to = from;
+    for (double& q : to.q[0]) q += 0.5 * turn(random);
+    std::size_t looked = 0;
+    const bool found = cell.find_meeting_on(from, to, 0, kSamples, looked).has_value();
+    EXPECT_EQ(found, meets_somewhere(cell, from, to, kSamples)) << trial;
+    meetings += found ? 1 : 0;
+  }
+  EXPECT_GT(meetings, 5);
+  EXPECT_LT(meetings, 55);
+}
+
+// A slide without limits below a joint that stands still.
+TEST(Cell, MotionsOfSlidesWithoutLimitsAreBounded) {
+  robot::Robot robot = robot::parse_urdf(
+      R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"><collision><geometry>
+    <box size="1 1 1"/></geometry></collision></link>
+    <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="s" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
+    <limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>)",
+      "test");
+  robot.variables[1].lower.reset();
+  robot.variables[1].upper.reset();
+  const auto c = *robot.find_link("c");
+  Cell cell;
+  cell.add_robot("r", std::move(robot), {});
+  cell.add_link(0, c, box({0.1, 0.1, 0.1}, {0, 0, 0}));
+  cell.add_object("post", box({0.001, 1, 1}, {0, 0, 0}));
+  CellState from;
+  from.q = {{0, 0}};
+  from.objects = {{{Eigen::Matrix3d::Identity(), {0.5, 0, 0}}, std::nullopt, false}};
+  CellState to = from;
+  to.q[0][1] = 1;
+  std::size_t looked = 0;
+  EXPECT_TRUE(cell.find_meeting_on(from, to, 0, 1000, looked));
+  EXPECT_LT(looked, 200U);
 }
 
 TEST(Cell, WhatIsHeldMovesWithTheLink) {

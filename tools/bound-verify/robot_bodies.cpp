@@ -108,9 +108,9 @@ void add_capsule(const Geometry& g, double error, Bounds& out) {
   add(out.outside, std::move(core), g.size.x() + error);
 }
 
-/// Leaves out balls that reach out of a capsule by no more than `most`. Two bodies with the same
+/// Without balls that reach out of a capsule by no more than `most`. Two bodies with the same
 /// surface leave points undecided where that surface touches the edges of two others.
-void leave_out_ends(geom::ConvexSet& set, double most) {
+geom::ConvexSet without_ends(const geom::ConvexSet& set, double most) {
   const auto is_end = [&](const geom::ConvexBody& ball) {
     if (ball.core.vertices.size() != 1) return false;
     return std::ranges::any_of(set.bodies, [&](const geom::ConvexBody& other) {
@@ -122,10 +122,10 @@ void leave_out_ends(geom::ConvexSet& set, double most) {
       return away + ball.radius + rounding <= other.radius + most * ball.radius;
     });
   };
-  std::vector<geom::ConvexBody> kept;
+  geom::ConvexSet out;
   for (const geom::ConvexBody& body : set.bodies)
-    if (!is_end(body)) kept.push_back(body);
-  set.bodies = std::move(kept);
+    if (!is_end(body)) out.bodies.push_back(body);
+  return out;
 }
 
 /// @throws Error{InvalidInput} naming the line of a shape of another kind
@@ -160,9 +160,6 @@ Bounds bounds_of(const robot::Link& link, const std::string& file) {
       }
     }
   }
-  // Fewer bodies inside hold no more.
-  leave_out_ends(out.inside, kSameEnd);
-  leave_out_ends(out.outside, 0);
   return out;
 }
 
@@ -180,9 +177,19 @@ verify::Inclusion decide(const geom::Mesh& mesh, const Bounds& bounds) {
   const auto is_done = [](const verify::Claim& claim) {
     return claim.answer == Answer::Verified || claim.answer == Answer::Undefined;
   };
-  verify::Inclusion inside = verify::verify_cover(mesh, bounds.inside).inclusion;
-  if (is_done(inside.surface) && is_done(inside.solid)) return inside;
-  const verify::Inclusion outside = verify::verify_cover(mesh, bounds.outside).inclusion;
+  const auto are_done = [&](const verify::Inclusion& one) {
+    return is_done(one.surface) && is_done(one.solid);
+  };
+  // Fewer bodies inside hold no more; all of them may hold what needs a whole ball.
+  const geom::ConvexSet fewer = without_ends(bounds.inside, kSameEnd);
+  verify::Inclusion inside = verify::verify_cover(mesh, fewer).inclusion;
+  if (!are_done(inside) && fewer.bodies.size() < bounds.inside.bodies.size()) {
+    verify::Inclusion all = verify::verify_cover(mesh, bounds.inside).inclusion;
+    if (are_done(all) || !is_done(inside.surface)) inside = std::move(all);
+  }
+  if (are_done(inside)) return inside;
+  const verify::Inclusion outside =
+      verify::verify_cover(mesh, without_ends(bounds.outside, 0)).inclusion;
   const auto between = [&](verify::Claim& claim, const verify::Claim& necessary) {
     if (is_done(claim)) return;
     if (necessary.answer == Answer::Refuted) {

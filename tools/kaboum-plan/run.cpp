@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <exception>
 #include <functional>
 #include <iostream>
 #include <optional>
@@ -165,18 +166,36 @@ class Seen {
     };
   }
 
+  /// Shows the rest where the run ends with an exception, too.
+  ~Seen() {
+    if (ended_) return;
+    try {
+      end();
+    } catch (const std::exception& error) {
+      std::cerr << "kaboum-plan: the run was not shown to its end: " << error.what() << '\n';
+    }
+  }
+  Seen(const Seen&) = delete;
+  Seen& operator=(const Seen&) = delete;
+
   /// When all is said. Browsers get what they do not have yet, for a second.
   void end() {
-    if (!o_.run_page.empty()) {
-      const execution::PlanPage page =
-          execution::run_page(task_.scene()->world, task_.files().scene, lines_, o_.run.packages);
-      for (const std::string& note : page.notes) log(o_.common.quiet, note);
-      io::write_file(o_.run_page, page.html);
+    ended_ = true;
+    std::exception_ptr failed;
+    if (!o_.run_page.empty() && !lines_.empty()) try {
+        const execution::PlanPage page =
+            execution::run_page(task_.scene()->world, task_.files().scene, lines_, o_.run.packages);
+        for (const std::string& note : page.notes) log(o_.common.quiet, note);
+        io::write_file(o_.run_page, page.html);
+      } catch (...) {
+        failed = std::current_exception();
+      }
+    if (live_) {
+      live_->finish(1, o_.live_linger);
+      if (const std::string why = live_->failure(); !why.empty())
+        std::cerr << "kaboum-plan: the run was not shown to its end: " << why << '\n';
     }
-    if (!live_) return;
-    live_->finish(1, o_.live_linger);
-    if (const std::string why = live_->failure(); !why.empty())
-      std::cerr << "kaboum-plan: the run was not shown to its end: " << why << '\n';
+    if (failed) std::rethrow_exception(failed);
   }
 
  private:
@@ -184,6 +203,7 @@ class Seen {
   const execution::PlanningTask& task_;
   std::optional<execution::LiveRun> live_;
   std::vector<std::string> lines_;
+  bool ended_ = false;
 };
 
 }  // namespace

@@ -24,6 +24,7 @@
 #include <list>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -67,6 +68,7 @@ struct Request {
   int refused = 0;  ///< a status; 0: it is not
   bool head = false, events = false;
   std::uint64_t after = 0;  ///< how many events it has already
+  std::string run = {};     ///< of which run these are; empty: it has none
 };
 
 const char* reason_of(int status) {
@@ -142,7 +144,7 @@ Request read_request(std::string_view text, const std::array<std::string, 2>& ho
   if (!is_token(method) || !target.starts_with('/') || !is_printed) return refuse(400);
   if (version != "HTTP/1.1") return refuse(version.starts_with("HTTP/") ? 505 : 400);
   Request out;
-  bool has_host = false;
+  bool has_host = false, crosses = false;
   for (std::string_view header = line(); !header.empty(); header = line()) {
     const std::size_t colon = header.find(':');
     if (colon == std::string_view::npos || !is_token(header.substr(0, colon))) return refuse(400);
@@ -162,9 +164,15 @@ Request read_request(std::string_view text, const std::array<std::string, 2>& ho
                (same_name(name, "content-length") && value != "0")) {
       return refuse(400);
     } else if (same_name(name, "last-event-id")) {
+      const std::size_t dash = value.find('-');
+      if (dash == 0 || dash == std::string_view::npos) return refuse(400);
+      out.run = value.substr(0, dash);
       const auto [end, error] =
-          std::from_chars(value.data(), value.data() + value.size(), out.after);
+          std::from_chars(value.data() + dash + 1, value.data() + value.size(), out.after);
       if (error != std::errc() || end != value.data() + value.size()) return refuse(400);
+    } else if (same_name(name, "sec-fetch-site")) {
+      // Of pages of others nothing is asked for in the background.
+      if (value == "cross-site") crosses = true;
     }
   }
   if (!has_host) return refuse(400);
@@ -172,6 +180,7 @@ Request read_request(std::string_view text, const std::array<std::string, 2>& ho
   if (target != "/" && target != "/events") return refuse(404);
   out.head = method == "HEAD";
   out.events = target == "/events";
+  if (out.events && crosses) return refuse(403);
   return out;
 }
 
@@ -238,8 +247,11 @@ struct EventServer::Data {
       fail(std::strerror(errno));
     // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
     const std::string port = std::to_string(ntohs(name.sin_port));
-    hosts = {"127.0.0.1:" + port, "localhost:" + port};
-    address = "http://" + hosts[0] + "/";
+    address = "http://127.0.0.1:" + port + "/";
+    // Of port 80 browsers do not say the number.
+    const std::string end = port == "80" ? "" : ":" + port;
+    hosts = {"127.0.0.1" + end, "localhost" + end};
+    run = std::to_string(std::random_device()());
     thread = std::thread([this] { serve(); });
   }
 
@@ -296,8 +308,15 @@ struct EventServer::Data {
       throw Error(ErrorCode::OutputFailed, std::strerror(errno));
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t stirred = ::read(wake.number(), &count, sizeof count);
+    // Who has all so far has the whole time for what comes now, however long that took to make.
+    std::vector<Connection*> idle;
+    for (Connection& c : connections)
+      if (c.phase == Connection::Phase::Follows && !has_more(c)) idle.push_back(&c);
+    const std::size_t known = events.size();
     take_events();
     const auto now = Clock::now();
+    if (events.size() > known)
+      for (Connection* c : idle) c->until = now + kStallTime;
     std::size_t i = 2;
     for (Connection& c : connections) {
       attend(c, ready > 0 ? polled[i].revents : short{0}, now);
@@ -330,7 +349,8 @@ struct EventServer::Data {
       was += line.size();
       std::string event = options.event ? options.event(line) : std::move(line);
       std::ranges::replace(event, '\n', ' ');
-      events.push_back("id: " + std::to_string(events.size() + 1) + "\ndata: " + event + "\n\n");
+      events.push_back("id: " + run + "-" + std::to_string(events.size() + 1) + "\ndata: " + event +
+                       "\n\n");
       is += events.back().size();
     }
     if (lines.empty()) return;
@@ -421,6 +441,11 @@ struct EventServer::Data {
       answer(c, refusal(request.refused), {}, now);
       return;
     }
+    if (request.events && !request.run.empty() && request.run != run) {
+      // A page of an earlier run at this port: browsers ask no more then.
+      answer(c, std::string("HTTP/1.1 204 No Content\r\n") + kCommonHeaders + "\r\n", {}, now);
+      return;
+    }
     std::string head = "HTTP/1.1 200 OK\r\nContent-Type: ";
     if (request.events) {
       head += std::string("text/event-stream\r\n") + kCommonHeaders + "\r\n";
@@ -495,6 +520,7 @@ struct EventServer::Data {
   EventServerOptions options;
   Descriptor listener, wake;
   std::array<std::string, 2> hosts;
+  std::string run;  ///< told by ids of events: another server at the port has another one
   std::string address;
 
   // Of the thread.

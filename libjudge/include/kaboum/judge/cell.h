@@ -118,10 +118,11 @@ class Cell {
   /// The links from one to the root, without the root.
   [[nodiscard]] static std::vector<std::uint32_t> to_root(const robot::Robot& robot,
                                                           std::uint32_t link);
-  /// How far points of two things come nearer while a robot's values change so, at most: an upper
-  /// bound. [length]
+  /// How far points of two things come nearer while a robot's values go from some to others, at
+  /// most: an upper bound. [length]
   [[nodiscard]] double approach(const PosedThing& a, const PosedThing& b, std::size_t robot,
-                                const std::vector<double>& change) const;
+                                const std::vector<double>& begin,
+                                const std::vector<double>& end) const;
   [[nodiscard]] std::vector<PosedThing> place(const CellState& state) const;
   [[nodiscard]] bool is_looked_at(const PosedThing& a, const PosedThing& b) const;
   [[nodiscard]] bool connected(const robot::Robot& robot, std::uint32_t a, std::uint32_t b) const;
