@@ -43,7 +43,9 @@ constexpr double kSumUp = 1 + 0x1p-50;
 const char* flaw_of_kind(const SetRequest& r) {
   if (r.direction != SetRequest::Direction::Outer && r.body_kind != SetRequest::BodyKind::Spheres)
     return "lie in no solid here: outer sets only";
-  if (r.thickness || r.max_aspect) return "cannot be thickened";
+  if (r.thickness || r.max_aspect)
+    return "cannot be thickened, as a least thickness, a largest aspect or an engine (mujoco) "
+           "asks for";
   if (r.max_total_vertices) return "have no vertices to be counted";
   if (r.max_facets) return "have no facets to be counted";
   if (r.pre_step == bcd::PreStep::On) return "have no pre-step";
@@ -135,7 +137,7 @@ void require_possible_regions(const SetRequest& r) {
   refuse(r.direction != SetRequest::Direction::Outer, "bodies inside the solid");
   refuse(r.max_bodies.has_value() || r.max_total_vertices.has_value(),
          "a limit on the number of bodies or vertices");
-  refuse(r.thickness.has_value(), "a least thickness");
+  refuse(r.thickness.has_value(), "a least thickness, which the engine mujoco asks for, too");
   refuse(r.max_aspect.has_value(), "a limit on how long bodies are");
 }
 
