@@ -56,8 +56,8 @@ const char* name_of(Relation relation) {
 
 Relation relation_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
                      std::uint32_t b) {
-  if (are_adjacent(robot, shaped, a, b)) return Relation::Adjacent;
-  return body_of(robot, a) == body_of(robot, b) ? Relation::Fixed : Relation::Moving;
+  if (body_of(robot, a) == body_of(robot, b)) return Relation::Fixed;
+  return are_adjacent(robot, shaped, a, b) ? Relation::Adjacent : Relation::Moving;
 }
 
 }  // namespace kaboum::pairs

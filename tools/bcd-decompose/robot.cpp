@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -408,15 +409,22 @@ std::vector<std::string> parts_of(const DecomposeOptions& o, const robot::RobotF
   return out;
 }
 
-/// The command that decides it from the file alone: epsilon as well, where it is one length for all
-/// links and kept.
-std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reached) {
-  std::string out = "bound-verify robot " + run.o.input +
-                    (format.spheres ? " --spheres " : " --bodies ") + run.o.output;
+/// The command that decides it from the file alone, with epsilon where that is kept; else with how
+/// far the bodies are.
+/// @param distance  of the farthest point [m]
+std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reached,
+                            double distance) {
+  std::string out = "bound-verify robot " + shell_word(run.o.input) +
+                    (format.spheres ? " --spheres " : " --bodies ") + shell_word(run.o.output) +
+                    reading_words(run.o.robot);
   const std::optional<Length> epsilon = run.request.set.wanted_epsilon();
+  constexpr double kMore = 1.001;  // so that it is decided
   if (reached && epsilon && !epsilon->percent && run.request.epsilons.empty())
     out += " --epsilon " + epsilon->text();
-  return out + (run.o.epsilon_map ? " --epsilon-map " + *run.o.epsilon_map : std::string());
+  else if (std::isfinite(distance))
+    out += " --epsilon " + number_up(kMore * distance);
+  return out +
+         (run.o.epsilon_map ? " --epsilon-map " + shell_word(*run.o.epsilon_map) : std::string());
 }
 
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
@@ -471,7 +479,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                                    : counted(bodies.artefact().size(), "body", "bodies")) +
                           ", no point farther from its link's shapes than " + number_up(distance) +
                           ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
-                          check_of_shapes(run, format, reached) + " decides it");
+                          check_of_shapes(run, format, reached, distance) + " decides it");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",

@@ -55,6 +55,22 @@ void say_verdicts(const robot::Robot& robot, const std::vector<certify::LinkVerd
   log(quiet, in_words(verdicts));
 }
 
+std::string reading_words(const RobotOptions& options) {
+  std::string out;
+  if (options.shapes.visual) out += " --visual";
+  if (options.shapes.skip_missing) out += " --missing-meshes skip";
+  if (!options.shapes.links.empty()) {
+    std::string links;
+    for (const std::string& link : options.shapes.links) links += (links.empty() ? "" : ",") + link;
+    out += " --links " + shell_word(links);
+  }
+  if (!options.xacro_arguments.empty()) out += " --xacro-args";
+  for (const std::string& argument : options.xacro_arguments) out += " " + shell_word(argument);
+  for (const std::string& folder : options.shapes.packages)
+    out += " --package-path " + shell_word(folder);
+  return out;
+}
+
 RobotCheck check_of(const std::string& original, const std::string& result,
                     const RobotOptions& options, const certify::PreparationOptions& preparation,
                     const std::optional<Length>& epsilon, const std::optional<std::string>& map,
@@ -73,19 +89,8 @@ RobotCheck check_of(const std::string& original, const std::string& result,
     out.command += " --prepare";
   // What is claimed then is about the triangles that stand for exact faces.
   if (!preparation.holds_exact_faces()) out.command += " --exact-points 0";
-  if (options.shapes.visual) out.command += " --visual";
   if (preparation.drop_sheets) out.command += " --drop-sheets";
-  if (options.shapes.skip_missing) out.command += " --missing-meshes skip";
-  if (!options.shapes.links.empty()) {
-    std::string links;
-    for (const std::string& link : options.shapes.links) links += (links.empty() ? "" : ",") + link;
-    out.command += " --links " + shell_word(links);
-  }
-  if (!options.xacro_arguments.empty()) out.command += " --xacro-args";
-  for (const std::string& argument : options.xacro_arguments)
-    out.command += " " + shell_word(argument);
-  for (const std::string& folder : options.shapes.packages)
-    out.command += " --package-path " + shell_word(folder);
+  out.command += reading_words(options);
   if (epsilon) out.command += " --epsilon " + shell_word(epsilon->text());
   if (map) out.command += " --epsilon-map " + shell_word(*map);
   return out;

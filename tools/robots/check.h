@@ -36,6 +36,10 @@ struct RobotCheck {
   bool passes = true;
 };
 
+/// The options by which another program reads the same shapes of the same links; each after a
+/// blank.
+std::string reading_words(const RobotOptions& options);
+
 /// @param original, result  URDFs
 /// @param epsilon  that is to be decided as well
 /// @param map      file of regions that are; nullopt: none

@@ -10,8 +10,8 @@ namespace kaboum::pairs {
 /// Relation of two links, whatever their shapes.
 enum class Relation {
   Moving,    ///< several joints, or other links, are between them
-  Adjacent,  ///< one joint connects them, but for frames without shapes that are fixed between
-  Fixed,     ///< only fixed joints are between them
+  Adjacent,  ///< one joint that moves connects them, but for fixed frames without shapes between
+  Fixed,     ///< only fixed joints are between them, one or several
 };
 /// "moving", "adjacent", "fixed".
 const char* name_of(Relation relation);
@@ -19,7 +19,7 @@ const char* name_of(Relation relation);
 /// Of each link, whether it has shapes.
 using Shaped = std::vector<char>;
 
-/// Adjacent, if they are; else Fixed, if they are.
+/// Fixed, if they are; else Adjacent, if they are.
 Relation relation_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
                      std::uint32_t b);
 
