@@ -140,11 +140,23 @@ struct Driver::Answers {
     return out;
   }
 
+  /// What a message says of a gripper, until it is answered or has failed.
+  struct GripperMessage {
+    GripperMessage(const Answers& answers, const json& message, const std::string& robot)
+        : driver(answers.driver) {
+      answers.read_gripper(message, robot);
+    }
+    ~GripperMessage() { driver.gripper_.reset(); }
+    GripperMessage(const GripperMessage&) = delete;
+    GripperMessage& operator=(const GripperMessage&) = delete;
+    Driver& driver;
+  };
+
   json take(const json& message) const {
     const std::string robot = robot_of(message), object = message.at("object"),
                       link = message.at("link");
     if (driver.held_.contains({object, robot})) throw Failure(object + " is held already");
-    read_gripper(message, robot);
+    const GripperMessage gripper(*this, message, robot);
     driver.take(robot, object, link);
     driver.held_[{object, robot}] = link;
     return moved_fingers(robot);
@@ -153,7 +165,7 @@ struct Driver::Answers {
   json release(const json& message) const {
     const std::string robot = robot_of(message), object = message.at("object");
     if (!driver.held_.contains({object, robot})) throw Failure(object + " is not held by it");
-    read_gripper(message, robot);
+    const GripperMessage gripper(*this, message, robot);
     driver.release(robot, object);
     driver.held_.erase({object, robot});
     return moved_fingers(robot);
@@ -188,7 +200,6 @@ struct Driver::Answers {
       const auto joint = std::ranges::find(robot.joint_names, driver.gripper_->joint_names[k]);
       robot.q[static_cast<std::size_t>(joint - robot.joint_names.begin())] = driver.gripper_->to[k];
     }
-    driver.gripper_.reset();
     if (const auto q = driver.where(name)) out["q"] = *q;
     return out;
   }

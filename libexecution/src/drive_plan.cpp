@@ -228,10 +228,28 @@ class Drive {
     }
   }
 
-  /// Takes and lets go what the state after a node says.
+  /// Takes and lets go what the state after a node says. Fingers do not move any more.
   void settle(const plan::KnownState& after) {
-    end_ = known_state(after).state;
-    for (const NodeEvent& event : settling_events(*end_, held_)) hold(event);
+    const StatedState known = known_state(after);
+    end_ = known.state;
+    for (std::size_t r = 0; r < world_.robots.size(); ++r)
+      for (const world::Gripper& gripper : world_.robots[r].grippers)
+        for (const std::uint32_t variable : gripper.joints)
+          if (known.state.q[r][variable] != q_[r][variable])
+            throw DriverStop(Kind::Uncertified,
+                             "the joint '" + world_.robots[r].kinematics.variables[variable].name +
+                                 "' of " + world_.robots[r].name +
+                                 "'s gripper is not where what it holds has it: no motion of the "
+                                 "plan closes or opens it");
+    for (const NodeEvent& event : settling_events(*end_, held_)) {
+      const auto& held = known.held[event.object];
+      const std::vector<double>& q = q_[event.by.robot];
+      if (event.kind == NodeEvent::Kind::Take && held && !held->fingers.empty())
+        hold(event, finger_motion_of(*held, world_, q, q));
+      else
+        hold(event);
+    }
+    driver_.require_fingers(known.held);
   }
 
   void hold(const NodeEvent& event, const FingerMotion& fingers = {}) {

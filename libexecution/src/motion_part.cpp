@@ -17,6 +17,20 @@ namespace {
 
 using nlohmann::json;
 
+/// Refuses motions of fingers that are none: nothing else is looked at while they close or open.
+void require_fingers_alone(const MotionPart& part, const world::RobotModel& robot,
+                           std::uint32_t link) {
+  const world::Gripper* gripper = gripper_with_pads(robot, link);
+  bool alone = gripper != nullptr && part.path.size() == 2;
+  for (std::uint32_t i = 0; alone && i < part.path.front().size(); ++i)
+    alone = part.path.front()[i] == part.path.back()[i] ||
+            std::ranges::find(gripper->joints, i) != gripper->joints.end();
+  if (!alone)
+    throw Error(ErrorCode::InvalidInput,
+                "a path of the plan, of fingers, has two points that differ in joints of the "
+                "gripper alone");
+}
+
 /// @throws json::exception for members of another kind.
 MotionPart part_of(const json& motion, const world::World& world) {
   MotionPart part;
@@ -59,11 +73,13 @@ MotionPart part_of(const json& motion, const world::World& world) {
   };
   for (const auto& [object, grasp] : part.grasps)
     require_held(object, part.holds.contains(object), "of which it states a grasp");
-  if (part.moves_fingers() && part.path.empty())
-    throw Error(ErrorCode::InvalidInput, "a path of the plan, of fingers, has no points");
+  if (part.closes && part.opens)
+    throw Error(ErrorCode::InvalidInput, "fingers of the plan close and open at once");
   for (const auto& about : {part.closes, part.opens})
-    if (about)
+    if (about) {
       require_held(*about, part.grasps.contains(*about), "which fingers close on or open from");
+      require_fingers_alone(part, world.robots[*robot], part.holds.at(*about));
+    }
   return part;
 }
 
@@ -121,14 +137,19 @@ judge::Hold judged(const world::Attachment& held) {
 }
 
 FingerMotion finger_motion_of(const MotionPart& part, const world::World& world) {
-  const world::RobotModel& robot = world.robots[part.robot];
-  const world::Attachment held = hold_of(part, world, part.closes ? *part.closes : *part.opens, {});
+  return finger_motion_of(hold_of(part, world, part.closes ? *part.closes : *part.opens, {}), world,
+                          part.path.front(), part.path.back());
+}
+
+FingerMotion finger_motion_of(const world::Attachment& held, const world::World& world,
+                              const std::vector<double>& from, const std::vector<double>& to) {
+  const world::RobotModel& robot = world.robots[held.robot];
   const world::Gripper& gripper = *gripper_with_pads(robot, held.link);
   FingerMotion out{gripper.name, {}, gripper.joints, {}, {}, 0, {}, gripper.force};
   for (const world::FingerValue& finger : held.fingers) {
     out.joint_names.push_back(robot.kinematics.variables[finger.variable].name);
-    out.from.push_back(part.path.front()[finger.variable]);
-    out.to.push_back(part.path.back()[finger.variable]);
+    out.from.push_back(from[finger.variable]);
+    out.to.push_back(to[finger.variable]);
     out.within = std::max(out.within, finger.within);
   }
   for (const std::uint32_t pad : held.touching)

@@ -17,15 +17,20 @@ using world::Transform;
 /// As motions of plans are decided.
 constexpr double kResolution = 1e-5;
 
-world::WorldState world_state(const judge::CellState& state) {
+/// @param held  how objects are held, by words: where fingers are
+world::WorldState world_state(const judge::CellState& state,
+                              const std::vector<std::optional<world::Attachment>>& held) {
   world::WorldState out;
   out.q = state.q;
   for (const judge::CellState::Place& place : state.objects) {
     out.poses.push_back(place.pose);
     out.attachments.emplace_back();
+    const std::size_t o = out.attachments.size() - 1;
     if (const auto& hold = place.hold)
       out.attachments.back() = {hold->robot, hold->link, hold->pose, hold->touching,
                                 hold->link_touches};
+    if (out.attachments.back() && o < held.size() && held[o])
+      out.attachments.back()->fingers = held[o]->fingers;
     out.absent.push_back(place.away);
   }
   return out;
@@ -89,7 +94,7 @@ const std::vector<MotionPart>& NodeMotions::of(plan::Index node, const StatedSta
   const plan::Plan::Node& n = plan_.nodes[node];
   if (!n.acts) return found->second;
   const std::string where = "node " + std::to_string(node) + ", " + action_text(model_, n.action);
-  world::WorldState state = world_state(before.state);
+  world::WorldState state = world_state(before.state, before.held);
   try {
     for (const plan::Plan::Call& call : n.calls) {
       std::vector<MotionPart> parts = parts_of(call.payload, world_, where);

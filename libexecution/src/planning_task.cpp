@@ -14,7 +14,7 @@
 namespace kaboum::execution {
 namespace {
 
-constexpr const char* kAnswers = "KABOUM-ANSWERS 8";
+constexpr const char* kAnswers = "KABOUM-ANSWERS 9";
 
 /// @param option  that states the language
 plan::Text read_text(const std::string& file, const std::optional<plan::Language>& given,

@@ -439,10 +439,7 @@ json objects_of(const world::World& world, const judge::CellState& state) {
 void RobotDriver::begin(const judge::CellState& state,
                         const std::vector<std::optional<world::Attachment>>& held) {
   data_->doing = "at the start";
-  for (const auto& hold : held)
-    for (const world::FingerValue& finger :
-         hold ? hold->fingers : std::vector<world::FingerValue>())
-      data_->fingers[{hold->robot, finger.variable}] = finger.within;
+  require_fingers(held);
   const world::World& world = data_->world;
   json robots = json::object();
   for (std::size_t r = 0; r < world.robots.size(); ++r) {
@@ -463,6 +460,14 @@ void RobotDriver::begin(const judge::CellState& state,
   for (std::size_t r = 0; r < world.robots.size(); ++r)
     if (const std::string& name = world.robots[r].name; answer["q"].contains(name))
       data_->require_near({{"q", answer["q"][name]}}, r, state.q[r]);
+}
+
+void RobotDriver::require_fingers(const std::vector<std::optional<world::Attachment>>& held) {
+  data_->fingers.clear();
+  for (const auto& hold : held)
+    for (const world::FingerValue& finger :
+         hold ? hold->fingers : std::vector<world::FingerValue>())
+      data_->fingers[{hold->robot, finger.variable}] = finger.within;
 }
 
 void RobotDriver::act(const std::string& action) {

@@ -90,6 +90,9 @@ void Simulation::look_at_node(const plan::RunStep& step,
   mounted_ = before->mounted;
   carried_.clear();
   pushed_.clear();
+  grasps_.clear();
+  for (std::size_t o = 0; o < before->held.size(); ++o)
+    if (before->held[o]) grasps_[o] = before->held[o]->grasp;
   if (report_.steps == 1) {
     if (const auto meeting = cell_.find_meeting(state)) {
       ++report_.collisions;
@@ -114,6 +117,12 @@ void Simulation::look_at_node(const plan::RunStep& step,
       say(world_.objects[o].name + " stays where it was, and the plan says it is away");
     }
   compare(state, after->state);
+  for (std::size_t o = 0; o < after->held.size(); ++o)
+    if (const auto& held = after->held[o];
+        held && !held->link_touches && state.objects[o].hold && grasps_[o] != held->grasp) {
+      ++report_.jumps;
+      say(world_.objects[o].name + " is held by another grasp than the plan says");
+    }
 }
 
 /// Takes and lets go what is held from here on.
@@ -151,7 +160,9 @@ void Simulation::hold(const MotionPart& part, judge::CellState& state) {
         say(world_.objects[o].name + " is held without a grasp");
       }
     }
-    place.hold = judged(hold_of(part, world_, o, inverse(link) * pose));
+    const world::Attachment now = hold_of(part, world_, o, inverse(link) * pose);
+    place.hold = judged(now);
+    grasps_[o] = now.grasp;
   }
 }
 
@@ -331,7 +342,12 @@ void Simulation::compare(const judge::CellState& state, const judge::CellState& 
         wrong(name + " is neither on the seat of what it is mounted on, nor where constraints of " +
               "its mate have it");
     }
-    if (held_as(is) == held_as(stated)) continue;
+    const bool same_holder = held_as(is) == held_as(stated);
+    if (same_holder && is.hold && !(is.hold->link_touches && stated.hold->link_touches) &&
+        (is.hold->link_touches != stated.hold->link_touches ||
+         is.hold->touching != stated.hold->touching))
+      wrong(name + " is held by other pads than the plan says");
+    if (same_holder) continue;
     if (stated.hold && !mounted_[o] &&
         !is_at_grasp(world_, stated.hold->robot, stated.hold->link,
                      cell_.pose_of(expected, stated.hold->robot, stated.hold->link), o,

@@ -617,11 +617,13 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   const world::World& world = checker.world();
   const world::RobotModel& model = world.robots[robot];
   const Chain chain = add_chain(model, out);
-  out.unusable = out.unusable || checker.substitute() != nullptr ||
-                 (!given.absent_robots.empty() && given.absent_robots[robot]) ||
-                 std::ranges::any_of(given.attachments, [&](const auto& attachment) {
-                   return attachment && attachment->robot == robot;
-                 });
+  out.unusable =
+      out.unusable || checker.substitute() != nullptr ||
+      (!given.absent_robots.empty() && given.absent_robots[robot]) ||
+      std::ranges::any_of(given.attachments, [&](const auto& attachment) {
+        // Fingers that hold something may be off: check_motion makes room for that.
+        return attachment && (attachment->robot == robot || !attachment->fingers.empty());
+      });
   if (out.unusable) return out;
   world::WorldState state = given;
   for (std::size_t i = 0; i < out.variables; ++i)

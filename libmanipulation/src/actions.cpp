@@ -189,7 +189,7 @@ Answer grasp(Geometry& geometry, const Question& question) {
   const std::size_t r = robot_named(geometry, question.arguments[0]);
   const std::size_t o = object_named(geometry, question.arguments[1]);
   const std::vector<double> q = configuration_of(question.arguments[2], geometry.world.robots[r]);
-  if (has_finger_joints(geometry.world.robots[r]))
+  if (has_pads(geometry.world.robots[r]))  // what they hold already matters
     return perform(
         geometry, question, {"grasp", {r}, {o}},
         [&](Sequence& s) {

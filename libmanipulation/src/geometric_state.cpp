@@ -6,6 +6,8 @@
 #include <kaboum/manipulation/words.h>
 #include <kaboum/world/gripper.h>
 
+#include <algorithm>
+
 namespace kaboum::manipulation {
 namespace {
 
@@ -54,6 +56,9 @@ GeometricState::GeometricState(Geometry& geometry, plan::StateView& view)
       robots_read_(geometry.world.robots.size(), false),
       objects_read_(geometry.world.objects.size(), false),
       finger_room_(geometry.world.robots.size()) {
+  // What was not read is held by nobody: fingers are as what is read decides.
+  std::ranges::fill(state_.attachments, std::nullopt);
+  set_grippers(geometry.world, state_);
   state_.absent.assign(objects_read_.size(), true);
   if (geometry_.fixed_robots.size() < robots_read_.size() ||
       geometry_.fixed_objects.size() < objects_read_.size())

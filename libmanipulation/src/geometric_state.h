@@ -81,7 +81,8 @@ std::size_t object_named(const Geometry& geometry, const std::string& name);
 std::size_t region_named(const Geometry& geometry, const std::string& name);
 
 /// The state of the world as the planner knows it, as far as it was read: what is read is in the
-/// footprint of the call. Things that were not read are as in the scene, objects absent.
+/// footprint of the call. Things that were not read are as in the scene, objects absent, held by
+/// nobody.
 class GeometricState {
  public:
   GeometricState(Geometry& geometry, plan::StateView& view);

@@ -9,6 +9,7 @@
 #include <kaboum/kinematics/solution_set.h>
 #include <kaboum/manipulation/words.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/gripper.h>
 
 #include <algorithm>
 #include <numeric>
@@ -64,13 +65,19 @@ void add_goals(Goals& goals, const world::RobotModel& robot, std::uint32_t link,
   std::vector<double> reference;
   for (const std::uint32_t variable : arm.variables) reference.push_back(from[variable]);
   goals.alone = goals.alone && is_alone(robot, arm);
+  // What is held decides where fingers are: no link that they move is put anywhere.
+  if (finger_joint_above(robot, link)) {
+    goals.all = false;
+    return;
+  }
 
   const auto add = [&](std::span<const double> q) {
     const auto near = ik::nearest_copy(arm, q, reference);
     if (!near) return;
     std::vector<double> full = from;
     for (std::size_t i = 0; i < near->size(); ++i) full[arm.variables[i]] = (*near)[i];
-    full = rounded(std::move(full), robot);
+    // Fingers stay to the last bit where what is held has them.
+    full = with_fingers_of(robot, from, rounded(std::move(full), robot));
     if (robot::find_out_of_limits(kinematics, full))
       goals.all = false;  // limits closer than words can tell
     else

@@ -6,6 +6,7 @@
 #include <kaboum/kinematics/numeric.h>
 #include <kaboum/kinematics/redundant.h>
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/gripper.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -67,6 +68,7 @@ std::optional<std::vector<double>> next_to(const Solver& solver, const world::Tr
 std::optional<robot::Path> follow_line(const world::RobotModel& robot, std::uint32_t link,
                                        const std::vector<double>& from, const world::Transform& to,
                                        double step) {
+  if (finger_joint_above(robot, link)) return std::nullopt;
   const robot::Robot& kinematics = robot.kinematics;
   const Solver solver{
       ik::arm_of(kinematics, kinematics.links[0].name, kinematics.links[link].name)};

@@ -100,7 +100,8 @@ bool Sequence::slide_onto(std::size_t robot, std::size_t object, std::size_t ont
                                       {link.linear, link.translation + depth * away}, kMateStep);
         if (!line) continue;
         robot::Path in(line->rbegin(), line->rend());
-        in.front() = configuration_of(manipulation::word_of(in.front()), model);
+        in.front() =
+            with_fingers(robot, configuration_of(manipulation::word_of(in.front()), model));
         if (!is_free_at(robot, in.front()) || !may_follow(robot, in)) continue;
         Goals before;
         before.configurations = {in.front()};

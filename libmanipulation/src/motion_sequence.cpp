@@ -177,6 +177,19 @@ bool MotionSequence::is_free_at(std::size_t robot, const std::vector<double>& q)
   return is_free(there);
 }
 
+bool MotionSequence::is_free_of(std::size_t robot, std::size_t object, const char* when) {
+  const world::MotionAnswer answer =
+      check_motion(geometry_.checker, state_, robot, {state_.q[robot]},
+                   check_of(geometry_, robot, state_.attachments));
+  if (answer.outcome == world::MotionAnswer::Outcome::Free) return true;
+  std::string reason =
+      "the gripper is not free " + std::string(when) + " " + geometry_.world.objects[object].name;
+  if (answer.contact)
+    reason += ", in the way: " + geometry_.world.name_of(answer.contact->items[0]) + " and " +
+              geometry_.world.name_of(answer.contact->items[1]);
+  return fail(Answer::Kind::NotFound, std::move(reason));
+}
+
 std::vector<double> MotionSequence::with_fingers(std::size_t robot, std::vector<double> q) const {
   return with_fingers_of(geometry_.world.robots[robot], state_.q[robot], std::move(q));
 }
@@ -190,7 +203,8 @@ bool MotionSequence::move_fingers(std::size_t robot, std::size_t object, Motion:
     others[object].reset();
     set_grippers(geometry_.world, robot, others, end);
   }
-  if (end == state_.q[robot]) return true;  // suction
+  // Suction. Fingers that are there already are looked at: they hold, or let go, from here on.
+  if (state_.attachments[object]->fingers.empty()) return true;
   Motion motion;
   motion.path = {state_.q[robot], end};
   world::MotionAnswer answer;

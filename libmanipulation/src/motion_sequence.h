@@ -63,6 +63,9 @@ class MotionSequence {
   void record(std::size_t robot, const robot::Path& path);
   /// A configuration with the joints of grippers as they are now: what is held decides these.
   [[nodiscard]] std::vector<double> with_fingers(std::size_t robot, std::vector<double> q) const;
+  /// Whether the robot is certainly free where it is, the object included, which it does not hold.
+  /// @param when  "before it closes on"
+  bool is_free_of(std::size_t robot, std::size_t object, const char* when);
   /// Closes or opens the gripper that holds an object: its fingers go straight, and all is free but
   /// for its pads and the object. @pre the object is attached, and stays where it is
   bool move_fingers(std::size_t robot, std::size_t object, Motion::Fingers how);

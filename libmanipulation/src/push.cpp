@@ -125,7 +125,9 @@ bool Sequence::push_along(std::size_t robot, std::size_t object, const PushedObj
   };
   const auto line_to = [&](const Transform& link) {
     auto line = follow_line(model, contact.link, state_.q[robot], link, kStep);
-    if (line) line->back() = configuration_of(manipulation::word_of(line->back()), model);
+    if (line)
+      line->back() =
+          with_fingers(robot, configuration_of(manipulation::word_of(line->back()), model));
     return line;
   };
   const Transform at = pose_of_object(object);

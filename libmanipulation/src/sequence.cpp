@@ -203,10 +203,14 @@ bool Sequence::take(std::size_t robot, std::size_t object) {
     carry(object, held, {});
     return true;
   }
+  const world::RobotModel& model = geometry_.world.robots[robot];
+  const world::Gripper* gripper = world::gripper_with_pads(model, held->link);
   for (std::size_t o = 0; o < state_.attachments.size(); ++o)
     if (const auto other = held_by(robot, o);
-        other && !other->grasp.empty() && other->link == held->link && !state_.absent[o])
+        other && !other->link_touches && !state_.absent[o] && !mounted_[o] &&
+        world::gripper_with_pads(model, other->link) == gripper)
       return fail(Answer::Kind::Impossible, "the gripper holds " + geometry_.world.objects[o].name);
+  if (!is_free_of(robot, object, "before it closes on")) return false;
   const world::WorldState before = state_;
   carry(object, held, {});
   if (move_fingers(robot, object, Motion::Fingers::Close)) return true;
@@ -225,6 +229,10 @@ bool Sequence::let_go(std::size_t robot, std::size_t object) {
     if (error.position <= kSamePose && error.rotation <= kSamePose) pose = target_->pose;
   }
   const auto onto = target_ && target_->object == object ? target_->onto : std::nullopt;
+  // Pads that may touch what they hold may not touch it any more.
+  const auto is_let_go = [&] {
+    return held->link_touches || is_free_of(robot, object, "when it has opened from");
+  };
   if (!onto) {
     const world::Object& thing = geometry_.world.objects[object];
     const kinematics::PoseError error = kinematics::difference(pose, thing.pose);
@@ -232,14 +240,14 @@ bool Sequence::let_go(std::size_t robot, std::size_t object) {
     carry(object, std::nullopt,
           at_start ? thing.pose
                    : place_of(manipulation::word_of(pose), geometry_.world, object).pose);
-    return true;
+    return is_let_go();
   }
   mounted_[object] = onto;
   const Transform relative = inverse(pose_of_object(*onto)) * pose;
   std::optional<world::Attachment> with = state_.attachments[*onto];
   if (with) with = carried_along(*with, relative);
   carry(object, with, pose);
-  return true;
+  return is_let_go();
 }
 
 }  // namespace kaboum::manipulation

@@ -216,7 +216,8 @@ bool Sequence::mount(std::size_t robot, std::size_t object, std::size_t onto) {
       }
       auto line = follow_line(model, held->link, goal, link, kStep);
       if (!line) continue;
-      line->back() = configuration_of(manipulation::word_of(line->back()), model);
+      line->back() =
+          with_fingers(robot, configuration_of(manipulation::word_of(line->back()), model));
       if (!is_free_at(robot, line->back()) || !may_follow(robot, *line)) {
         fail(Answer::Kind::NotFound, thing.name + " does not slide into " + below.name);
         continue;
@@ -244,7 +245,8 @@ bool Sequence::withdraw(std::size_t robot) {
   auto line = follow_line(model, target_->link, state_.q[robot],
                           shifted(link, target_->depth * back), kStep);
   if (line) {
-    line->back() = configuration_of(manipulation::word_of(line->back()), model);
+    line->back() =
+        with_fingers(robot, configuration_of(manipulation::word_of(line->back()), model));
     if (may_follow(robot, *line)) {
       record(robot, *line);
       return true;
@@ -261,7 +263,7 @@ bool Sequence::lift(std::size_t robot, std::size_t object, double height) {
   const Transform to = shifted(pose_of_link(robot, held->link), height * geom::Vec3::UnitZ());
   auto line = follow_line(model, held->link, state_.q[robot], to, kLiftStep);
   if (!line) return fail(Answer::Kind::NotFound, name + " cannot be lifted straight");
-  line->back() = configuration_of(manipulation::word_of(line->back()), model);
+  line->back() = with_fingers(robot, configuration_of(manipulation::word_of(line->back()), model));
   if (!may_follow(robot, *line))
     return fail(Answer::Kind::NotFound, name + " is not free to be lifted");
   record(robot,

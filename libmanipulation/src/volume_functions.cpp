@@ -96,6 +96,7 @@ Answer volume_collides(Geometry& geometry, const Question& question) {
   Motion motion{held->robot, {state.q[held->robot]}, {{o, *held}}};
   Volume object = *volume_of(geometry, volume_word(geometry.world, {motion}));
   std::erase_if(object.shapes, [&](const Volume::Shape& shape) { return shape.item != item; });
+  object.has_loose_fingers = false;  // it is fixed to their hand
   return Answer::holds(are_in_contact(geometry, *volume, object), "they are apart");
 }
 

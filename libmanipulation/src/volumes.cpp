@@ -6,6 +6,7 @@
 #include <kaboum/collide/inclusion.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/sweep/sweep.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/margins.h>
 
 #include <Eigen/Geometry>
@@ -174,6 +175,19 @@ void add_resting(Volume& volume, const Geometry& geometry, std::size_t object,
       {item, Item::kObject, set, collide::PosedSet(outer, pose, error_of(pose, extent))});
 }
 
+/// Whether a motion moves joints of grippers, or holds something by a gripper that has some.
+bool has_loose_fingers(const world::RobotModel& robot, const Motion& motion) {
+  for (const world::Gripper& gripper : robot.grippers)
+    for (const std::uint32_t variable : gripper.joints)
+      for (const std::vector<double>& q : motion.path)
+        if (q[variable] != motion.path.front()[variable]) return true;
+  return std::ranges::any_of(motion.holds, [&](const auto& hold) {
+    const world::Gripper* gripper = gripper_with_pads(robot, hold.second.link);
+    return (gripper != nullptr && !gripper->joints.empty()) ||
+           finger_joint_above(robot, hold.second.link);
+  });
+}
+
 Volume make_volume(const Geometry& geometry, const std::string& word) {
   if (!word.starts_with(kVolumePrefix))
     refuse_volume("'" + word.substr(0, 40) + "' does not begin with 'swept'");
@@ -189,6 +203,8 @@ Volume make_volume(const Geometry& geometry, const std::string& word) {
       }
       out.motions.push_back(motion_of(geometry, part));
       add_sweep(out, geometry, out.motions.back());
+      if (has_loose_fingers(geometry.world.robots[out.motions.back().robot], out.motions.back()))
+        out.has_loose_fingers = true;
     }
   } catch (const json::exception&) {
     refuse_volume("it is to be swept [{\"robot\": NAME, \"path\": [[NUMBER, ...], ...]}, ...]");
@@ -291,9 +307,11 @@ bool are_in_contact(const Geometry& geometry, const Volume& a, const Volume& b) 
     return find_collision(x.place, y.place, margin_between(world, state, x.item, y.item))
         .has_value();
   };
-  const bool found = std::ranges::any_of(a.shapes, [&](const Volume::Shape& x) {
-    return std::ranges::any_of(b.shapes, [&](const Volume::Shape& y) { return meet(x, y); });
-  });
+  const bool found =
+      a.has_loose_fingers || b.has_loose_fingers ||
+      std::ranges::any_of(a.shapes, [&](const Volume::Shape& x) {
+        return std::ranges::any_of(b.shapes, [&](const Volume::Shape& y) { return meet(x, y); });
+      });
   count_test(geometry, watch);
   return found;
 }
@@ -303,9 +321,10 @@ bool is_inside(const Geometry& geometry, const Volume& volume, std::size_t regio
   const world::Region& where = geometry.world.regions[region];
   const double extent = where.inner.ball().center.norm() + where.inner.ball().radius;
   const collide::PosedSet place(where.inner, where.pose, error_of(where.pose, extent));
-  const bool inside = std::ranges::all_of(volume.shapes, [&](const Volume::Shape& shape) {
-    return find_inclusion(shape.place, place) == collide::Inclusion::Included;
-  });
+  const bool inside = !volume.has_loose_fingers &&
+                      std::ranges::all_of(volume.shapes, [&](const Volume::Shape& shape) {
+                        return find_inclusion(shape.place, place) == collide::Inclusion::Included;
+                      });
   count_test(geometry, watch);
   return inside;
 }

@@ -15,6 +15,9 @@ struct Volume {
   };
   std::vector<Shape> shapes;
   std::vector<Motion> motions;  ///< one after another
+  /// True if fingers with joints move, or hold something: where they are is not known well enough
+  /// for a set to contain them.
+  bool has_loose_fingers = false;
 };
 
 /// A robot along a path with what it carries in a state.
@@ -34,10 +37,12 @@ std::shared_ptr<const Volume> volume_of(Geometry& geometry, const std::string& w
 
 /// Whether two volumes are *not* certainly apart, their margin included: any instant of the one
 /// against any instant of the other (Definition 1 of [gaschler2016], case 3). True where a robot or
-/// an object is in both. Allowed contacts of the scene are not looked at.
+/// an object is in both, and where one has loose fingers. Allowed contacts of the scene are not
+/// looked at.
 bool are_in_contact(const Geometry& geometry, const Volume& a, const Volume& b);
 
-/// Whether all that is in a volume is certainly in a region at every instant (case 4).
+/// Whether all that is in a volume is certainly in a region at every instant (case 4). False where
+/// it has loose fingers.
 bool is_inside(const Geometry& geometry, const Volume& volume, std::size_t region);
 
 }  // namespace kaboum::manipulation

@@ -1,10 +1,14 @@
 // Grippers with joints and pads.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/world/gripper.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
 
 namespace kaboum::world {
 namespace {
@@ -16,12 +20,36 @@ const double* find_value(const Grasp& grasp, const std::string& joint) {
   return found == grasp.opening.end() ? nullptr : &found->second;
 }
 
+/// The first of the links that fixed joints connect with one, towards the base.
+std::uint32_t rigid(const RobotModel& robot, std::uint32_t link) {
+  while (link > 0 && robot.kinematics.joints[link - 1].type == robot::JointType::Fixed)
+    link = robot.kinematics.joints[link - 1].parent;
+  return link;
+}
+
 }  // namespace
 
 const Gripper* gripper_with_pads(const RobotModel& robot, std::uint32_t link) {
   for (const Gripper& gripper : robot.grippers)
-    if (!gripper.pads.empty() && robot.tools[gripper.tool].link == link) return &gripper;
+    if (!gripper.pads.empty() && rigid(robot, robot.tools[gripper.tool].link) == rigid(robot, link))
+      return &gripper;
   return nullptr;
+}
+
+std::optional<std::uint32_t> finger_joint_above(const RobotModel& robot, std::uint32_t link) {
+  for (std::uint32_t at = link; at > 0; at = robot.kinematics.joints[at - 1].parent) {
+    const robot::Joint& joint = robot.kinematics.joints[at - 1];
+    if (joint.type == robot::JointType::Fixed) continue;
+    for (const Gripper& gripper : robot.grippers)
+      if (std::ranges::find(gripper.joints, joint.variable) != gripper.joints.end())
+        return joint.variable;
+  }
+  return std::nullopt;
+}
+
+bool has_pads(const RobotModel& robot) {
+  return std::ranges::any_of(robot.grippers,
+                             [](const Gripper& gripper) { return !gripper.pads.empty(); });
 }
 
 bool has_finger_joints(const RobotModel& robot) {
@@ -127,6 +155,48 @@ std::vector<double> finger_room(const World& world, std::size_t robot,
   return out;
 }
 
+std::vector<std::uint32_t> holding_joints(
+    std::size_t robot, const std::vector<std::optional<Attachment>>& attachments) {
+  std::vector<std::uint32_t> out;
+  for (const auto& held : attachments)
+    if (held && held->robot == robot)
+      for (const FingerValue& finger : held->fingers) out.push_back(finger.variable);
+  return out;
+}
+
+std::vector<double> finger_room_along(const World& world, std::size_t robot,
+                                      const std::vector<std::optional<Attachment>>& attachments,
+                                      std::span<const std::vector<double>> path,
+                                      const std::string& what) {
+  const RobotModel& model = world.robots[robot];
+  std::vector<double> out = finger_room(world, robot, attachments);
+  for (std::size_t o = 0; o < attachments.size(); ++o) {
+    const auto& held = attachments[o];
+    if (!held || held->robot != robot) continue;
+    for (const FingerValue& finger : held->fingers) {
+      double most = 0;
+      for (std::size_t i = 0; i < path.size(); ++i) {
+        const double off = std::abs(path[i].at(finger.variable) - finger.value);
+        if (!(off <= finger.within))
+          throw Error(ErrorCode::InvalidArgument,
+                      what + (path.size() > 1 ? " " + std::to_string(i + 1) : std::string()) +
+                          ": the joint '" + model.kinematics.variables[finger.variable].name +
+                          "' of '" + model.name + "' is at " +
+                          number_text(path[i][finger.variable]) + ", but its gripper holds '" +
+                          world.objects[o].name + "' by a grasp with " + number_text(finger.value) +
+                          ", which may be off by " + number_text(finger.within) + ": state " +
+                          number_text(finger.value));
+        most = std::max(most, off);
+      }
+      if (most == 0) continue;
+      out.resize(model.kinematics.variables.size(), 0);
+      // A place more than rounding loses.
+      out[finger.variable] = (finger.within + most) * (1 + 0x1p-40);
+    }
+  }
+  return out;
+}
+
 namespace {
 
 /// "a, b and c"
@@ -147,6 +217,34 @@ std::string name_pads(const World& world, const Attachment& held) {
   return listed(names);
 }
 
+namespace {
+
+/// Links without pads that may touch what they hold or push.
+std::vector<std::string> links_that_touch(const World& world) {
+  std::set<std::pair<std::size_t, std::uint32_t>> found;
+  for (std::size_t r = 0; r < world.robots.size(); ++r) {
+    const RobotModel& robot = world.robots[r];
+    for (const ToolFrame& tool : robot.tools)
+      if (gripper_with_pads(robot, tool.link) == nullptr) found.insert({r, tool.link});
+    for (const Gripper& gripper : robot.grippers)
+      for (const std::uint32_t link : gripper.links) found.insert({r, link});
+    for (const LinkFeature& f : robot.features)
+      if (f.feature.kind == Feature::Kind::Plane && f.feature.name.starts_with("push"))
+        found.insert({r, f.link});
+  }
+  for (const auto& held : world.attachments) {
+    if (!held || !held->link_touches) continue;
+    found.insert({held->robot, held->link});
+    for (const std::uint32_t link : held->touching) found.insert({held->robot, link});
+  }
+  std::vector<std::string> out;
+  for (const auto& [robot, link] : found)
+    out.push_back(world.robots[robot].name + "/" + world.robots[robot].kinematics.links[link].name);
+  return out;
+}
+
+}  // namespace
+
 std::string pads_claim(const World& world) {
   std::vector<std::string> names;
   for (const RobotModel& robot : world.robots)
@@ -154,8 +252,13 @@ std::string pads_claim(const World& world) {
       for (const std::uint32_t link : gripper.pads)
         names.push_back(robot.name + "/" + robot.kinematics.links[link].name);
   if (names.empty()) return "";
-  return std::string("free but for the ") + (names.size() == 1 ? "pad " : "pads ") + listed(names) +
-         " with what " + (names.size() == 1 ? "it holds" : "they hold");
+  std::string out = std::string("free but for the ") + (names.size() == 1 ? "pad " : "pads ") +
+                    listed(names) + " with what " + (names.size() == 1 ? "it holds" : "they hold");
+  if (const std::vector<std::string> others = links_that_touch(world); !others.empty())
+    out += std::string(", the ") + (others.size() == 1 ? "link " : "links ") + listed(others) +
+           " with what " + (others.size() == 1 ? "it holds or pushes" : "they hold or push");
+  if (!world.allowed.empty()) out += ", and contacts that the scene allows";
+  return out;
 }
 
 std::vector<std::string> notes_of_pads(const World& world) {

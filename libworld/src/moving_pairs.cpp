@@ -3,6 +3,7 @@
 #include "moving_pairs.h"
 
 #include <kaboum/robot/kinematics.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/margins.h>
 
 #include <algorithm>
@@ -48,6 +49,21 @@ std::vector<double> held(const robot::Robot& robot, std::uint32_t a, std::uint32
   return out;
 }
 
+/// How far a shape of a robot that rests may be from where it is computed to be: its fingers stop
+/// where they touch what they hold.
+double room_at_rest(const Checker& checker, const WorldState& state, const Item& item) {
+  if (item.robot == Item::kObject) return 0;
+  const World& world = checker.world();
+  const std::vector<double> around = finger_room(world, item.robot, state.attachments);
+  if (around.empty()) return 0;
+  const RobotModel& model = world.robots[item.robot];
+  const std::vector<double>& q = state.q[item.robot];
+  const auto [base, out] = outward(q, q, around);
+  const sweep::LinkMotion motion(model.kinematics, model.shapes[item.index].link, base, out);
+  if (!motion.moves()) return 0;
+  return sweep::MotionBounds(motion, checker.reach_of(item.robot, item.index)).derivative(1) * kUp;
+}
+
 }  // namespace
 
 MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
@@ -87,6 +103,7 @@ MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
       const Item& item = first ? b : a;
       pair.rest = static_cast<std::size_t>(std::ranges::find(resting, item) - resting.begin());
       if (pair.rest == resting.size()) resting.push_back(item);
+      pair.room_at_rest = room_at_rest(checker_, state, item);
     }
     pairs_.push_back(pair);
   }
@@ -147,6 +164,7 @@ void MovingPairs::prepare(std::size_t segment) {
 
 /// How much nearer pairs may be than on the line of a segment.
 void MovingPairs::make_room(std::size_t segment) {
+  for (Pair& pair : pairs_) pair.room = pair.room_at_rest;
   const MovingRobot& moving = robots_.front();
   if (moving.around == nullptr || moving.around->empty()) return;
   const robot::Path& path = *moving.path;
@@ -155,7 +173,7 @@ void MovingPairs::make_room(std::size_t segment) {
   std::vector<double> room;
   for (const Mover& m : movers_) room.push_back(speed_of(m, base, out) * kUp);
   for (Pair& pair : pairs_) {
-    pair.room = room[pair.mover];
+    pair.room = (room[pair.mover] + pair.room_at_rest) * kUp;
     if (!pair.other) continue;
     const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
     const std::vector<double> end = held(model_of(a).kinematics, a.link, b.link, base, out);

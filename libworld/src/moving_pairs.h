@@ -27,6 +27,8 @@ class MovingPairs {
     double margin = 0;  ///< that they are to be kept from each other [length]
     /// How much nearer than on the line of a segment they may be. [length]
     double room = 0;
+    /// Of that, what comes of fingers of another robot, which rests and holds something. [length]
+    double room_at_rest = 0;
   };
 
   /// @param scratch  that is used; may be null.

@@ -382,7 +382,7 @@ class Parser : detail::SceneRobot {
             fail(a, "the grasp '" + found->name + "' is not for the gripper '" + by->name + "'");
           for (const auto& other : world_.attachments)
             if (other && other->robot == *robot && !other->link_touches &&
-                other->link == model.tools[frame].link)
+                gripper_with_pads(model, other->link) == &*by)
               fail(*gripper, "the gripper '" + by->name + "' holds another object already");
           world_.attachments[*object] = hold_by(world_, *robot, model.tools[frame].link,
                                                 model.tools[frame].pose * out.pose, *found);
@@ -394,7 +394,22 @@ class Parser : detail::SceneRobot {
       out.link = model.tools[frame].link;
       out.pose = model.tools[frame].pose * out.pose;
     }
+    require_no_pads(link != nullptr ? *link : tool != nullptr ? *tool : *gripper, model, out.link);
     world_.attachments[*object] = std::move(out);
+  }
+
+  /// Of a link that may touch what it holds: a gripper's pads are to be the only ones.
+  void require_no_pads(const Located& at, const RobotModel& model, std::uint32_t link) const {
+    const Gripper* gripper = gripper_with_pads(model, link);
+    const auto finger = finger_joint_above(model, link);
+    if (gripper == nullptr && !finger) return;
+    const std::string by = gripper != nullptr
+                               ? "the gripper '" + gripper->name + "' has its pads at the link '"
+                               : "the joint '" + model.kinematics.variables[*finger].name +
+                                     "' of a gripper with pads moves the link '";
+    fail(at, by + model.kinematics.links[link].name +
+                 "', and pads alone may touch what is held: attach the object by a 'gripper' and a "
+                 "'grasp'");
   }
 
   void add_constraints(const Located& c) {

@@ -101,6 +101,7 @@ RobotModel SceneRobot::read(const Located& r, const std::string& name) {
     out.grippers.push_back(std::move(g));
   }
   add_features(r, out);
+  require_above_fingers(r, out);
   out.fingerprint = fingerprint_of(out);
   out.allowed = connected_links(out);
   for (const Located& pair : list(r, "allowed_contacts"))
@@ -176,6 +177,28 @@ Gripper SceneRobot::gripper_of(const RobotModel& robot, const Located& gripper) 
     if (!(out.force > 0)) fail(*force, "a force above 0 is expected");
   }
   return out;
+}
+
+/// Tools and planes that push are put somewhere by inverse kinematics: joints of grippers, which
+/// what they hold decides, must not be among those that do it.
+void SceneRobot::require_above_fingers(const Located& r, const RobotModel& robot) const {
+  const auto require = [&](const Located& value, std::uint32_t link, const std::string& what) {
+    const auto finger = finger_joint_above(robot, link);
+    if (!finger) return;
+    fail(value, "the joint '" + robot.kinematics.variables[*finger].name +
+                    "' of a gripper moves the link '" + robot.kinematics.links[link].name +
+                    "': " + what +
+                    " is on a link that no joint of a gripper moves, as that of the "
+                    "gripper's tool");
+  };
+  const auto& tools = list(r, "tools");
+  for (std::size_t i = 0; i < robot.tools.size(); ++i)
+    require(need(tools[i], "link"), robot.tools[i].link, "a tool");
+  const auto& features = list(r, "features");
+  for (std::size_t i = 0; i < robot.features.size(); ++i)
+    if (const Feature& f = robot.features[i].feature;
+        f.kind == Feature::Kind::Plane && f.name.starts_with("push"))
+      require(need(features[i], "link"), robot.features[i].link, "a plane 'push…'");
 }
 
 bool SceneRobot::is_of_visual_shapes(const Located& r) const {

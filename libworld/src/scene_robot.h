@@ -31,6 +31,7 @@ class SceneRobot : public SceneSets {
 
   /// @param robot  with its shapes, tools and grippers so far
   Gripper gripper_of(const RobotModel& robot, const Located& gripper) const;
+  void require_above_fingers(const Located& r, const RobotModel& robot) const;
   bool is_of_visual_shapes(const Located& r) const;
   void note_bare_links(const RobotModel& robot, bool visual);
   void require_shapes(const Loaded& loaded, const Located& value, bool visual) const;

@@ -12,6 +12,7 @@
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
 #include <kaboum/world/cloud.h>
+#include <kaboum/world/gripper.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/regions.h>
 #include <kaboum/world/scene.h>
@@ -491,7 +492,14 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
       constraints.push_back(
           constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep));
     }
-    out.answer = world::check_motions(*in.checker, state, paths, options);
+    for (const auto& [index, rows] : paths) {
+      std::vector<double> around =
+          finger_room_along(in.world(), index, state.attachments, rows, "waypoint");
+      if (paths.size() == 1) options.around = std::move(around);
+    }
+    out.answer = paths.size() == 1 ? world::check_motion(*in.checker, state, paths[0].robot,
+                                                         paths[0].path, options)
+                                   : world::check_motions(*in.checker, state, paths, options);
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const auto& [index, rows] = paths[i];
       if (constraints[i].empty()) continue;
@@ -503,9 +511,12 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   });
 }
 
-/// A configuration of a robot; None: its home.
-std::vector<double> start_of(const world::RobotModel& robot, const py::object& start) {
-  if (start.is_none()) return robot.home;
+/// A configuration of a robot; None: where it is at first, its home but for fingers that hold
+/// something.
+std::vector<double> start_of(const world::World& world, std::size_t index,
+                             const py::object& start) {
+  const world::RobotModel& robot = world.robots[index];
+  if (start.is_none()) return initial_state(world).q[index];
   bool one = false;
   robot::Path rows = rows_of(start, robot.kinematics.variables.size(), "start", one);
   if (!one) throw Error(ErrorCode::InvalidArgument, "start must be one configuration");
@@ -524,13 +535,19 @@ PathValue look_for_path(const WorldValue& in, std::size_t index, const py::objec
   const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
   require_all_taken("find_path", keywords, path_keywords(), Runs::Alone);
   const std::size_t variables = in.world().robots[index].kinematics.variables.size();
-  const std::vector<double> from = start_of(in.world().robots[index], start);
+  const std::vector<double> from = start_of(in.world(), index, start);
   bool one = false;
   const robot::Path to = rows_of(goals, variables, "goals", one);
   Watch watch(running.progress);
   options.check.progress = watch.hook();
   return run(0, [&] {
     const world::WorldState state = initial_state(in.world());
+    // Fingers that hold something stay, and stop where they touch.
+    robot::Path ends = to;
+    ends.insert(ends.begin(), from);
+    options.still = holding_joints(index, state.attachments);
+    options.check.around =
+        finger_room_along(in.world(), index, state.attachments, ends, "start or goal");
     options.constraints = constraints_of(in.world(), state, index, from, to, keep);
     return PathValue{in, index, options.check.resolution, search(state, from, to, options),
                      options.constraints};
@@ -569,6 +586,11 @@ PathValue find_path_again(const FinderValue& f, const py::object& start, const p
   const std::shared_ptr<const motion::Roadmap> roadmap = f.roadmap;
   return look_for_path(f.in, f.robot, start, goals, given,
                        [&](const auto&, const auto& from, const auto& to, const auto& options) {
+                         if (roadmap && !options.still.empty())
+                           throw Error(ErrorCode::InvalidArgument,
+                                       "a robot that holds something by a gripper with joints "
+                                       "goes by no roadmap, whose edges move all joints: use a "
+                                       "finder without one");
                          return roadmap ? roadmap->find(*f.finder, from, to, options)
                                         : f.finder->find(from, to, options);
                        });
@@ -612,8 +634,9 @@ py::array pose_goals(const WorldValue& in, const py::object& pose, const py::obj
                      const std::optional<std::string>& tool,
                      const std::optional<std::string>& robot, std::uint64_t seed,
                      const py::object& progress) {
-  const world::RobotModel& model = in.world().robots[robot_index(in.world(), robot)];
-  const std::vector<double> from = start_of(model, start);
+  const std::size_t index = robot_index(in.world(), robot);
+  const world::RobotModel& model = in.world().robots[index];
+  const std::vector<double> from = start_of(in.world(), index, start);
   const geom::Transform target = pose_from(pose);
   Watch watch(progress);
   const motion::Goals goals = run(0, [&] {
@@ -628,7 +651,7 @@ py::array constraint_goals(const WorldValue& in, const std::string& name, const 
                            const std::optional<std::string>& robot, std::uint64_t seed) {
   const std::size_t index = robot_index(in.world(), robot);
   const world::RobotModel& model = in.world().robots[index];
-  const std::vector<double> from = start_of(model, start);
+  const std::vector<double> from = start_of(in.world(), index, start);
   const motion::Goals goals = run(0, [&] {
     return motion::preferred_goals(in.world(), index,
                                    motion::moving_frame(model, tool.value_or("")),
@@ -646,7 +669,10 @@ TrajectoryValue trajectory_of(const PathValue& path, const py::kwargs& given) {
   Watch watch(running.progress);
   return run(0, [&] {
     const world::WorldState state = initial_state(path.in.world());
-    const motion::MovingRobot moving{*path.in.checker, state, path.robot, path.constraints};
+    const motion::MovingRobot moving{
+        *path.in.checker, state, path.robot, path.constraints,
+        finger_room_along(path.in.world(), path.robot, state.attachments, path.answer.path,
+                          "waypoint")};
     return TrajectoryValue{motion::sample_path(moving, path.answer.path, options, path.resolution,
                                                motion::AngleUnit::Radians, watch.hook()),
                            moving.kinematics()};

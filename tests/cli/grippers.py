@@ -125,9 +125,122 @@ def what_is_held_at_first_is_held_so(folder):
                        "--journal", "held.jsonl", scene="held.json", problem="held.kpl")
         if done.returncode != code or (code and "away from where it was told to be" not in done.stderr):
             fail(f"held, {off} m off: {done.returncode} {done.stdout} {done.stderr}")
-    begin = json.loads(json.loads((folder / "held.jsonl").read_text().splitlines()[2])["told"])
+    begin = next(json.loads(line["told"]) for line in map(json.loads, (folder / "held.jsonl").read_text().splitlines()) if "told" in line)
     if begin["robots"]["arm"]["q"][-1] != 0.0115 or begin["objects"]["o1"] != {"held_by": "arm"}:
         fail(f"begin: {begin}")
+
+
+def tool(folder, name, *arguments):
+    done = subprocess.run([TOOLS / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=300)
+    return done
+
+
+def paths_keep_fingers_where_they_hold(folder):
+    """What is in the hand: paths are found and decided with its fingers where the grasp has them, and wherever they may stop."""
+    home = [0, -0.5, 1.7, 0, 1.9415926535897932, 0]
+    there = [2.2, *home[1:]]
+
+    def rows(*configurations):
+        (folder / "given.csv").write_text("".join(",".join(map(str, q)) + "\n" for q in configurations))
+
+    scene = json.loads((folder / "held.json").read_text())
+    # In between, so that it goes round.
+    scene["objects"].append({"name": "wall", "shape": {"box": {"size": [0.5, 0.02, 0.4]}}, "pose": {"position": [0.18, 0.356, 0.85], "rpy": [0, 0, 1.1]}})
+    (folder / "wall.json").write_text(json.dumps(scene))
+    to = ",".join(map(str, [*there, 0.0115]))
+    done = tool(folder, "kaboum-move", "wall.json", "--to", to, "-o", "way.csv")
+    if done.returncode != 0:
+        fail(f"move: {done.returncode} {done.stderr}")
+    way = [line.split(",") for line in (folder / "way.csv").read_text().splitlines()]
+    way = way[1:] if way[0][0] == "j1" else way
+    if len(way) < 3 or {float(q[-1]) for q in way} != {0.0115}:
+        fail(f"move: fingers move: {[q[-1] for q in way]}")
+    done = tool(folder, "kaboum-check", "wall.json", "--path", "way.csv")
+    if done.returncode != 0:
+        fail(f"check of it: {done.stdout} {done.stderr}")
+    for goal, words in (([*there, 0.018], ("goal", "'finger'", "'o1'", "0.0115", "0.018")), ([*there, 0.0121], ())):
+        done = tool(folder, "kaboum-move", "held.json", "--to", ",".join(map(str, goal)), "-o", "no.csv")
+        if (done.returncode != 0) != bool(words) or any(word not in done.stderr for word in words):
+            fail(f"move to {goal}: {done.returncode} {done.stderr}")
+        rows([*home, 0.0115], goal)
+        done = tool(folder, "kaboum-check", "held.json", "--path", "given.csv")
+        if (done.returncode != 0) != bool(words) or any(word not in done.stderr for word in words if word != "goal"):
+            fail(f"check to {goal}: {done.returncode} {done.stdout} {done.stderr}")
+    done = tool(folder, "kaboum-move", "held.json", "--to", to, "--roadmap", "map.json", "-o", "no.csv")
+    if done.returncode == 0 or "--roadmap" not in done.stderr or (folder / "map.json").exists():
+        fail(f"roadmap: {done.returncode} {done.stderr}")
+
+
+def fingers_that_are_there_already_close(folder):
+    """Where the opening is that of home: told, and held to, as any other."""
+    def as_home(scene):
+        scene["robots"][0]["home"]["finger"] = 0.0135
+        for o in scene["objects"]:
+            for g in o["grasps"]:
+                g["opening"]["finger"] = 0.0135
+
+    name = changed(folder, "still.json", as_home)
+    done, _ = plan(folder, "solve", "-o", "still-plan.json", "--no-cache", scene=name)
+    if done.returncode != 0:
+        fail(f"still: {done.returncode} {done.stderr}")
+    sense = '--sense "isSpillable(o1)=true" --sense "isSpillable(o2)=false"'
+    done, report = plan(folder, "run", "--plan", "still-plan.json", "--robot", f"{DRIVER} {sense}", "--journal", "still.jsonl", scene=name)
+    if done.returncode != 0 or report["verdict"] != "good":
+        fail(f"still: {done.returncode} {done.stdout} {done.stderr}")
+    told = [json.loads(line["told"]) for line in map(json.loads, (folder / "still.jsonl").read_text().splitlines()) if "told" in line]
+    takes = [m for m in told if m["do"] == "take"]
+    if len(takes) != 2 or any(m.get("gripper", {}).get("to") != [0.0135] or m["gripper"]["from"] != [0.0135] for m in takes):
+        fail(f"still: {takes}")
+    done, report = plan(folder, "run", "--plan", "still-plan.json", "--outcomes", "all", "--trajectories", "still-files", scene=name)
+    if done.returncode != 0 or report["jumps"] or report["collisions"]:
+        fail(f"still files: {done.stdout} {done.stderr}")
+    liar = folder / "liar.py"
+    text = (ROOT / "examples/drivers/driver.py").read_text().replace("def main", LIAR.replace("OFF", "0.004"))
+    liar.write_text(text.replace("    NoRobot(parser", "    Liar(parser"))
+    done, _ = plan(folder, "run", "--plan", "still-plan.json", "--robot", f"{sys.executable} {liar} {sense}", scene=name)
+    if done.returncode != 1 or "away from where it was told to be" not in done.stderr:
+        fail(f"still, off: {done.returncode} {done.stderr}")
+
+
+def motions_of_fingers_are_such(folder):
+    """Plans of others: fingers close and open by motions of their own, or the plan is not carried out."""
+    def run(change):
+        made = json.loads((folder / "plan.json").read_text())
+        for node in made["nodes"]:
+            for call in node.get("calls", []):
+                if call["external"] == "grasp":
+                    call["payload"] = json.dumps([change(motion) for motion in json.loads(call["payload"])])
+        (folder / "changed-plan.json").write_text(json.dumps(made))
+        return plan(folder, "run", "--plan", "changed-plan.json", "--outcomes", "all")
+
+    def with_arm(motion):
+        motion["path"][-1][0] += 0.01
+        return motion
+
+    def with_way(motion):
+        motion["path"].append(motion["path"][-1])
+        return motion
+
+    for change in (with_arm, with_way):
+        done, _ = run(change)
+        if done.returncode == 0 or "two points that differ in joints of the gripper alone" not in done.stderr:
+            fail(f"fingers: {done.returncode} {done.stdout} {done.stderr}")
+
+    def by_another(motion):  # which opens as far
+        motion["grasps"]["o1" if "o1" in motion["grasps"] else "o2"] = "side5"
+        return motion
+
+    done, report = run(by_another)
+    if done.returncode == 0 or not report["jumps"] or "held by another grasp" not in done.stdout + done.stderr:
+        fail(f"by another grasp: {done.returncode} {done.stdout} {done.stderr}")
+
+
+def engines_claim_nothing(folder):
+    done, report = plan(folder, "check", "--plan", "plan.json", "--engine", "fcl")
+    if "unknown" in done.stderr or "not built" in done.stderr or "without" in done.stderr:
+        return  # there is no such engine here
+    if "claim" in report:
+        fail(f"an engine's claim: {report['claim']} {done.stderr}")
 
 
 def what_must_not_touch_is_refused(folder):
@@ -166,6 +279,10 @@ def main():
         is_told_to_drivers(folder)
         what_must_not_touch_is_refused(folder)
         what_is_held_at_first_is_held_so(folder)
+        paths_keep_fingers_where_they_hold(folder)
+        fingers_that_are_there_already_close(folder)
+        motions_of_fingers_are_such(folder)
+        engines_claim_nothing(folder)
 
 
 main()

@@ -1,6 +1,7 @@
 // Grippers with joints and pads in scenes: what is read, what is refused, and which contacts are
 // left out while pads hold something.
 
+#include <kaboum/base/error.h>
 #include <kaboum/world/checker.h>
 #include <kaboum/world/gripper.h>
 #include <kaboum/world/motion_check.h>
@@ -129,6 +130,77 @@ TEST(Gripper, RoomOfFingersCountsInMotions) {
   EXPECT_EQ(find_obstacles(checker, beside, 0, still, things, options), things);
 }
 
+/// While another robot moves, fingers that hold something may be off as well.
+TEST(Gripper, RoomOfFingersThatRestCountsInMotionsOfOthers) {
+  const SceneFiles files;
+  // Another such arm above the finger; the box is not looked at.
+  const auto is_free = [&](double within, double height) {
+    World world = files.world(files.scene(box(files, "0.7", side()) + kHeld, kGripper));
+    world.attachments[0]->fingers[0].within = within;
+    RobotModel other = world.robots[0];
+    other.name = "other";
+    other.grippers.clear();
+    other.base.translation.z() += height;
+    world.robots.push_back(other);
+    std::erase_if(world.robots[0].shapes, [](const LinkShape& shape) { return shape.link != 3; });
+    const Checker checker(world);
+    const robot::Path still{{0, 0, 0.5}, {0, 0, 0.5}};
+    WorldState state = initial_state(world);
+    state.absent = {true};
+    const bool free =
+        check_motion(checker, state, 1, still, {}).outcome == MotionAnswer::Outcome::Free;
+    std::vector<Item> things;
+    for (std::size_t s = 0; s < world.robots[0].shapes.size(); ++s) things.push_back({0, s});
+    EXPECT_EQ(find_obstacles(checker, state, 1, still, things, {}).empty(), free);
+    return free;
+  };
+  double low = 0, high = 4;
+  ASSERT_FALSE(is_free(0, low));
+  ASSERT_TRUE(is_free(0, high));
+  for (int i = 0; i < 12; ++i) (is_free(0, (low + high) / 2) ? high : low) = (low + high) / 2;
+  EXPECT_TRUE(is_free(0.0001, high + 0.01));
+  EXPECT_FALSE(is_free(0.1, high + 0.01));
+  EXPECT_TRUE(is_free(0.1, high + 1));
+}
+
+/// Paths that are given: fingers are within what the grasp allows, and all that it allows is free.
+TEST(Gripper, RoomAlongAPathCoversAllThatTheGraspAllows) {
+  const SceneFiles files;
+  const World world = files.world(files.scene(box(files, "0.7", side()) + kHeld, kGripper));
+  const auto room = [&](const robot::Path& path) {
+    return finger_room_along(world, 0, world.attachments, path, "waypoint");
+  };
+  EXPECT_EQ(room({{0, 0, 0.5}, {1, 0, 0.5}}), (std::vector<double>{0, 0, 0.01}));
+  const std::vector<double> wider = room({{0, 0, 0.5}, {0, 0, 0.494}});
+  EXPECT_GE(wider.at(2), 0.01 + (0.5 - 0.494));
+  EXPECT_LT(wider.at(2), 0.0161);
+  EXPECT_EQ(holding_joints(0, world.attachments), (std::vector<std::uint32_t>{2}));
+  try {
+    room({{0, 0, 0.5}, {0, 0, 0.52}});
+    ADD_FAILURE() << "fingers are elsewhere";
+  } catch (const Error& error) {
+    for (const char* part : {"waypoint 2", "'j3'", "'box'", "0.52", "0.01"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+  // Nothing is held: fingers go where they like.
+  EXPECT_TRUE(finger_room_along(world, 0, {std::nullopt}, {{{0, 0, 2}}}, "waypoint").empty());
+}
+
+TEST(Gripper, TheClaimNamesAllThatMayTouch) {
+  const SceneFiles files;
+  const std::string pads = "free but for the pad arm/l3 with what it holds";
+  EXPECT_EQ(pads_claim(files.world(files.scene(box(files, "0.7", side()), kGripper))), pads);
+  EXPECT_EQ(
+      pads_claim(files.world(files.scene(
+          box(files, "0.7", side()) + R"(, "allowed_contacts": [["box", "arm/l1"]])", kGripper))),
+      pads + ", and contacts that the scene allows");
+  std::string two = kGripper;
+  two.replace(two.find(R"("link": "l2"})"), 13,
+              R"("link": "l2"}, {"name": "elbow", "link": "l1"})");
+  EXPECT_EQ(pads_claim(files.world(files.scene(box(files, "0.7", side()), two))),
+            pads + ", the link arm/l1 with what it holds or pushes");
+}
+
 TEST(Gripper, MistakesAreNamed) {
   const SceneFiles files;
   const auto gripper = [&](const std::string& members) {
@@ -170,6 +242,28 @@ TEST(Gripper, MistakesAreNamed) {
                       R"(, "attachments": [{"object": "box", "robot": "arm", "gripper": "hand"}])",
                   kGripper),
       {"held by a 'grasp'"});
+  // What inverse kinematics puts somewhere is above the fingers.
+  const std::string one = R"("tools": [{"name": "flange", "link": "l2"})";
+  std::string tip = kGripper;
+  tip.replace(0, one.size(), one + R"(, {"name": "tip", "link": "l3"})");
+  expect_refused(files, files.scene(box(files, "0.7", side()), tip),
+                 {"'j3' of a gripper moves the link 'l3'", "a tool is on a link"});
+  const auto feature = [&](const std::string& name) {
+    return files.scene(
+        box(files, "0.7", side()),
+        kGripper + R"(, "features": [{"name": ")" + name +
+            R"(", "link": "l3", "plane": {"point": [1, 0, 0], "normal": [1, 0, 0]}}])");
+  };
+  expect_refused(files, feature("push"), {"moves the link 'l3'", "a plane 'push…'"});
+  EXPECT_NO_THROW(files.world(feature("front")));
+  // Pads alone may touch what is held.
+  for (const char* by : {R"("tool": "flange")", R"("link": "l2")", R"("link": "l3")"})
+    expect_refused(
+        files,
+        files.scene(box(files, "0.7", side()) +
+                        R"(, "attachments": [{"object": "box", "robot": "arm", )" + by + "}]",
+                    kGripper),
+        {"pads alone may touch", "by a 'gripper' and a 'grasp'"});
 }
 
 }  // namespace

@@ -182,7 +182,8 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
     const world::WorldState state = initial_state(scene.world);
     if (paths.size() > 1) return check_motions(checker, state, paths, told);
     // Fingers that hold something stop where they touch.
-    told.around = world::finger_room(scene.world, paths[0].robot, state.attachments);
+    told.around = world::finger_room_along(scene.world, paths[0].robot, state.attachments,
+                                           paths[0].path, "waypoint");
     return check_motion(checker, state, paths[0].robot, paths[0].path, told);
   }();
   report["waypoints"] = paths.front().path.size();
@@ -359,6 +360,12 @@ int check(const tools::CheckOptions& o) {
         robot::read_timed_path(path.file, scene.world.robots[index].kinematics, o.reading, notes);
     require_same_times(times, read.times, stated.front().file, path.file);
     if (!read.times.empty()) times = std::move(read.times);
+    try {  // what is held decides where fingers are
+      static_cast<void>(world::finger_room_along(scene.world, index, scene.world.attachments,
+                                                 read.waypoints, "waypoint"));
+    } catch (const Error& error) {
+      throw Error(ErrorCode::InvalidInput, path.file + ": " + error.what());
+    }
     paths.push_back({index, std::move(read.waypoints)});
   }
   robot::Path values{{}};

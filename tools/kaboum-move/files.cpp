@@ -22,7 +22,7 @@ WrittenPath write_path(const MoveRequest& r, const robot::Path& path, const Move
   if (out.path == path) return out;
   ensure(o.degrees, "a path is written as another one");
   const world::WorldState state = initial_state(r.scene.world);
-  motion::require_free({checker, state, r.robot, r.constraints}, out.path,
+  motion::require_free({checker, state, r.robot, r.constraints, r.around}, out.path,
                        o.search.check.resolution, "--degrees: the waypoints, rounded,");
   return out;
 }
@@ -31,7 +31,7 @@ Execution execute(const MoveRequest& r, const robot::Path& path, const MoveOptio
                   const world::Checker& checker) {
   const world::WorldState state = initial_state(r.scene.world);
   motion::SampledPath made =
-      motion::sample_path({checker, state, r.robot, r.constraints}, path, o.execution,
+      motion::sample_path({checker, state, r.robot, r.constraints, r.around}, path, o.execution,
                           o.search.check.resolution, unit_of(o));
   Json report = {{"file", o.trajectory},
                  {"rate", o.execution.rate},

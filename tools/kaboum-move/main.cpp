@@ -1,6 +1,7 @@
 // kaboum-move: paths of a robot of a scene, certified free at every instant, and their execution.
 #include <kaboum/base/error.h>
 #include <kaboum/motion/roadmap.h>
+#include <kaboum/world/gripper.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -64,6 +65,9 @@ int move(const MoveOptions& o) {
     options.constraints = r.constraints;
     options.check.progress = [&](const std::string& stage) { progress.show(stage); };
     const world::WorldState state = initial_state(r.scene.world);
+    // Fingers that hold something stay, and stop where they touch.
+    options.still = world::holding_joints(r.robot, state.attachments);
+    options.check.around = r.around;
     if (o.roadmap.empty()) return find_path(checker, state, r.robot, r.start, r.goals, options);
     const motion::PathFinder finder(checker, state, r.robot);
     return roadmap_of(o, finder, options).find(finder, r.start, r.goals, options);

@@ -7,6 +7,7 @@
 #include <kaboum/robot/base_pose.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path_file.h>
+#include <kaboum/world/gripper.h>
 
 #include "common/check_report.h"
 
@@ -91,6 +92,22 @@ void add_constraint_goals(MoveRequest& r, const MoveOptions& o) {
   }
 }
 
+/// Fingers that hold something are where the grasp has them, from the start to each goal.
+void require_fingers(MoveRequest& r, const MoveOptions& o) {
+  const auto& attachments = r.scene.world.attachments;
+  if (world::holding_joints(r.robot, attachments).empty()) return;
+  if (!o.roadmap.empty())
+    usage("--roadmap: robot '" + r.model().name +
+          "' holds something by a gripper with joints, which stay where they hold it; edges of a "
+          "roadmap move all joints: leave it out");
+  robot::Path ends{r.start};
+  ends.insert(ends.end(), r.goals.begin(), r.goals.end());
+  static_cast<void>(
+      world::finger_room_along(r.scene.world, r.robot, attachments, {&r.start, 1}, "the start"));
+  static_cast<void>(world::finger_room_along(r.scene.world, r.robot, attachments, r.goals, "goal"));
+  r.around = world::finger_room_along(r.scene.world, r.robot, attachments, ends, "waypoint");
+}
+
 bool is_certain(const PathAnswer& answer) {
   return answer.broken->outcome == motion::ConstraintAnswer::Outcome::Broken;
 }
@@ -130,6 +147,7 @@ MoveRequest read_request(const MoveOptions& o) {
       usage("where to? Give --to Q1,Q2,…, --to-pose POSE, --reach NAME or --goals FILE");
     return r;
   }
+  require_fingers(r, o);
   r.notes.insert(r.notes.end(), r.unreached.begin(), r.unreached.end());
   r.constraints = motion::constraints_of(r.scene.world, initial_state(r.scene.world), r.robot,
                                          r.start, r.goals, o.keep);

@@ -21,7 +21,10 @@ struct MoveRequest {
   std::vector<motion::PathConstraint> constraints;
   std::vector<std::string> notes;
   std::vector<std::string> unreached;  ///< poses that no configuration reaches, and why
-  bool all_known = true;               ///< there are no other goals than these, for certain
+  /// How far joints may be off, as world::MotionOptions::around: those of grippers that hold
+  /// something.
+  std::vector<double> around;
+  bool all_known = true;  ///< there are no other goals than these, for certain
 
   [[nodiscard]] const world::RobotModel& model() const { return scene.world.robots[robot]; }
   [[nodiscard]] const robot::Robot& kinematics() const { return model().kinematics; }

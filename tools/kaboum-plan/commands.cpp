@@ -142,7 +142,8 @@ int solve(const PlanOptions& o) {
   if (!o.task.margin.margins.empty()) report["margins"] = words_of(o.task.margin);
   if (!engine.empty()) report["engine"] = engine_json(o);
   task.keep_answers();
-  const std::string pads = pads_of(task);
+  // An engine's answers are no claim.
+  const std::string pads = engine.empty() ? pads_of(task) : std::string();
   if (!pads.empty()) report["claim"] = pads;
   if (task.scene() != nullptr) {
     report["geometry"] = geometry_json(task.counters());
@@ -176,7 +177,7 @@ int solve(const PlanOptions& o) {
                             std::to_string(size.nodes) + " nodes, " + std::to_string(size.leaves) +
                             " leaves, longest path " + std::to_string(size.longest) + " actions" +
                             (engine.empty() ? "" : ", contacts " + engine) +
-                            (pads.empty() || !engine.empty() ? "" : "; motions are " + pads));
+                            (pads.empty() ? "" : "; motions are " + pads));
     return kDone;
   }
   std::cerr << "kaboum-plan: " << said.sentence << (engine.empty() ? "" : ", contacts " + engine)
@@ -200,7 +201,8 @@ int check(const PlanOptions& o) {
                  {"violation", r.violation},  {"states_replayed", r.states},
                  {"ends_replayed", r.leaves}, {"plan", size_json(plan::measure(model, p))}};
   if (!engine.empty()) report["engine"] = engine_json(o);
-  const std::string pads = pads_of(task);
+  // An engine's answers are no claim.
+  const std::string pads = engine.empty() ? pads_of(task) : std::string();
   if (!pads.empty()) report["claim"] = pads;
   write_report(o.common, "kaboum-plan", report);
   const std::string by = !engine.empty() ? ", contacts " + engine

@@ -329,5 +329,94 @@ TEST(Fingers, RoomThatFingersStopInIsFreeAsWell) {
   EXPECT_FALSE(beside(0.006, 0.005));
 }
 
+/// Fingers whose opening is where they are while nothing is held: they close as any do.
+TEST(Fingers, ThoseThatAreThereAlreadyCloseAsWell) {
+  const auto fetched = [](double within) {
+    const double open = 0.026, outside = open + 0.006 + 0.008;
+    Fingers f({.open = open, .within = within, .post = Vec3(outside + 0.005, 0, 0.06)});
+    f.arms.world.objects[TwoArms::kBlock].grasps[0].opening = {{"finger", open}};
+    return f.ask_for("fetch", {"left", "block", "home"});
+  };
+  const Answer answer = fetched(0.0005);
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  std::size_t closing = 0;
+  for (const nlohmann::json& part : nlohmann::json::parse(answer.payload))
+    if (part.contains("closes")) {
+      ++closing;
+      const auto path = part.at("path").get<robot::Path>();
+      EXPECT_EQ(path.size(), 2U);
+      EXPECT_EQ(path.front(), path.back());
+    }
+  EXPECT_EQ(closing, 1U);
+  // Where they may stop is free, too: the post is nearer than that.
+  const Answer loose = fetched(0.005);
+  EXPECT_NE(loose.kind, Answer::Kind::Value) << loose.payload;
+}
+
+/// What the scene has in the hand at first, and was put down since, is not in it any more.
+TEST(Fingers, CloseOnWhatIsThereNow) {
+  Fingers f({});
+  world::World& world = f.arms.world;
+  world::Grasp other = world.objects[TwoArms::kBlock].grasps[0];
+  other.name = "other";
+  other.opening = {{"finger", 0.032}};
+  world.objects[TwoArms::kWall].grasps = {other};
+  world.attachments[TwoArms::kWall] = world::hold_by(world, 0, f.arms.hand, {}, other);
+  const Answer answer =
+      f.ask_for("graspVolume", {"left", "block"}, {{"pose(wall)", "at 0.9 0.9 0.9 0 0 0 1"}});
+  ASSERT_EQ(answer.kind, Answer::Kind::Value) << answer.reason;
+  EXPECT_EQ(answer.value.find("wall"), std::string::npos) << answer.value;
+  const auto motions = nlohmann::json::parse(answer.value.substr(answer.value.find('[')));
+  EXPECT_EQ(motions.front().at("path").at(0).back(), 0.04) << "it comes open";
+  EXPECT_EQ(motions.back().at("path").at(0).back(), 0.0245) << "it holds the block";
+}
+
+/// Pads that may touch the thing while they hold it may not once it is let go, nor before.
+TEST(Fingers, PadsMustNotTouchWhatIsNotHeld) {
+  Fingers closes({});
+  const Answer reached = closes.ask_for("reach", {"left", "block"});
+  ASSERT_EQ(reached.kind, Answer::Kind::Value) << reached.reason;
+  const Answer grasped = closes.ask_for("grasp", {"left", "block", reached.value});
+  ASSERT_EQ(grasped.kind, Answer::Kind::Value) << grasped.reason;
+  // Of a gripper that "opens" inwards, into the block.
+  Fingers inwards({.open = 0.022});
+  const Answer released = inwards.ask_for("release", {"left", "block", reached.value},
+                                          {{"pose(block)", grasped.value}});
+  EXPECT_NE(released.kind, Answer::Kind::Value) << released.payload;
+  EXPECT_NE(released.reason.find("when it has opened from block"), std::string::npos)
+      << released.reason;
+  EXPECT_NE(released.reason.find("left/pad"), std::string::npos) << released.reason;
+  const Answer again = inwards.ask_for("grasp", {"left", "block", reached.value});
+  EXPECT_NE(again.kind, Answer::Kind::Value) << again.payload;
+  EXPECT_NE(again.reason.find("before it closes on block"), std::string::npos) << again.reason;
+}
+
+/// No set contains fingers that stop where they touch: volumes of such are apart from nothing.
+TEST(Fingers, VolumesOfFingersThatHoldAreApartFromNothing) {
+  Fingers f({});
+  const Answer fetched = f.ask_for("fetch", {"left", "block", "home"});
+  ASSERT_EQ(fetched.kind, Answer::Kind::Value) << fetched.reason;
+  for (const bool holds : {false, true}) {
+    Words words{{"pose(wall)", "at 5 5 5 0 0 0 1"}};
+    if (holds) words["pose(block)"] = fetched.value;
+    const Answer swept = f.ask_for("sweptVolume", {"left", "home"}, words);
+    ASSERT_EQ(swept.kind, Answer::Kind::Value) << swept.reason;
+    const Answer wall = f.ask_for("occupiedVolume", {"wall"}, words);
+    const bool meets =
+        f.ask_for("volumesCollide", {swept.value, wall.value}, words).kind == Answer::Kind::Value;
+    EXPECT_EQ(meets, holds);
+    EXPECT_EQ(f.ask_for("volumeCollides", {swept.value, "wall"}, words).kind == Answer::Kind::Value,
+              holds);
+  }
+}
+
+/// Inverse kinematics never moves fingers: what is fixed to one is put nowhere by them.
+TEST(Fingers, AreMovedByNoInverseKinematics) {
+  Fingers f({});
+  const Answer lifted =
+      f.ask_for("lift", {"left", "block"}, {{"pose(block)", "on left/finger0 0 0 0.5 0 0 0 1"}});
+  EXPECT_NE(lifted.kind, Answer::Kind::Value) << lifted.payload;
+}
+
 }  // namespace
 }  // namespace kaboum::test

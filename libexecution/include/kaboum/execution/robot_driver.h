@@ -89,6 +89,9 @@ class RobotDriver {
   ///   their grasps allow
   void begin(const judge::CellState& state,
              const std::vector<std::optional<world::Attachment>>& held = {});
+  /// Has joints of grippers that hold something be within what their grasps allow from here on.
+  /// @param held  how objects are held
+  void require_fingers(const std::vector<std::optional<world::Attachment>>& held);
   /// Says which action is carried out from here on: "grasp(arm, o1)".
   void act(const std::string& action);
   /// @pre the trajectory begins where the robot is. A motion that has failed is told again if the

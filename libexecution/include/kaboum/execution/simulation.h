@@ -131,7 +131,8 @@ class Simulation {
   std::vector<std::optional<std::size_t>> mounted_;  ///< what each object is on, in a node
   /// Sets of constraints that the plan's mates name, by the objects that are mated.
   std::map<std::string, std::set<std::string>> mates_;
-  std::set<std::size_t> carried_;  ///< objects that a motion of the node has carried
+  std::set<std::size_t> carried_;              ///< objects that a motion of the node has carried
+  std::map<std::size_t, std::string> grasps_;  ///< by which objects are held, in a node
   /// An object that is pushed: the pose that it was first at, and the way that it goes.
   struct Pushed {
     geom::Transform from;
