@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/judge/placement.h>
 #include <kaboum/manipulation/words.h>
+#include <kaboum/robot/kinematics.h>
 #include <kaboum/world/allowed_pairs.h>
 #include <kaboum/world/gripper.h>
 
@@ -11,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "goals.h"
+#include "lines.h"
 #include "two_arms.h"
 
 namespace kaboum::test {
@@ -410,12 +413,34 @@ TEST(Fingers, VolumesOfFingersThatHoldAreApartFromNothing) {
   }
 }
 
-/// Inverse kinematics never moves fingers: what is fixed to one is put nowhere by them.
+/// Inverse kinematics never moves fingers: what is fixed to one is put nowhere, and where the hand
+/// is put they stay to the last bit.
 TEST(Fingers, AreMovedByNoInverseKinematics) {
-  Fingers f({});
-  const Answer lifted =
-      f.ask_for("lift", {"left", "block"}, {{"pose(block)", "on left/finger0 0 0 0.5 0 0 0 1"}});
-  EXPECT_NE(lifted.kind, Answer::Kind::Value) << lifted.payload;
+  const double open = 0.0400000001234;  // more digits than words have
+  Fingers f({.open = open});
+  const world::RobotModel& robot = f.arms.world.robots[0];
+  const Answer reached = f.ask_for("reach", {"left", "block"});
+  ASSERT_EQ(reached.kind, Answer::Kind::Value) << reached.reason;
+  const robot::Path way =
+      nlohmann::json::parse(reached.payload).back().at("path").get<robot::Path>();
+  EXPECT_EQ(way.back().back(), open);
+  for (const std::uint32_t link : {f.arms.hand, *robot.kinematics.find_link("finger0")}) {
+    const bool is_hand = link == f.arms.hand;
+    Transform target = robot.base * forward(robot.kinematics, way.back())[link];
+    manipulation::Goals goals;
+    manipulation::add_goals(goals, robot, link, target, robot.home, {});
+    EXPECT_EQ(!goals.configurations.empty(), is_hand);
+    if (!is_hand) {
+      EXPECT_FALSE(goals.all);
+    }
+    for (const std::vector<double>& q : goals.configurations) EXPECT_EQ(q.back(), open);
+    target.translation.z() += 0.01;
+    const auto line = manipulation::follow_line(robot, link, way.back(), target, 0.01);
+    ASSERT_EQ(line.has_value(), is_hand);
+    if (line) {
+      EXPECT_EQ(line->back().back(), open);
+    }
+  }
 }
 
 }  // namespace
