@@ -238,6 +238,7 @@ std::vector<std::string> links_that_touch(const World& world) {
     for (const std::uint32_t link : held->touching) found.insert({held->robot, link});
   }
   std::vector<std::string> out;
+  out.reserve(found.size());
   for (const auto& [robot, link] : found)
     out.push_back(world.robots[robot].name + "/" + world.robots[robot].kinematics.links[link].name);
   return out;

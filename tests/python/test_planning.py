@@ -543,3 +543,25 @@ def test_wrong_configurations_are_refused(cell):
     with pytest.raises(kaboum.Error) as error:
         kaboum.World(cell.with_name("none.json"))
     assert error.value.code == "invalid_input"
+
+
+def test_fingers_that_hold_something_stay(tmp_path):
+    subprocess.run([sys.executable, SOURCE / "examples" / "scenarios" / "force-sensing" / "run", "2", "--fingers", "--scene-only", "--out", tmp_path], check=True,
+                   env={**os.environ}, capture_output=True)
+    scene = json.loads((tmp_path / "cell.json").read_text())
+    scene["attachments"] = [{"object": "o1", "robot": "arm", "gripper": "fingers", "grasp": "side3"}]
+    (tmp_path / "held.json").write_text(json.dumps(scene))
+    world = kaboum.World(tmp_path / "held.json")
+    home, there = [0, -0.5, 1.7, 0, 1.9415926535897932, 0], [2.2, -0.5, 1.7, 0, 1.9415926535897932, 0]
+    path = world.find_path(None, [there + [0.0115]])  # from where it is: with the thing between its fingers
+    assert path.outcome == "found"
+    assert {q[-1] for q in path.waypoints} == {0.0115}
+    assert world.check_motion([home + [0.0115], there + [0.0121]]).outcome == "free"
+    for ask in (lambda: world.check_motion([home + [0.0115], there + [0.018]]), lambda: world.find_path(None, [there + [0.018]])):
+        with pytest.raises(kaboum.Error, match="'finger' of 'arm' is at 0.018, but its gripper holds 'o1' by a grasp with 0.0115"):
+            ask()
+    finder = world.path_finder()
+    assert finder.find_path(None, [there + [0.0115]]).outcome == "found"
+    finder.make_roadmap(nodes=10)
+    with pytest.raises(kaboum.Error, match="goes by no roadmap"):
+        finder.find_path(None, [there + [0.0115]])
