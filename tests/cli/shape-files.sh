@@ -192,6 +192,9 @@ expect 2 'pairs' "$B" arm.urdf -o x.urdf --bodies spheres --epsilon 0.4 --pairs 
 expect 2 'pairs' "$B" arm.urdf -o x.xml --bodies capsules --epsilon 0.4 --pairs pairs.srdf
 expect 2 'pairs' "$B" arm.urdf -o x --pairs pairs.srdf
 expect 3 'none.srdf' "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --pairs none.srdf
+printf '<robot name="o">\n<disable_collisions link1="u" link2="v" reason="Never"/>\n</robot>\n' >others.srdf
+expect 3 "others.srdf:2: none of its pairs .* another robot's" "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --pairs others.srdf
+expect 0 'x.yaml: no pairs of links are stated that need no check' "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --effort fast
 
 # A scene to look at: links as nodes, shapes as instances of few meshes.
 expect 0 '' "$B" arm.urdf -o mixed.urdf --bodies mixed --epsilon 0.4 --effort fast --preview mixed.glb

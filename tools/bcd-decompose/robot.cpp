@@ -365,6 +365,11 @@ std::vector<robot_folder::UncheckedLinks> unchecked_links(const DecomposeOptions
   const std::vector<char> text = io::read_file(o.pairs);
   const pairs::Matrix matrix =
       pairs::parse_matrix(std::string(text.begin(), text.end()), o.pairs, robot);
+  if (matrix.pairs.empty() && !matrix.faults.empty())
+    throw Error(ErrorCode::InvalidInput,
+                o.pairs + ":" + std::to_string(matrix.faults.front().line) +
+                    ": none of its pairs is one of links of robot '" + robot.name +
+                    "': are they another robot's? (" + matrix.faults.front().text + ")");
   for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
   for (const pairs::MatrixFault& fault : matrix.faults)
     notes.add(o.pairs, "line " + std::to_string(fault.line) + ": " + fault.text);
@@ -480,6 +485,13 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                           ", no point farther from its link's shapes than " + number_up(distance) +
                           ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
                           check_of_shapes(run, format, reached, distance) + " decides it");
+  using Format = robot_folder::SphereFormat;
+  if (unchecked.empty() && (format.spheres == Format::Curobo || format.spheres == Format::Xrdf))
+    log(o.common.quiet,
+        o.output +
+            ": no pairs of links are stated that need no check, and neighbouring links seem "
+            "to collide then: kaboum-pairs ROBOT --srdf FILE finds them, --pairs FILE states "
+            "them");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
