@@ -432,6 +432,27 @@ std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reach
          (run.o.epsilon_map ? " --epsilon-map " + shell_word(*run.o.epsilon_map) : std::string());
 }
 
+/// What was made, and what decides it.
+/// @param without_pairs  of links that need no check
+void say_shapes(const Run& run, const BodyFormat& format, const certify::CertifiedBodies& bodies,
+                const std::string& check, double distance, bool without_pairs) {
+  const DecomposeOptions& o = run.o;
+  const bool spheres = o.set.request.body_kind == certify::SetRequest::BodyKind::Spheres;
+  log(o.common.quiet, o.output + ": " +
+                          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
+                                   : counted(bodies.artefact().size(), "body", "bodies")) +
+                          ", no point farther from its link's shapes than " + number_up(distance) +
+                          ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
+                          check + " decides it");
+  using Format = robot_folder::SphereFormat;
+  if (without_pairs && (format.spheres == Format::Curobo || format.spheres == Format::Xrdf))
+    log(o.common.quiet,
+        o.output +
+            ": no pairs of links are stated that need no check, and neighbouring links seem "
+            "to collide then: kaboum-pairs ROBOT --srdf FILE finds them, --pairs FILE states "
+            "them");
+}
+
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
 int decompose_into_shapes(const DecomposeOptions& o) {
   const BodyFormat format = format_of_shapes(o);
@@ -479,19 +500,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   if (const std::optional<Length>& epsilon = run.request.set.epsilon;
       format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
     reached = reached && distance <= epsilon->value;
-  log(o.common.quiet, o.output + ": " +
-                          (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
-                                   : counted(bodies.artefact().size(), "body", "bodies")) +
-                          ", no point farther from its link's shapes than " + number_up(distance) +
-                          ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
-                          check_of_shapes(run, format, reached, distance) + " decides it");
-  using Format = robot_folder::SphereFormat;
-  if (unchecked.empty() && (format.spheres == Format::Curobo || format.spheres == Format::Xrdf))
-    log(o.common.quiet,
-        o.output +
-            ": no pairs of links are stated that need no check, and neighbouring links seem "
-            "to collide then: kaboum-pairs ROBOT --srdf FILE finds them, --pairs FILE states "
-            "them");
+  say_shapes(run, format, bodies, check_of_shapes(run, format, reached, distance), distance,
+             unchecked.empty());
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
