@@ -307,7 +307,7 @@ class JudgedBatches {
               {"samples of pairs looked at", looked_},
               {"missed", missed_motions_}}}};
   }
-  /// Of what is not free: the judge sees contacts.
+  /// Whether the judge saw a contact among the drawn configurations that are not free.
   [[nodiscard]] bool has_found_contacts() const { return drawn_.other_in_contact > 0; }
   [[nodiscard]] std::size_t missed() const {
     return drawn_.missed + near_.missed + missed_motions_;

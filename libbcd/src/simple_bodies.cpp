@@ -430,7 +430,7 @@ class BodySearch {
         const auto found = capsule_round(points, cylinder, radius, spare_);
         if (!found) continue;
         auto one = capsule(found->from, found->to, radius);
-        // What is far outside meets no cap, either.
+        // A capsule far outside the body meets no cap, either.
         const Vec3 middle = 0.5 * (found->from + found->to);
         if (one && body_->signed_distance(middle).upper < epsilon_) return one;
       }
@@ -844,16 +844,15 @@ class BodySearch {
       held = held || beyond <= -spare;
       if (beyond <= reach) near.push_back(one);
     }
+    bool is_inside = inside;  // its middle
     if (!inside) {
       const ParallelBody::SignedDistance away = body_->signed_distance(cube.center);
       if (away.lower > reach) return;
       inside = away.upper < -reach;
-      if (cube.half < kVoid * finest_) {
-        if (!held && away.upper < 0) out.push_back(cube.center);
-        return;
-      }
-    } else if (cube.half < kVoid * finest_) {
-      if (!held) out.push_back(cube.center);
+      is_inside = away.upper < 0;
+    }
+    if (cube.half < kVoid * finest_) {
+      if (!held && is_inside) out.push_back(cube.center);
       return;
     }
     for (int k = 0; k < 8; ++k) {
@@ -1082,13 +1081,13 @@ class BodySearch {
   std::vector<SimpleBody> candidates_;
   std::unordered_set<std::uint64_t> failed_;      ///< what no body was found for (key_of)
   std::unordered_map<std::uint64_t, Held> held_;  ///< by bodies' digests
-  /// Of each triangle the digests of bodies that held it together.
+  /// Digests of the bodies that held each triangle together; empty: none are known.
   std::vector<std::vector<std::uint64_t>> holders_;
 };
 
 }  // namespace
 
-/// What a search refers to, and the search.
+/// The closed mesh and the options that a search refers to, and the search.
 struct SimpleBodySearch::State {
   State(geom::SolidMesh mesh, SimpleBodyOptions asked)
       : closed(std::move(mesh)), options(std::move(asked)) {}

@@ -49,7 +49,7 @@ class SimpleBodySearch {
   ///   were found that hold all
   CoverCandidate find();
 
-  /// What was found last, with bodies beside or in place of some, so that points of the solid are
+  /// The last result with bodies beside or in place of some, so that points of the solid are
   /// held, too. With `max_bodies` all are looked for anew. @throws as find
   CoverCandidate hold(std::span<const geom::Vec3> points);
 
