@@ -141,6 +141,7 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   pair.a = a.link;
   pair.b = b.link;
   pair.relation = relation_of(robot, shaped, pair.a, pair.b);
+  pair.adjacent = are_adjacent(robot, shaped, pair.a, pair.b);
   const std::string unsure = unsure_of(robot, a, b);
   if (found.search == nullptr) {
     pair.why = unsure;

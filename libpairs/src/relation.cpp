@@ -29,18 +29,6 @@ std::uint32_t joint_of(const robot::Robot& robot, const Shaped& shaped, std::uin
   return link;
 }
 
-/// Whether one joint connects both, with nothing that has shapes between them. What is fixed to the
-/// one elsewhere (a camera, a wall beside a rail) is not meant: it may well be touched.
-bool are_adjacent(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
-                  std::uint32_t b) {
-  const auto hangs_on = [&](std::uint32_t child, std::uint32_t parent) {
-    if (child > 0 && robot.joints[child - 1].parent == parent) return true;
-    const std::uint32_t joint = joint_of(robot, shaped, child);
-    return joint > 0 && carrier_of(robot, shaped, robot.joints[joint - 1].parent) == parent;
-  };
-  return hangs_on(a, b) || hangs_on(b, a);
-}
-
 }  // namespace
 
 const char* name_of(Relation relation) {
@@ -52,6 +40,18 @@ const char* name_of(Relation relation) {
     default:
       return "moving";
   }
+}
+
+// What is fixed to the one elsewhere (a camera, a wall beside a rail) is not adjacent: it may well
+// be touched.
+bool are_adjacent(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
+                  std::uint32_t b) {
+  const auto hangs_on = [&](std::uint32_t child, std::uint32_t parent) {
+    if (child > 0 && robot.joints[child - 1].parent == parent) return true;
+    const std::uint32_t joint = joint_of(robot, shaped, child);
+    return joint > 0 && carrier_of(robot, shaped, robot.joints[joint - 1].parent) == parent;
+  };
+  return hangs_on(a, b) || hangs_on(b, a);
 }
 
 Relation relation_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,

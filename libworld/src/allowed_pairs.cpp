@@ -34,10 +34,9 @@ std::vector<AllowedPair> connected(const robot::Robot& robot, const Shaped& shap
   std::vector<AllowedPair> out;
   for (std::uint32_t a = 0; a < robot.links.size(); ++a)
     for (std::uint32_t b = a + 1; b < robot.links.size(); ++b)
-      if (const pairs::Relation relation = pairs::relation_of(robot, shaped, a, b);
-          relation != pairs::Relation::Moving)
+      if (pairs::relation_of(robot, shaped, a, b) != pairs::Relation::Moving)
         out.push_back(
-            {a, b, relation == pairs::Relation::Adjacent ? Reason::Adjacent : Reason::Always});
+            {a, b, pairs::are_adjacent(robot, shaped, a, b) ? Reason::Adjacent : Reason::Always});
   return out;
 }
 
@@ -65,8 +64,7 @@ std::vector<LinkPair> examine_pairs(const RobotModel& robot, const PairOptions& 
     for (const LinkShape& b : robot.shapes) {
       if (a.link >= b.link) continue;
       LinkPair pair{a.link, b.link, std::nullopt, false};
-      if (pairs::relation_of(robot.kinematics, shaped, a.link, b.link) ==
-          pairs::Relation::Adjacent) {
+      if (pairs::are_adjacent(robot.kinematics, shaped, a.link, b.link)) {
         pair.reason = Reason::Adjacent;
       } else {
         pair = detail::examine_pair(robot, a, b, options);

@@ -2,7 +2,8 @@
 BIN=$1
 MESHES=$2
 WORK=$(mktemp -d)
-trap 'rm -rf "$WORK"' EXIT
+# A test that ends without finish() fails all the same.
+trap 'code=$?; rm -rf "$WORK"; [ "$code" != 0 ] || exit "$FAILED"' EXIT
 cd "$WORK" || exit 1
 FAILED=0
 BRACKET=$MESHES/bracket.obj

@@ -43,6 +43,20 @@ for p in json.load(open("out.txt"))["pairs"]:
 expect 1 '' "$BIN/kaboum-check" cell.json --configuration="$Q"
 grep -q 'turret' out.txt || fail "no contact of the turret: $(cat out.txt)"
 
+# One fixed joint: the two are fixed to each other, and adjacent in MoveIt's words.
+{
+  echo '<robot name="pole">'
+  box base 0 0 0 0.4 0.4 0.1
+  box pole 0 0 0.3 0.1 0.1 0.6
+  box eye 0 0 0.9 0.1 0.1 0.1
+  echo '<joint name="a" type="fixed"><parent link="base"/><child link="pole"/></joint>'
+  echo '<joint name="b" type="fixed"><parent link="pole"/><child link="eye"/></joint></robot>'
+} >pole.urdf
+expect 0 '3 pairs: ' "$P" pole.urdf --json --srdf pole.srdf
+[ "$(grep -c '"relation": "fixed"' out.txt)" = 3 ] || fail "relations: $(cat out.txt)"
+[ "$(grep -c 'reason="Adjacent"' pole.srdf)" = 2 ] || fail "pole.srdf: $(cat pole.srdf)"
+grep -q 'link1="base" link2="eye" reason="Never"' pole.srdf || fail "pole.srdf: $(cat pole.srdf)"
+
 # The same for any number of threads.
 expect 0 '' "$P" arm.urdf --json --threads 1
 mv out.txt one.txt
@@ -111,10 +125,10 @@ for name, triangles in files.items():
             out.write("f %d %d %d\n" % t)
 END
 python3 in.py || fail 'no meshes'
-carried() { # LINKS: two joints that slide carry the last link
+carried() { # LINK LINK [AXIS LOWER UPPER [OTHER AXIS]]: two joints that slide carry the last link
   echo "<robot name=\"r\" version=\"1.1\">$1<link name=\"m\"/>$2"
-  echo '<joint name="x" type="prismatic"><parent link="a"/><child link="m"/><axis xyz="0 1 0"/>
-<limit lower="-0.01" upper="0.01" effort="1" velocity="1"/></joint>'
+  echo "<joint name=\"x\" type=\"prismatic\"><parent link=\"a\"/><child link=\"m\"/><axis xyz=\"${6:-0 1 0}\"/>
+<limit lower=\"-0.01\" upper=\"0.01\" effort=\"1\" velocity=\"1\"/></joint>"
   echo "<joint name=\"y\" type=\"prismatic\"><parent link=\"m\"/><child link=\"b\"/><axis xyz=\"${3:-1 0 0}\"/>
 <limit lower=\"${4:--0.3}\" upper=\"${5:-0.3}\" effort=\"1\" velocity=\"1\"/></joint></robot>"
 }
@@ -201,7 +215,7 @@ done
 for what in '<capsule radius="1" length="1"/>' '<sphere radius="1"/>'; do
   z=0
   case $what in *capsule*) z=-0.5 ;; esac
-  carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 1.003 1.0035 >round.urdf
+  carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 1.003 1.0035 '1 0 0' >round.urdf
   expect 7 '1 open' "$P" round.urdf
   carried "$(shape a "$what" "0 0 $z")" "$(box b 0 0 0 0.0001 0.0001 0.0001)" '0 1 1.6180339887' 0.5 0.9 >round.urdf
   expect 0 '1 always do' "$P" round.urdf
@@ -217,3 +231,4 @@ END
 expect 7 '1 open' "$P" round.xml
 sed -i 's/1.003 1.0035/0.5 0.9/' round.xml
 expect 0 '1 always do' "$P" round.xml
+finish

@@ -100,10 +100,8 @@ std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& d
   for (const DecidedPair& pair : decided) {
     const bool never = pair.verdict == Verdict::Never;
     if (!never && !pairs::is_connected(pair)) continue;
-    disabled.push_back({pair.a, pair.b,
-                        pair.relation == Relation::Adjacent ? "Adjacent"
-                        : never                             ? "Never"
-                                                            : "Default"});
+    disabled.push_back(
+        {pair.a, pair.b, pair.adjacent ? "Adjacent" : (never ? "Never" : "Default")});
   }
   return pairs::srdf_text(robot, disabled);
 }

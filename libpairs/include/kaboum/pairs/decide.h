@@ -64,6 +64,7 @@ struct AwayFromJoint {
 struct DecidedPair {
   std::uint32_t a = 0, b = 0;  ///< links, a < b
   Relation relation = Relation::Moving;
+  bool adjacent = false;  ///< one joint connects them, fixed or not
   Verdict verdict = Verdict::Open;
   /// Of the smallest distance within the limits; 0 where they touch.
   Bracket nearest;

@@ -19,6 +19,10 @@ const char* name_of(Relation relation);
 /// Of each link, whether it has shapes.
 using Shaped = std::vector<char>;
 
+/// Whether one joint connects both, fixed or not, with nothing that has shapes between them.
+bool are_adjacent(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
+                  std::uint32_t b);
+
 /// Fixed, if they are; else Adjacent, if they are.
 Relation relation_of(const robot::Robot& robot, const Shaped& shaped, std::uint32_t a,
                      std::uint32_t b);
