@@ -132,15 +132,19 @@ bool redistribute(SearchState& state, Finisher& finisher, std::vector<Finished>&
 }  // namespace
 
 void remove_bodies(SearchState& state, Finisher& finisher, std::vector<Finished>& bodies,
-                   double epsilon) {
+                   double epsilon, std::size_t enough) {
   if (!are_within(bodies, epsilon)) return;
   std::sort(bodies.begin(), bodies.end(), [](const Finished& a, const Finished& b) {
     const double x = a.body.concavity.volume, y = b.body.concavity.volume;
     return x != y ? x < y : a.body.leaves < b.body.leaves;
   });
-  for (std::size_t i = 0; i < bodies.size() && bodies.size() > 2 && !state.spent(kImproving);) {
+  for (std::size_t i = 0; i < bodies.size() && bodies.size() > enough && !state.spent(kImproving);) {
     state.report("dissolving", 0.99);
-    if (!redistribute(state, finisher, bodies, i, epsilon)) ++i;
+    if (redistribute(state, finisher, bodies, i, epsilon)) {
+      state.improved();
+    } else {
+      ++i;
+    }
   }
 }
 

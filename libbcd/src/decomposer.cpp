@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "body_bound.h"
 #include "body_removal.h"
 
 namespace kaboum::bcd {
@@ -52,13 +53,24 @@ std::size_t Decomposer::hopeless() const {
   return limit > kUnlimited / kHopeless ? kUnlimited : kHopeless * limit;
 }
 
+/// No fewer bodies than this need be looked for: one has been tried, and others are proved to be
+/// too few.
+std::size_t Decomposer::fewest_possible(const std::vector<Finished>& bodies) const {
+  constexpr std::size_t kTried = 2;
+  if (bodies.size() <= kTried || bodies.size() > state_.tuning().counted) return kTried;
+  const std::size_t too_few = too_few_bodies(state_.solid().mesh(), state_.solid(),
+                                             *state_.options().epsilon, bodies.size() - 1);
+  return std::max(kTried, too_few + 1);
+}
+
 std::vector<Finished> Decomposer::within_epsilon() {
   const double epsilon = *state_.options().epsilon;
   std::vector<Finished> bodies = within_.within(epsilon, hopeless());
   if (state_.tuning().reduce) {
     state_.begin_improving();
-    if (bodies.size() <= state_.tuning().counted) within_.reduce(bodies, epsilon);
-    remove_bodies(state_, finisher_, bodies, epsilon);
+    const std::size_t enough = fewest_possible(bodies);
+    if (bodies.size() <= state_.tuning().counted) within_.reduce(bodies, epsilon, enough);
+    remove_bodies(state_, finisher_, bodies, epsilon, enough);
   }
   if (state_.options().max_total_vertices) finisher_.simplify_hulls(bodies, epsilon);
   return bodies;

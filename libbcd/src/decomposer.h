@@ -30,6 +30,7 @@ class Decomposer {
 
  private:
   [[nodiscard]] std::size_t hopeless() const;
+  [[nodiscard]] std::size_t fewest_possible(const std::vector<Finished>& bodies) const;
   std::vector<Finished> within_epsilon();
   [[nodiscard]] Stop stop_within(const std::vector<Finished>& bodies) const;
 

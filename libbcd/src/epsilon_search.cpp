@@ -104,7 +104,7 @@ std::vector<Finished> EpsilonSearch::finish_until_within(std::vector<Body> bodie
 
 void EpsilonSearch::reduce(std::vector<Finished>& bodies, double epsilon, std::size_t enough) {
   if (!are_within(bodies, epsilon)) return;
-  std::size_t low = std::max<std::size_t>(1, bodies.size() / kReduceFrom);
+  std::size_t low = std::max({std::size_t{1}, bodies.size() / kReduceFrom, enough - 1});
   while (bodies.size() > low + 1 + bodies.size() / kReduceUntil && bodies.size() > enough &&
          !state_.spent(kImproving)) {
     const std::size_t middle = (low + bodies.size()) / 2;
@@ -124,6 +124,7 @@ bool EpsilonSearch::replace(std::vector<Finished>& bodies, std::size_t target, d
   std::vector<Finished> fewer = finish_until_within(std::move(rough), epsilon, bodies.size() - 1);
   if (fewer.size() >= bodies.size() || !are_within(fewer, epsilon)) return false;
   bodies = std::move(fewer);
+  state_.improved();
   return bodies.size() <= target;
 }
 

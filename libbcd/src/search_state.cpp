@@ -30,14 +30,23 @@ SearchState::SearchState(const SearchState& same, const CoverOptions& options, d
 
 bool SearchState::spent(double share) {
   const Work& work = solid_.work();
-  const bool improved = improving_ && share <= kImproving && options_.improve_work &&
-                        static_cast<double>(work.done()) >= 1e9 * *options_.improve_work;
-  const bool out = improved || work.spent(share);
+  const bool only_improves = improving_ && share <= kImproving;
+  const auto done = static_cast<double>(work.done());
+  const bool out =
+      (only_improves && options_.improve_work && done >= 1e9 * *options_.improve_work) ||
+      work.spent(share);
   out_of_work_ = out_of_work_ || out;
-  return out;
+  return out || (only_improves && done >= patient_until_);
 }
 
-void SearchState::begin_improving() { improving_ = true; }
+void SearchState::begin_improving() {
+  improving_ = true;
+  improved();
+}
+
+void SearchState::improved() {
+  patient_until_ = (1 + tuning_.patience) * static_cast<double>(solid_.work().done());
+}
 
 void SearchState::report(const char* stage, double fraction) const {
   if (options_.progress) options_.progress({stage, fraction});

@@ -28,8 +28,11 @@ class SearchState {
 
   /// Whether this share of the work allowed has been done; out_of_work() then says that it was.
   bool spent(double share);
-  /// Epsilon is reached: from now on, what improves the result ends with improve_work, too.
+  /// Epsilon is reached: from now on, what improves the result ends with improve_work, too, and
+  /// where Tuning::patience times the work so far makes it no better.
   void begin_improving();
+  /// The result has become better.
+  void improved();
   [[nodiscard]] bool out_of_work() const { return out_of_work_; }
   /// @param fraction  estimate of the share of the work done, 0 to 1.
   void report(const char* stage, double fraction) const;
@@ -53,6 +56,7 @@ class SearchState {
   CutTree tree_;
   PairMemo memo_;
   bool begun_ = false, improving_ = false, out_of_work_ = false;
+  double patient_until_ = 0;  ///< [ns]
 };
 
 }  // namespace kaboum::bcd

@@ -31,7 +31,8 @@ SolidField::Parts::Parts(const Mesh& mesh)
     : surface(mesh),
       // No owner: both live as long as this.
       winding(mesh,
-              std::shared_ptr<const geom::Bvh>(std::shared_ptr<void>(), &surface.hierarchy())) {
+              std::shared_ptr<const geom::Bvh>(std::shared_ptr<void>(), &surface.hierarchy())),
+      wide(mesh, surface.hierarchy()) {
   for (const std::uint32_t t : surface.hierarchy().order()) {
     const Triangle& v = mesh.triangles[t];
     const Vec3& a = mesh.vertices[v[0]];
@@ -159,29 +160,16 @@ bool SolidField::triangles_near(const Box3& box, std::size_t most,
 double SolidField::rough_distance(const Vec3& p, double limit) const {
   double best = limit * limit;
   const std::vector<Parts::Corner>& corners = parts_->corners;
-  const auto nodes = parts_->surface.hierarchy().nodes();
-  const auto to_box = [&](const Box3& box) {
-    return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
-  };
-  std::array<std::pair<double, std::uint32_t>, geom::Bvh::kMaxDepth> stack;
-  int size = 0;
-  stack[size++] = {to_box(nodes[0].box), 0};
-  while (size > 0) {
-    const auto [bound, index] = stack[--size];
-    if (bound >= best) continue;
-    const geom::Bvh::Node& node = nodes[index];
-    if (node.leaf()) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        best =
-            std::min(best, geom::squared_distance(p, corners[i].a, corners[i].ab, corners[i].ac));
-      continue;
-    }
-    std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};
-    std::pair<double, std::uint32_t> far{to_box(nodes[node.first].box), node.first};
-    if (far.first < near.first) std::swap(near, far);
-    if (far.first < best) stack[size++] = far;
-    if (near.first < best) stack[size++] = near;
-  }
+  const geom::WideBvh& wide = parts_->wide;
+  float cutoff = wide.frame().cutoff(best);
+  wide.visit_near(
+      p, cutoff, [] { return false; },
+      [&](std::uint32_t i) {
+        const double d = geom::squared_distance(p, corners[i].a, corners[i].ab, corners[i].ac);
+        if (!(d < best)) return;
+        best = d;
+        cutoff = wide.frame().cutoff(d);
+      });
   return std::sqrt(best);
 }
 
@@ -239,14 +227,13 @@ double SolidField::field(const Vec3& p) const {
   const std::size_t row = static_cast<std::size_t>(size_[0]);
   const std::size_t layer = row * static_cast<std::size_t>(size_[1]);
   const std::atomic<float>* first = &parts_->value[cell[0] + row * cell[1] + layer * cell[2]];
-  std::array<float, 8> v;
-  bool known = true;
-  for (unsigned c = 0; c < 8; ++c) {
-    const unsigned i = c & 1U, j = (c >> 1U) & 1U, k = c >> 2U;
-    v[c] = first[i + j * row + k * layer].load(std::memory_order_relaxed);
-    known = known && v[c] != kUnset;
-  }
-  if (!known)
+  const std::atomic<float>* const second = first + layer;
+  const auto read = [](const std::atomic<float>& x) { return x.load(std::memory_order_relaxed); };
+  std::array<float, 8> v{read(first[0]),       read(first[1]),       read(first[row]),
+                         read(first[row + 1]), read(second[0]),      read(second[1]),
+                         read(second[row]),    read(second[row + 1])};
+  // Those that are not known are infinite.
+  if (*std::ranges::max_element(v) == kUnset)
     for (unsigned c = 0; c < 8; ++c)
       if (v[c] == kUnset)
         v[c] =

@@ -4,6 +4,7 @@
 #include <kaboum/geom/mesh.h>
 #include <kaboum/geom/region.h>
 #include <kaboum/geom/triangle_search.h>
+#include <kaboum/geom/wide_bvh.h>
 #include <kaboum/geom/winding.h>
 
 #include <atomic>
@@ -105,6 +106,7 @@ class SolidField {
       Vec3 a, ab, ac;
     };
     std::vector<Corner> corners;  // of the triangles, in the order of the hierarchy
+    geom::WideBvh wide;
     std::unique_ptr<std::atomic<float>[]> value;
     std::atomic<std::size_t> computed{0};
   };

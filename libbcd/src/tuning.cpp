@@ -23,7 +23,8 @@ Tuning tuning(Effort effort) {
               .refinements = 60,
               .rounds = 2,
               .reduce = true,
-              .counted = 24};
+              .counted = 24,
+              .patience = 5};
     case Effort::Best:
       break;
   }

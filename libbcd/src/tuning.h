@@ -155,6 +155,8 @@ struct Tuning {
   int rounds;                          ///< of refining what measuring finds
   bool reduce = false;                 ///< look for fewer bodies within epsilon
   std::size_t counted = kUnlimited;    ///< by their number, where they are no more than this
+  /// Work without a body less, as a share of all before, after which no fewer are looked for.
+  double patience = kUnbounded;
 };
 
 Tuning tuning(Effort effort);

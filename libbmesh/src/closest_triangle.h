@@ -3,18 +3,17 @@
 #include <kaboum/geom/bvh.h>
 #include <kaboum/geom/closest_point.h>
 #include <kaboum/geom/mesh.h>
+#include <kaboum/geom/wide_bvh.h>
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
-
-#include "four_triangles.h"
 
 namespace kaboum::bmesh {
 
 using geom::closest_point;
+using geom::Vec3;
 
 /// The square of its distance.
 inline double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
@@ -46,20 +45,6 @@ class ClosestTriangle {
   [[nodiscard]] const std::shared_ptr<const geom::Bvh>& hierarchy() const { return bvh_; }
 
  private:
-  /// Boxes of four nodes; those that are not there are nowhere.
-  struct Node {
-    static constexpr float kFar = std::numeric_limits<float>::infinity();
-    static constexpr Float4 kAllFar{kFar, kFar, kFar, kFar};
-    std::array<Float4, 3> low{kAllFar, kAllFar, kAllFar};
-    std::array<Float4, 3> high{-kAllFar, -kAllFar, -kAllFar};
-    std::array<std::uint32_t, 4> child{};
-  };
-  struct Leaf {
-    FourTriangles triangles;
-    std::uint32_t first;  // place
-    unsigned all;         // a bit for each triangle
-  };
-  std::uint32_t add(std::uint32_t index);
   void find_neighbours();
   /// A triangle by its place, and its squared distance from a point.
   struct Found {
@@ -75,10 +60,7 @@ class ClosestTriangle {
   std::shared_ptr<const geom::Bvh> bvh_;
   std::vector<geom::Triangle> triangles_;             // in the tree's order
   std::vector<std::array<std::uint32_t, 3>> across_;  // their edges; itself where there is none
-  Frame frame_;
-  std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;
-  std::uint32_t root_ = 0;
+  geom::WideBvh wide_;
 };
 
 }  // namespace kaboum::bmesh

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <kaboum/geom/four_triangles.h>
+
 #include <bit>
 #include <limits>
 #include <span>
@@ -7,7 +9,6 @@
 
 #include "change.h"
 #include "closest_triangle.h"
-#include "four_triangles.h"
 
 namespace kaboum::bmesh {
 
@@ -31,8 +32,8 @@ class NearestOf {
     std::size_t f = first / 4;
     for (std::size_t i = 0; i < fours_.size() && best > enough; ++i, ++f) {
       if (f == fours_.size()) f = 0;
-      const Float4 bound = fours_[f].at_least(x);
-      for (unsigned near = bits_below(bound, cutoff); near != 0; near &= near - 1) {
+      const geom::Float4 bound = fours_[f].at_least(x);
+      for (unsigned near = geom::bits_below(bound, cutoff); near != 0; near &= near - 1) {
         const std::size_t k = 4 * f + static_cast<std::size_t>(std::countr_zero(near));
         if (k >= triangles_.size()) break;
         if (!(bound[k % 4] < cutoff) || k == first) continue;
@@ -53,7 +54,7 @@ class NearestOf {
     const float cutoff = frame_.cutoff(enough);
     const Eigen::Vector3f x = frame_(p);
     for (std::size_t f = 0; f < fours_.size(); ++f) {
-      const Float4 bound = fours_[f].at_least(x);
+      const geom::Float4 bound = fours_[f].at_least(x);
       const std::size_t end = std::min(triangles_.size(), 4 * f + 4);
       for (std::size_t k = 4 * f; k < end; ++k)
         keep[k] = static_cast<char>(keep[k] & static_cast<char>(bound[k % 4] <= cutoff));
@@ -71,15 +72,15 @@ class NearestOf {
     geom::Box3 box;
     for (const NewTriangle& t : triangles_)
       for (const Vec3& p : t.corner) box.extend(p);
-    frame_ = Frame(box);
+    frame_ = geom::UnitFrame(box);
     fours_.resize((triangles_.size() + 3) / 4);
     for (std::size_t i = 0; i < triangles_.size(); ++i)
       fours_[i / 4].put(static_cast<int>(i % 4), triangles_[i].corner, frame_);
   }
 
   std::span<const NewTriangle> triangles_;
-  Frame frame_;
-  std::vector<FourTriangles> fours_;
+  geom::UnitFrame frame_;
+  std::vector<geom::FourTriangles> fours_;
 };
 
 }  // namespace kaboum::bmesh

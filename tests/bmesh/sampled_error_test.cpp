@@ -128,11 +128,11 @@ TEST(SampledError, RangesDoNotChangeTheLargestDistance) {
 }
 
 TEST(FourTriangles, BitsAreOfThoseBelow) {
-  const kaboum::bmesh::Float4 x{1, -2, 3, 2};
-  EXPECT_EQ(kaboum::bmesh::bits_below(x, 2), 0b0011U);
-  EXPECT_EQ(kaboum::bmesh::bits_below(x, 2.5), 0b1011U);
-  EXPECT_EQ(kaboum::bmesh::bits_below(x, -5), 0U);
-  EXPECT_EQ(kaboum::bmesh::bits_below(x, 5), 0b1111U);
+  const kaboum::geom::Float4 x{1, -2, 3, 2};
+  EXPECT_EQ(kaboum::geom::bits_below(x, 2), 0b0011U);
+  EXPECT_EQ(kaboum::geom::bits_below(x, 2.5), 0b1011U);
+  EXPECT_EQ(kaboum::geom::bits_below(x, -5), 0U);
+  EXPECT_EQ(kaboum::geom::bits_below(x, 5), 0b1111U);
 }
 
 }  // namespace

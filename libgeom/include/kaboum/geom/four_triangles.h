@@ -11,9 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace kaboum::bmesh {
-
-using geom::Vec3;
+namespace kaboum::geom {
 
 /// Four numbers that are computed with at once. Operations round as those of single numbers do.
 using Float4 = float __attribute__((vector_size(16)));
@@ -42,12 +40,12 @@ inline unsigned bits_below(const Float4& x, float limit) {
 
 /// Where the numbers of FourTriangles are measured from, and in what: single precision then has
 /// coordinates of about 1.
-struct Frame {
+struct UnitFrame {
   Vec3 origin = Vec3::Zero();
   double scale = 1;
 
-  Frame() = default;
-  explicit Frame(const geom::Box3& box) {
+  UnitFrame() = default;
+  explicit UnitFrame(const Box3& box) {
     if (!(box.max - box.min).allFinite()) return;
     origin = box.center();
     const double size = (box.max - box.min).maxCoeff();
@@ -75,7 +73,7 @@ constexpr double kSliver = 1e-10;
 class FourTriangles {
  public:
   /// Triangles that are not put, or have hardly any area, are at distance 0.
-  void put(int worker, const std::array<Vec3, 3>& corner, const Frame& frame) {
+  void put(int worker, const std::array<Vec3, 3>& corner, const UnitFrame& frame) {
     const Vec3 a = (corner[0] - frame.origin) * frame.scale,
                u = (corner[1] - corner[0]) * frame.scale, v = (corner[2] - corner[0]) * frame.scale;
     const Vec3 across = u.cross(v);
@@ -109,4 +107,4 @@ class FourTriangles {
   std::array<Float4, 4> x_{}, y_{}, z_{}, offset_{};
 };
 
-}  // namespace kaboum::bmesh
+}  // namespace kaboum::geom

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <kaboum/geom/bvh.h>
+#include <kaboum/geom/four_triangles.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace kaboum::geom {
+
+/// Hierarchy over triangles of which four boxes, and four triangles, are compared with a point at
+/// once, in single precision: that decides nothing but where to look. Made of a Bvh, whose order of
+/// triangles it has: a triangle's place is its index there.
+class WideBvh {
+ public:
+  WideBvh() = default;
+  WideBvh(const Mesh& mesh, const Bvh& bvh);
+
+  [[nodiscard]] const UnitFrame& frame() const { return frame_; }
+
+  /// Calls visit(place) for triangles that may be nearer to p than the length that frame().cutoff
+  /// gave `cutoff`, which visit may lower; the nearest boxes come first. Near the mesh none that
+  /// is nearer is left out; at a distance of many of its sizes, those that are by less than a
+  /// millionth. Ends where done() is true after a leaf.
+  /// @return boxes and leaves looked at
+  template <class Done, class Visit>
+  std::uint64_t visit_near(const Vec3& p, const float& cutoff, const Done& done,
+                           const Visit& visit) const {
+    if (nodes_.empty() && leaves_.empty()) return 0;
+    const Eigen::Vector3f x = frame_(p);
+    struct Entry {
+      float squared;
+      std::uint32_t node;
+    };
+    std::array<Entry, 3 * Bvh::kMaxDepth + 1> stack;
+    std::size_t size = 0;
+    stack[size++] = {0, root_};
+    std::uint64_t visited = 1;
+    while (size > 0 && !done()) {
+      const Entry entry = stack[--size];
+      if (!(entry.squared < cutoff)) continue;
+      ++visited;
+      if ((entry.node & kLeaf) != 0) {
+        const Leaf& leaf = leaves_[entry.node & ~kLeaf];
+        const Float4 bound = leaf.triangles.at_least(x);
+        for (unsigned bits = bits_below(bound, cutoff) & leaf.all; bits != 0; bits &= bits - 1) {
+          const auto i = static_cast<unsigned>(std::countr_zero(bits));
+          if (bound[i] < cutoff) visit(leaf.first + i);
+        }
+        continue;
+      }
+      const Node& node = nodes_[entry.node];
+      const auto away = [&](int k) {
+        return larger(larger(node.low[k] - x[k], x[k] - node.high[k]), Float4{});
+      };
+      const Float4 dx = away(0), dy = away(1), dz = away(2);
+      const Float4 bound = dx * dx + dy * dy + dz * dz;
+      // The nearest comes last.
+      const std::size_t first = size;
+      for (unsigned bits = bits_below(bound, cutoff); bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(bits));
+        std::size_t at = size++;
+        for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
+        stack[at] = {bound[i], node.child[i]};
+      }
+    }
+    return visited;
+  }
+
+ private:
+  static constexpr std::uint32_t kLeaf = 1U << 31;
+  /// Boxes of four nodes; those that are not there are nowhere.
+  struct Node {
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    static constexpr Float4 kAllFar{kFar, kFar, kFar, kFar};
+    std::array<Float4, 3> low{kAllFar, kAllFar, kAllFar};
+    std::array<Float4, 3> high{-kAllFar, -kAllFar, -kAllFar};
+    std::array<std::uint32_t, 4> child{};
+  };
+  struct Leaf {
+    FourTriangles triangles;
+    std::uint32_t first;  // place
+    unsigned all;         // a bit for each triangle
+  };
+  std::uint32_t add(const Mesh& mesh, const Bvh& bvh, std::uint32_t index);
+
+  UnitFrame frame_;
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+  std::uint32_t root_ = kLeaf;
+};
+
+}  // namespace kaboum::geom
