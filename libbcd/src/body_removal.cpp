@@ -138,7 +138,8 @@ void remove_bodies(SearchState& state, Finisher& finisher, std::vector<Finished>
     const double x = a.body.concavity.volume, y = b.body.concavity.volume;
     return x != y ? x < y : a.body.leaves < b.body.leaves;
   });
-  for (std::size_t i = 0; i < bodies.size() && bodies.size() > enough && !state.spent(kImproving);) {
+  for (std::size_t i = 0;
+       i < bodies.size() && bodies.size() > enough && !state.spent(kImproving);) {
     state.report("dissolving", 0.99);
     if (redistribute(state, finisher, bodies, i, epsilon)) {
       state.improved();
