@@ -1,7 +1,7 @@
 // Sets of convex bodies in files and folders, one container for each of the formats.
 #include <fcntl.h>
 #include <kaboum/base/error.h>
-#include <kaboum/base/json_damage.h>
+#include <kaboum/base/read_json.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/io/convex_folder.h>
 #include <kaboum/io/convex_io.h>
@@ -118,18 +118,8 @@ geom::ConvexSet read_directory(const fs::path& path, SetReadDetails& details) {
     const std::vector<char> bytes = read_file(path / kRecordFile);
     const std::string name = (path / kRecordFile).string();
     const Source record_source{{bytes.data(), bytes.size()}, name, {}, true};
-    if (is_nested_too_deep(record_source.bytes))
-      fail(record_source, describe_json_depth() + "; write the set again");
-    Json record;
-    try {
-      record = Json::parse(bytes.begin(), bytes.end());
-    } catch (const Json::parse_error& e) {
-      fail(record_source,
-           describe_json_damage({bytes.data(), bytes.size()}, e.byte) + "; write the set again");
-    } catch (const Json::exception&) {
-      fail(record_source, "a number in it is out of range; write the set again");
-    }
-    take_record(record, record_source, set);
+    take_record(read_json<Json>(record_source.bytes, name, "write the set again"), record_source,
+                set);
     details.has_record = true;
     details.unit = set.provenance.unit;
   }

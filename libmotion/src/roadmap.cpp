@@ -2,6 +2,7 @@
 // [kavraki1996].
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/read_json.h>
 #include <kaboum/base/sha256.h>
 #include <kaboum/motion/roadmap.h>
 #include <kaboum/robot/kinematics.h>
@@ -373,7 +374,7 @@ Roadmap Roadmap::from_json(std::string_view text, const std::string& name,
   Roadmap out;
   const robot::Robot& robot = f.checker->world().robots[f.robot].kinematics;
   out.variables_ = robot.variables.size();
-  const json read = json::parse(text, nullptr, false);
+  const json read = read_json<json>(text, name, "make the roadmap anew");
   if (!read.is_object() || !read.contains("roadmap") || read["roadmap"] != 1)
     throw fail("this is no roadmap");
   if (!read.contains("scene") || read["scene"] != f.identity())

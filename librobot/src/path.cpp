@@ -1,7 +1,7 @@
 // Paths of joint values from text, and what their columns mean.
 
 #include <kaboum/base/error.h>
-#include <kaboum/base/json_damage.h>
+#include <kaboum/base/read_json.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path.h>
@@ -427,19 +427,7 @@ class TrajectoryReader {
 }  // namespace
 
 NamedPath parse_path_json(std::string_view text, const std::string& name) {
-  // Depth is limited before anything is built.
-  constexpr int kDeepest = 12;
-  Json json;
-  try {
-    json =
-        Json::parse(text, [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; });
-  } catch (const Json::parse_error& e) {
-    fail(name, describe_json_damage(text, e.byte) + "; mend the path there");
-  } catch (const Json::exception&) {
-    fail(name, "a number in it is out of range");
-  }
-  if (json.is_discarded()) fail(name, "it is nested too deep; write a list of waypoints");
-  return TrajectoryReader(name).read(json, "");
+  return TrajectoryReader(name).read(read_json<Json>(text, name, "mend the path there"), "");
 }
 
 std::string csv_field(const std::string& joint) {

@@ -3,43 +3,14 @@
 #include "located_json.h"
 
 #include <kaboum/base/error.h>
-#include <kaboum/base/json_damage.h>
+#include <kaboum/base/read_json.h>
 
 #include <algorithm>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
 namespace kaboum::world::detail {
 namespace {
-
-/// A pointer into the text that tells the builder how far the lexer has read.
-class Counted {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  Counted(const char* at, const char** read) : at_(at), read_(read) {}
-  reference operator*() const { return *at_; }
-  Counted& operator++() {
-    *read_ = std::max(*read_, ++at_);
-    return *this;
-  }
-  Counted operator++(int) {
-    const Counted before = *this;
-    ++*this;
-    return before;
-  }
-  bool operator==(const Counted& other) const { return at_ == other.at_; }
-  bool operator!=(const Counted& other) const { return at_ != other.at_; }
-
- private:
-  const char* at_;
-  const char** read_;
-};
 
 /// Takes the lexer's events.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
@@ -67,7 +38,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool string(string_t& value) override {
     Located v;
     v.kind = Located::Kind::String;
-    v.at = start_of_string();
+    v.at = start_of_json_string(text_, read());
     v.text = value;
     return add(std::move(v));
   }
@@ -78,7 +49,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return close(); }
   bool key(string_t& value) override {
     open_.back().names.push_back(value);
-    open_.back().names_at.push_back(start_of_string());
+    open_.back().names_at.push_back(start_of_json_string(text_, read()));
     return true;
   }
   bool parse_error(std::size_t position, const std::string& /*token*/,
@@ -93,19 +64,6 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   [[nodiscard]] std::size_t last(char c) const {
     const std::size_t at = text_.substr(0, read()).rfind(c);
     return at == std::string_view::npos ? 0 : at;
-  }
-  /// Of the string that ends where the lexer is: from its last quotation mark back to the one
-  /// before that no odd number of backslashes precedes.
-  [[nodiscard]] std::size_t start_of_string() const {
-    std::size_t at = last('"');
-    while (at > 0) {
-      --at;
-      if (text_[at] != '"') continue;
-      std::size_t slashes = 0;
-      while (slashes < at && text_[at - 1 - slashes] == '\\') ++slashes;
-      if (slashes % 2 == 0) break;
-    }
-    return at;
   }
   /// Of the word or number that ends where the lexer is, or one byte before.
   [[nodiscard]] std::size_t start_of_word() const {
@@ -135,8 +93,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     v.kind = kind;
     v.at = last(bracket);
     if (open_.size() >= kDeepest)
-      throw Error(ErrorCode::InvalidInput,
-                  name_ + ": " + place_of(text_, v.at) + ": more than 64 brackets in each other");
+      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_in_text(text_, v.at) +
+                                               ": more than 64 brackets in each other");
     open_.push_back(std::move(v));
     return true;
   }
@@ -144,7 +102,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Located done = std::move(open_.back());
     open_.pop_back();
     if (const auto i = repeated_member(done))
-      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, done.names_at[*i]) +
+      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_in_text(text_, done.names_at[*i]) +
                                                ": '" + done.names[*i] + "' is used twice");
     return add(std::move(done));
   }
@@ -192,19 +150,11 @@ std::optional<std::size_t> repeated_member(const Located& object) {
   return std::nullopt;
 }
 
-std::string place_of(std::string_view text, std::size_t at) {
-  const std::string_view before = text.substr(0, at);
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-  const std::size_t start = before.rfind('\n');
-  const std::size_t column = at - (start == std::string_view::npos ? 0 : start + 1) + 1;
-  return "line " + std::to_string(line) + ", column " + std::to_string(column);
-}
-
 Located parse_located(std::string_view text, const std::string& name) {
   const char* read = text.data();
   Builder builder(text, name, &read);
-  nlohmann::json::sax_parse(Counted(text.data(), &read), Counted(text.data() + text.size(), &read),
-                            &builder);
+  nlohmann::json::sax_parse(CountedText(text.data(), &read),
+                            CountedText(text.data() + text.size(), &read), &builder);
   return builder.take();
 }
 

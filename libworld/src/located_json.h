@@ -41,7 +41,4 @@ inline bool is_yaml(std::string_view name) {
   return name.ends_with(".yaml") || name.ends_with(".yml");
 }
 
-/// "line 3, column 7".
-std::string place_of(std::string_view text, std::size_t at);
-
 }  // namespace kaboum::world::detail

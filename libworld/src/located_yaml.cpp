@@ -1,6 +1,7 @@
 // YAML by yaml-cpp's parser, with the place of every value.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 
 #include "located_json.h"
 
@@ -71,7 +72,7 @@ class YamlBuilder : public YAML::EventHandler {
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const {
     throw Error(ErrorCode::InvalidInput,
-                name_ + ": " + place_of(text_, byte_of(mark)) + ": " + what);
+                name_ + ": " + place_in_text(text_, byte_of(mark)) + ": " + what);
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
@@ -151,7 +152,7 @@ class YamlBuilder : public YAML::EventHandler {
     Located done = std::move(open_.back());
     open_.pop_back();
     if (const auto i = repeated_member(done))
-      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, done.names_at[*i]) +
+      throw Error(ErrorCode::InvalidInput, name_ + ": " + place_in_text(text_, done.names_at[*i]) +
                                                ": '" + done.names[*i] + "' is used twice");
     add(std::move(done));
   }

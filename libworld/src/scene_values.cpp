@@ -3,6 +3,7 @@
 #include "scene_values.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/json_damage.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/robot/robot.h>
 
@@ -21,7 +22,7 @@ constexpr double kFarthest = 1e9;
 }  // namespace
 
 void SceneValues::fail(const Located& at, const std::string& what) const {
-  throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, at.at) + ": " + what);
+  throw Error(ErrorCode::InvalidInput, name_ + ": " + place_in_text(text_, at.at) + ": " + what);
 }
 
 void SceneValues::known(const Located& object, const std::vector<std::string>& names) const {
@@ -30,7 +31,7 @@ void SceneValues::known(const Located& object, const std::vector<std::string>& n
   for (std::size_t i = 0; i < object.names.size(); ++i) {
     const std::string& name = object.names[i];
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw Error(ErrorCode::InvalidInput, name_ + ": " + place_of(text_, object.names_at[i]) +
+    throw Error(ErrorCode::InvalidInput, name_ + ": " + place_in_text(text_, object.names_at[i]) +
                                              ": '" + name + "' is not known here" +
                                              did_you_mean(name, names));
   }

@@ -80,6 +80,9 @@ expect 3 "bad.json: not JSON at line 3, column [0-9]*, near '.*;.*'; write the p
 expect 3 'empty.json: the JSON is cut short: it ends at line 1, column 1' "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan empty.json
 sed '3s/: *[^,]*/: 1e999/' four.json >big.json
 expect 3 'big.json: a number in it is out of range' "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan big.json
+sed '3s/^/"version": 1,/' four.json >twice.json
+expect 3 "twice.json: line [0-9]*, column [0-9]*: '[a-z]*' is given twice; write the plan again" \
+  "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan twice.json
 python3 -c 'print("{\"format\": " + "[" * 200000 + "]" * 200000 + "}")' >deep.json
 expect 3 'deep.json: more than 64 lists and objects in each other' \
   "$P" check "$DOMAINS/stacked/domain.kpl" problem.kpl --plan deep.json

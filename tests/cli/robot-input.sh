@@ -152,11 +152,15 @@ printf '{"joints": ["j"],\n "waypoints": [[0], [1' >cut.json
 expect 3 'cut.json: the JSON is cut short: it ends at line 2, column' "$S" flat.urdf --path cut.json -o x.glb --joint k=0.5
 printf '{"joints": ["j"],\n "waypoints": [[0], [1,]]}' >comma.json
 expect 3 "comma.json: not JSON at line 2, column 24, near '.*\[1,\]" "$S" flat.urdf --path comma.json -o x.glb --joint k=0.5
+printf '{"joints": ["j"],\n "waypoints": [[0]],\n "waypoints": [[0], [1]]}' >twice.json
+expect 3 "twice.json: line 3, column 2: 'waypoints' is given twice; mend the path there" "$S" flat.urdf --path twice.json -o x.glb --joint k=0.5
 "$S" flat.urdf --path plain.csv -o recorded --quiet
 printf '{\n"unit": m}' >recorded/convex-set.json
 expect 3 'recorded/convex-set.json: not JSON at line 2, column 9.*; write the set again' "$V" sweep flat.urdf plain.csv recorded
 printf '{"asset": {"version": "2.0"}\n, "meshes": [' >cut.gltf
 expect 3 'cut.gltf: the JSON is cut short: it ends at line 2, column 13; .*get or export it again' "$D" cut.gltf -o x.glb --epsilon 1%
+printf '{"unit": "mm",\n"unit": "m"}' >recorded/convex-set.json
+expect 3 "recorded/convex-set.json: line 2, column 1: 'unit' is given twice; write the set again" "$V" sweep flat.urdf plain.csv recorded
 # Names that are misspelt.
 cat >named.urdf <<END
 <robot name="r">

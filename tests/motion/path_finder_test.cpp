@@ -263,7 +263,8 @@ TEST_F(BetweenBoxes, ARoadmapOfAnotherSceneIsRefused) {
                                                         {"\"edges\":[[", "\"edges\":[[-1,0],["},
                                                         {"\"edges\":[[", "\"edges\":[[1,1],["},
                                                         {"\"edges\":[[", "\"edges\":[[1,2,3],["},
-                                                        {"\"edges\":", "\"edge\":"}}) {
+                                                        {"\"edges\":", "\"edge\":"},
+                                                        {"{", "{\"roadmap\":1,"}}) {
     std::string text = roadmap.to_json();
     text.replace(text.find(from), from.size(), to);
     EXPECT_THROW(Roadmap::from_json(text, "map", finder), Error) << to;

@@ -1,6 +1,6 @@
 // Plans as JSON, docs/planning/plans.md.
 #include <kaboum/base/error.h>
-#include <kaboum/base/json_damage.h>
+#include <kaboum/base/read_json.h>
 #include <kaboum/plan/plan.h>
 
 #include <algorithm>
@@ -26,15 +26,7 @@ class Reader {
   Reader(const Model& model, const std::string& file) : model_(model), file_(file) {}
 
   Plan read(const std::string& file_text) {
-    if (is_nested_too_deep(file_text)) fail(describe_json_depth() + "; that is no plan");
-    Json json;
-    try {
-      json = Json::parse(file_text);
-    } catch (const Json::parse_error& e) {
-      fail(describe_json_damage(file_text, e.byte) + "; write the plan again (kaboum-plan solve)");
-    } catch (const Json::exception&) {
-      fail("a number in it is out of range; write the plan again (kaboum-plan solve)");
-    }
+    const Json json = read_json<Json>(file_text, file_, "write the plan again (kaboum-plan solve)");
     if (!json.is_object() || json.value("format", Json()) != Json("kaboum-plan"))
       fail("not a kaboum-plan file");
     if (json.value("version", Json()) != Json(1)) fail("unknown version of the format");

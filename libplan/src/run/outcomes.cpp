@@ -1,6 +1,7 @@
 // Outcomes of sensing, as users state them.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/read_json.h>
 #include <kaboum/plan/outcomes.h>
 
 #include <nlohmann/json.hpp>
@@ -9,13 +10,11 @@ namespace kaboum::plan {
 
 std::map<std::string, std::string> parse_outcomes(const std::string& text,
                                                   const std::string& file) {
-  const nlohmann::json given = nlohmann::json::parse(text, nullptr, false);
-  const auto fail = [&] {
-    throw Error(ErrorCode::InvalidInput,
-                file +
-                    ": expected a JSON object of outcomes, as {\"isSpillable(o1)\": true, "
-                    "\"place(o2)\": \"shelf\"}");
-  };
+  const std::string form =
+      "expected a JSON object of outcomes, as {\"isSpillable(o1)\": true, \"place(o2)\": "
+      "\"shelf\"}";
+  const auto given = read_json<nlohmann::json>(text, file, form);
+  const auto fail = [&] { throw Error(ErrorCode::InvalidInput, file + ": " + form); };
   if (!given.is_object()) fail();
   std::map<std::string, std::string> out;
   for (const auto& [name, value] : given.items()) {

@@ -7,6 +7,15 @@
 
 namespace kaboum {
 
+/// Of a byte of a text: "line 3, column 7".
+inline std::string place_in_text(std::string_view text, std::size_t at) {
+  const std::string_view before = text.substr(0, at);
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = at - (start == std::string_view::npos ? 0 : start + 1) + 1;
+  return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column);
+}
+
 /// Description of the place where a text stops being JSON: "the JSON is cut short: it ends at line
 /// 3, column 7", or "not JSON at line 3, column 7, near '...'".
 /// @param byte  how many bytes a parser had read when it gave up.
