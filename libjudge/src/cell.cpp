@@ -163,6 +163,22 @@ std::optional<Meeting> Cell::find_meeting(const CellState& state, std::size_t ro
   });
 }
 
+double Cell::depth(const CellState& state, double step) const {
+  double out = 0;
+  const std::vector<PosedThing> all = place(state);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const PosedThing &a = all[i], &b = all[j];
+      const double reach = a.thing->radius + b.thing->radius;
+      if ((a.mover == kNone && b.mover == kNone) ||
+          (a.center - b.center).squaredNorm() > reach * reach || !is_looked_at(a, b))
+        continue;
+      if (a.thing->solid->meets(a.at, *b.thing->solid, b.at))
+        out = std::max(out, a.thing->solid->depth(a.at, *b.thing->solid, b.at, step));
+    }
+  return out;
+}
+
 std::vector<std::uint32_t> Cell::to_root(const robot::Robot& robot, std::uint32_t link) {
   std::vector<std::uint32_t> out;
   for (; link > 0; link = robot.joints[link - 1].parent) out.push_back(link);

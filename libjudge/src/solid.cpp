@@ -307,4 +307,51 @@ bool Solid::is_within(const Transform& at, const Solid& other, const Transform& 
          });
 }
 
+double Solid::square_distance(std::uint32_t node, const Vec3& p, double most) const {
+  const Node& n = nodes_[node];
+  if (n.count > 0) {
+    for (std::uint32_t t = n.first; t < n.first + n.count; ++t)
+      most = std::min(most, square_to_triangle(p, corners(t)));
+    return most;
+  }
+  const auto to_box = [&](std::uint32_t i) {
+    return ((p - nodes_[i].center).cwiseAbs() - nodes_[i].half).cwiseMax(0.0).squaredNorm();
+  };
+  std::array<std::uint32_t, 2> next{n.left, n.right};
+  if (to_box(next[1]) < to_box(next[0])) std::swap(next[0], next[1]);
+  for (const std::uint32_t i : next)
+    if (to_box(i) < most) most = square_distance(i, p, most);
+  return most;
+}
+
+double Solid::deepest_in(const Solid& other, const Eigen::Matrix3d& turn, const Vec3& shift,
+                         double step, double best) const {
+  if (!other.closed_) return best;
+  const Node& all = other.nodes_.front();
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    Corners c = corners(t);
+    for (Vec3& p : c) p = turn * p + shift;
+    const double longest =
+        std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+    const double parts = std::ceil(longest / step);
+    for (double i = 0; i <= parts; ++i)
+      for (double j = 0; i + j <= parts; ++j) {
+        const Vec3 p = c[0] + i / parts * (c[1] - c[0]) + j / parts * (c[2] - c[0]);
+        if (((p - all.center).cwiseAbs() - all.half).maxCoeff() > -best) continue;
+        const double square = other.square_distance(0, p, std::numeric_limits<double>::infinity());
+        if (square > best * best && other.holds(p)) best = std::sqrt(square);
+      }
+  }
+  return best;
+}
+
+double Solid::depth(const Transform& at, const Solid& other, const Transform& other_at,
+                    double step) const {
+  if (triangles_.empty() || other.triangles_.empty()) return 0;
+  const Eigen::Matrix3d turn = other_at.linear.transpose() * at.linear;
+  const Vec3 shift = other_at.linear.transpose() * (at.translation - other_at.translation);
+  const double best = deepest_in(other, turn, shift, step, 0);
+  return other.deepest_in(*this, turn.transpose(), -(turn.transpose() * shift), step, best);
+}
+
 }  // namespace kaboum::judge

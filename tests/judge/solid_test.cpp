@@ -7,6 +7,7 @@
 
 #include "collide/pairs.h"
 #include "support/rational_contact.h"
+#include "support/shapes.h"
 
 namespace kaboum::judge {
 namespace {
@@ -51,6 +52,32 @@ TEST(ExactJudge, InsideOfAnOpenMeshIsNothing) {
   large.triangles.pop_back();
   EXPECT_FALSE(Solid(large).closed());
   EXPECT_FALSE(Solid(large).meets({}, Solid(small), {}));
+}
+
+TEST(ExactJudge, DepthIsThatOfThePointFarthestInside) {
+  const auto box = [](const geom::Vec3& size) {
+    geom::Mesh mesh = test::box(size, 1);
+    for (geom::Vec3& v : mesh.vertices) v -= 0.5 * size;
+    return Solid(mesh);
+  };
+  const Solid large = box({1, 1, 1}), small = box({0.2, 0.2, 0.2});
+  geom::Transform at, turned;
+  turned.linear = Eigen::AngleAxisd(0.5 * M_PI, geom::Vec3::UnitZ()).toRotationMatrix();
+  turned.translation = {5, 0, 0};
+  const auto depth = [&](double y, double step) {
+    at.translation = geom::Vec3(5, y, 0);
+    const double one = small.depth(at, large, turned, step);
+    EXPECT_EQ(large.depth(turned, small, at, step), one);
+    return one;
+  };
+  EXPECT_NEAR(depth(0, 1), 0.4, 1e-12);      // its corners, 0.1 from the middle
+  EXPECT_NEAR(depth(0.55, 1), 0.05, 1e-12);  // reaches in by 0.05
+  EXPECT_NEAR(depth(0.4, 1), 0.2, 1e-12);
+  EXPECT_EQ(depth(0.7, 1), 0);
+  // A face through which the other one goes: no corner is inside of either.
+  const Solid rod = box({0.1, 0.1, 4});
+  EXPECT_EQ(rod.depth({}, large, {}, 10), 0);
+  EXPECT_NEAR(rod.depth({}, large, {}, 0.01), 0.45, 0.01);
 }
 
 TEST(ExactJudge, PlacesLinksAsKinematicsDoes) {

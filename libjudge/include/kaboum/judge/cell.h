@@ -69,6 +69,9 @@ class Cell {
   [[nodiscard]] std::optional<Meeting> find_meeting_on(const CellState& from, const CellState& to,
                                                        std::size_t robot, std::size_t samples,
                                                        std::size_t& looked) const;
+  /// How deep the pair that is deepest in each other is, as Solid::depth says it; 0 where none
+  /// meets.
+  [[nodiscard]] double depth(const CellState& state, double step) const;
   /// The first of a rest of objects with everything that does not hold it.
   [[nodiscard]] std::optional<Meeting> find_meeting_of(const CellState& state,
                                                        std::size_t object) const;

@@ -26,6 +26,14 @@ class Solid {
   [[nodiscard]] bool is_within(const geom::Transform& at, const Solid& other,
                                const geom::Transform& other_at, double reach) const;
 
+  /// How deep one of two meshes that meet is in the other: the largest distance of a point of its
+  /// triangles that is inside of the other mesh from that one's triangles; rounded. No shift by
+  /// less parts the two. The points are corners and others between, no farther than `step` apart,
+  /// so a point may be deeper by `step`; 0 where none of them is inside.
+  /// @pre step > 0
+  [[nodiscard]] double depth(const geom::Transform& at, const Solid& other,
+                             const geom::Transform& other_at, double step) const;
+
   [[nodiscard]] bool closed() const { return closed_; }
   [[nodiscard]] std::size_t triangles() const { return triangles_.size(); }
 
@@ -41,6 +49,13 @@ class Solid {
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
   [[nodiscard]] Corners corners(std::uint32_t triangle) const;
   [[nodiscard]] bool holds(const geom::Vec3& point) const;
+  /// Of the triangles below a node from a point, or `most` if that is less.
+  [[nodiscard]] double square_distance(std::uint32_t node, const geom::Vec3& point,
+                                       double most) const;
+  /// The deepest of this mesh's points in the other one, which `turn` and `shift` lead to; `best`
+  /// if it is not deeper.
+  [[nodiscard]] double deepest_in(const Solid& other, const Eigen::Matrix3d& turn,
+                                  const geom::Vec3& shift, double step, double best) const;
   /// Crossings of the segment, signed; false where one is not transversal.
   bool count_crossings(std::uint32_t node, const geom::Vec3& from, const geom::Vec3& to,
                        int& winding) const;
