@@ -12,26 +12,10 @@ With --parts only each N-th scene is taken, from the K-th on, so that several ma
 import argparse
 import json
 import pathlib
-import re
 import subprocess
 import sys
-import tarfile
 
-import yaml
-
-import batch_scenes
 import planner_peers as peers
-
-
-def scenes(resources, name):
-    """Name and objects of each scene."""
-    for scene, things in batch_scenes.scenes().items():
-        yield scene, [peers.object_of(t["name"], peers.pose_matrix(t["pose"]), t["shape"]) for t in things]
-    with tarfile.open(resources / name / "problems.tar.bz2", "r:bz2") as tar:
-        for member in tar.getmembers():
-            found = re.fullmatch(r"problems/(\w+)_%s/scene0*1\.yaml" % name, member.name)
-            if found:
-                yield found[1], peers.objects_of(yaml.load(tar.extractfile(member).read(), Loader=getattr(yaml, "CLoader", yaml.Loader)))
 
 
 def main():
@@ -50,7 +34,7 @@ def main():
     wrong = False
     for name in args.robots.split(","):
         scene, urdf = peers.robot_scene(args, name)
-        all_scenes = list(scenes(args.resources, name))
+        all_scenes = list(peers.first_scenes(args.resources, name))
         for kind, objects in all_scenes[part - 1::parts]:
             file = args.folder / name / f"{kind}.objects"
             file.write_text(json.dumps(objects) + "\n")

@@ -15,18 +15,14 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/filter/batch_checker.h>
-#include <kaboum/io/mesh_io.h>
-#include <kaboum/judge/cell.h>
 #include <kaboum/motion/roadmap.h>
-#include <kaboum/robot/mesh_files.h>
-#include <kaboum/robot/robot_file.h>
 #include <kaboum/world/motion_check.h>
 #include <kaboum/world/scene.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -35,44 +31,20 @@
 #include <random>
 #include <string>
 
+#include "judged_robot.h"
+
 namespace {
 
 using namespace kaboum;
+using namespace kaboum::benchmarks;
 using nlohmann::json;
 using Values = std::vector<double>;
 
+/// CPU time of the process: others may be at work on the machine. [s]
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::vector<json> read_lines(const char* name) {
-  std::ifstream file(name);
-  std::vector<json> out;
-  for (std::string line; std::getline(file, line);) out.push_back(json::parse(line));
-  return out;
-}
-
-geom::Transform pose_of(const json& stated) {
-  const auto p = stated["position"], q = stated["quaternion"];  // x, y, z, w
-  const Eigen::Quaterniond turn(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(),
-                                q[2].get<double>());
-  geom::Transform out;
-  out.linear = turn.normalized().toRotationMatrix();
-  out.translation = {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()};
-  return out;
-}
-
-world::World with_objects(const world::World& robot, const json& objects) {
-  world::World out = robot;
-  for (const json& stated : objects) {
-    const std::string name = stated["name"];
-    const world::Primitive shape = world::parse_primitive(stated["shape"].dump(), name);
-    world::Object object{name, pose_of(stated), outer_set(shape), inner_set(shape), {}, {}};
-    object.primitive = shape;
-    out.objects.push_back(std::move(object));
-  }
-  out.attachments.resize(out.objects.size());
-  return out;
+  timespec at{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &at);
+  return static_cast<double>(at.tv_sec) + 1e-9 * static_cast<double>(at.tv_nsec);
 }
 
 double length_of(const robot::Path& path) {
@@ -148,34 +120,6 @@ int plan(int argc, char** argv) {
   return 0;
 }
 
-geom::Mesh mesh_of_link(const robot::Link& link, robot::MeshFiles& files) {
-  geom::Mesh all;
-  for (const robot::Geometry& g : link.collision) {
-    using Shape = robot::Geometry::Shape;
-    geom::Mesh mesh;
-    geom::Vec3 scale = geom::Vec3::Ones();
-    if (g.shape == Shape::Mesh) {
-      mesh = io::read_mesh(files.first(g.mesh)).mesh;
-      scale = g.size;
-    } else {
-      world::Primitive shape;
-      shape.kind = g.shape == Shape::Box      ? world::Primitive::Kind::Box
-                   : g.shape == Shape::Sphere ? world::Primitive::Kind::Sphere
-                                              : world::Primitive::Kind::Cylinder;
-      shape.size = g.size;
-      shape.radius = g.size[0];
-      shape.length = g.size[1];
-      mesh = mesh_of(shape);
-    }
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    for (const geom::Vec3& v : mesh.vertices)
-      all.vertices.emplace_back(g.origin * v.cwiseProduct(scale));
-    for (const geom::Triangle& t : mesh.triangles)
-      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-  return all;
-}
-
 /// Samples of a path that are in contact by the exact meshes.
 struct Verdict {
   std::size_t samples = 0, contacts = 0;
@@ -202,38 +146,6 @@ Verdict judge(const judge::Cell& cell, judge::CellState& state, const robot::Pat
   }
   return out;
 }
-
-/// The exact meshes of a robot's links, and a cell of them with objects.
-class JudgedRobot {
- public:
-  JudgedRobot(const world::RobotModel& model, const char* urdf) : model_(model) {
-    const robot::RobotFile file = robot::read_robot(urdf);
-    robot::MeshFiles files(file.path, {});
-    for (const world::LinkShape& shape : model.shapes)
-      links_.emplace_back(shape.link, mesh_of_link(file.robot.links[shape.link], files));
-  }
-
-  /// @param state  gets the places of the objects, and the robot at home
-  std::unique_ptr<judge::Cell> cell(const world::World& world, judge::CellState& state) const {
-    auto out = std::make_unique<judge::Cell>();
-    out->add_robot(model_.name, model_.kinematics, model_.base);
-    for (const auto& [link, mesh] : links_) out->add_link(0, link, mesh);
-    for (const world::AllowedPair& pair : model_.allowed)
-      if (pair.reason == world::AllowedPair::Reason::Stated)
-        out->allow(model_.name + "/" + model_.kinematics.links[pair.a].name,
-                   model_.name + "/" + model_.kinematics.links[pair.b].name);
-    state = {{model_.home}, {}};
-    for (const world::Object& object : world.objects) {
-      out->add_object(object.name, mesh_of(*object.primitive));
-      state.objects.push_back({object.pose, {}, false});
-    }
-    return out;
-  }
-
- private:
-  const world::RobotModel& model_;
-  std::vector<std::pair<std::uint32_t, geom::Mesh>> links_;
-};
 
 int judge_paths(char** argv) {
   const world::SceneFile scene = world::read_scene(argv[2]);
