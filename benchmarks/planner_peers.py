@@ -153,6 +153,17 @@ def pose_matrix(pose):
     return m
 
 
+def within_limits(values, name, resources):
+    """Values of joints; those that are beyond a limit by less than 1e-5 are at it. The Fetch has ±3.14159 where problems have ±π."""
+    limits = {joint.get("name"): joint.find("limit") for joint in xml.parse(resources / name / f"{name}.urdf").getroot().iter("joint")}
+    out = []
+    for joint, value in zip(JOINTS[name], values):
+        low, high = float(limits[joint].get("lower")), float(limits[joint].get("upper"))
+        nearest = min(max(value, low), high)
+        out.append(nearest if abs(nearest - value) < 1e-5 else value)
+    return out
+
+
 def benchmark_problems(args, name):
     """The problems of MotionBenchMaker that come with VAMP, some of each kind."""
     files = {}
@@ -170,7 +181,8 @@ def benchmark_problems(args, name):
         state = request["start_state"]["joint_state"]
         stated = dict(zip(state["name"], state["position"]))
         goal = {c["joint_name"]: c["position"] for c in request["goal_constraints"][0]["joint_constraints"]}
-        out.append({"problem": kind, "index": index, "objects": objects, "start": [stated[j] for j in joints], "goal": [goal[j] for j in joints]})
+        out.append({"problem": kind, "index": index, "objects": objects, "start": within_limits([stated[j] for j in joints], name, args.resources),
+                    "goal": within_limits([goal[j] for j in joints], name, args.resources)})
     return out
 
 

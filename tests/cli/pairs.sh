@@ -142,6 +142,8 @@ for name in flipped copies; do
 done
 carried "$(shape a '<mesh filename="sheet.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
 expect 7 '1 open' "$P" in.urdf
+carried "$(shape a '<mesh filename="no_solid.obj"/>' '0 0 0')" "$(box b 3.8 0.3 0 0.2 0.2 0.2)" >in.urdf
+shows 0 '^a b: .*, at least [0-9.]* deep' "$P" in.urdf
 carried "$(shape a '<mesh filename="no_solid.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
 expect 7 "link 'a': a mesh has no solid" "$P" in.urdf --json
 python3 - <<'END' || fail "why a pair is open: $(cat out.txt)"

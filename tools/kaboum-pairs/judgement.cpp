@@ -39,12 +39,10 @@ std::string finding_of(const JudgedPair& pair) {
       if (pair.found->away)
         out += ", farther than " + short_text(pair.found->away->beyond) + " from their joint";
       else if (pair.found->depth.lower > 0)
-        out += ", " + short_text(pair.found->depth.lower) + " to " +
-               short_text(pair.found->depth.upper) + " deep";
+        out += ", " + words_of(pair.found->depth) + " deep";
       return out;
     case Judgement::Open:
-      out += ": their smallest distance is " + short_text(pair.found->nearest.lower) + " to " +
-             short_text(pair.found->nearest.upper);
+      out += ": their smallest distance is " + words_of(pair.found->nearest);
       if (!pair.why.empty()) out += "; " + pair.why;
       return out;
     case Judgement::Connected: {

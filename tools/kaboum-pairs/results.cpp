@@ -34,13 +34,12 @@ Json configuration_json(const robot::Robot& robot, const std::vector<double>& q)
   return out;
 }
 
-std::string distance_words(const pairs::Bracket& nearest) {
-  return std::isfinite(nearest.upper)
-             ? "smallest distance " + number(nearest.lower) + " to " + number(nearest.upper)
-             : "smallest distance at least " + number(nearest.lower);
-}
-
 }  // namespace
+
+std::string words_of(const pairs::Bracket& bracket) {
+  return std::isfinite(bracket.upper) ? number(bracket.lower) + " to " + number(bracket.upper)
+                                      : "at least " + number(bracket.lower);
+}
 
 Json pairs_json(const robot::Robot& robot, const std::vector<DecidedPair>& pairs) {
   Json out = Json::array();
@@ -73,10 +72,10 @@ std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
   }
   out += pairs::name_of(pair.verdict);
   if (pair.depth.lower > 0) {
-    out += ", " + number(pair.depth.lower) + " to " + number(pair.depth.upper) + " deep";
+    out += ", " + words_of(pair.depth) + " deep";
     if (!pair.q.empty()) out += " at " + pairs::text_of(pair.q);
   } else if (pair.verdict != Verdict::Always) {
-    out += ", " + distance_words(pair.nearest);
+    out += ", smallest distance " + words_of(pair.nearest);
   }
   if (pair.away) {
     out += "; farther than " + number(pair.away->beyond) + " from the joint: ";

@@ -11,8 +11,10 @@ namespace kaboum::tools {
 
 /// For reports and --json.
 Json pairs_json(const robot::Robot& robot, const std::vector<pairs::DecidedPair>& pairs);
-/// "a b: can touch, at least 0.0039 deep at 0,-1.2,0".
+/// "a b: can touch, 0.0039 to 0.02 deep at 0,-1.2,0".
 std::string line_of(const robot::Robot& robot, const pairs::DecidedPair& pair);
+/// "0.0039 to 0.02", or "at least 0.0039" where no upper bound is known.
+std::string words_of(const pairs::Bracket& bracket);
 /// "55 pairs: 32 never touch, 4 always do, …"
 std::string summary_of(const std::vector<pairs::DecidedPair>& pairs, double seconds);
 /// SRDF with <disable_collisions> of the pairs that never touch and of those that are connected.
