@@ -15,7 +15,7 @@ using nlohmann::json;
 namespace {
 
 geom::Transform pose_of(const json& stated) {
-  const auto p = stated["position"], q = stated["quaternion"];  // x, y, z, w
+  const json &p = stated["position"], &q = stated["quaternion"];  // x, y, z, w
   const Eigen::Quaterniond turn(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(),
                                 q[2].get<double>());
   geom::Transform out;
