@@ -71,8 +71,10 @@ geom::Mesh mesh_of_link(const robot::Link& link, robot::MeshFiles& files) {
     const auto first = static_cast<std::uint32_t>(all.vertices.size());
     for (const geom::Vec3& v : mesh.vertices)
       all.vertices.emplace_back(g.origin * v.cwiseProduct(scale));
+    const bool is_mirrored = scale.prod() < 0;
     for (const geom::Triangle& t : mesh.triangles)
-      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      all.triangles.push_back(
+          {first + t[0], first + t[is_mirrored ? 2 : 1], first + t[is_mirrored ? 1 : 2]});
   }
   return all;
 }
