@@ -12,6 +12,10 @@ namespace {
 using Values = std::vector<double>;
 
 constexpr double kTurnsBack = -0.99984769515639;  // cos 179°
+constexpr double kLeast = 1e-6;                   ///< share of a segment
+/// Of a longer segment a blend takes at most so many times what it takes of the shorter one: where
+/// these differ much more, the curve is bent sharply next to one end.
+constexpr double kLonger = 1.5;
 constexpr double kSame = 1e-14;  // between waypoints that are the same [rad or length]
 
 /// A velocity's limit as a unit of the parameter: limits that nothing reaches are one.
@@ -36,6 +40,11 @@ Values point_between(const Values& a, const Values& b, double share) {
   for (std::size_t j = 0; j < a.size(); ++j)
     out[j] = std::clamp(a[j] + share * (b[j] - a[j]), std::min(a[j], b[j]), std::max(a[j], b[j]));
   return out;
+}
+
+Values stretched(Values values, double factor) {
+  for (double& x : values) x *= factor;
+  return values;
 }
 
 void widen(PathPiece& piece, const Values& q) {
@@ -69,20 +78,12 @@ std::vector<Segment> segments_of(const robot::Path& path, const Values& velocity
 }  // namespace
 
 CurvePoint PathPiece::at(double s) const {
-  CurvePoint point{from, in, Values(in.size(), 0), Values(in.size(), 0)};
-  const double u = s / length;
-  const double area = u * u * u * (1 - 0.5 * u), share = u * u * (3 - 2 * u),
-               slope = 6 * u * (1 - u) / length, bend = (6 - 12 * u) / (length * length);
+  CurvePoint point{from, in, Values(in.size(), 0)};
   for (std::size_t j = 0; j < in.size(); ++j) {
-    point.q[j] += s * in[j];
-    if (is_blend) {
-      const double turn = out[j] - in[j];
-      point.q[j] += length * area * turn;
-      point.first[j] += share * turn;
-      point.second[j] = slope * turn;
-      point.third[j] = bend * turn;
-    }
+    if (is_blend) point.second[j] = (out[j] - in[j]) / length;
+    point.q[j] += s * (in[j] + 0.5 * s * point.second[j]);
     point.q[j] = std::clamp(point.q[j], low[j], high[j]);
+    point.first[j] += s * point.second[j];
   }
   return point;
 }
@@ -107,32 +108,44 @@ BlendedPath::BlendedPath(const robot::Path& path, const Values& shares, const Va
     throw Error(ErrorCode::InvalidArgument, "a blend takes a share from 0 to 1/2 of a segment");
   const std::vector<Segment> segments = segments_of(path, velocity);
   double taken = 0;  // of the segment, by the blend at its beginning
+  double scale = 1;  // length of a segment by the length of its parameter
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& here = segments[i];
     const Values &a = path[here.begin], &b = path[here.end];
-    const bool last = i + 1 == segments.size();
-    double size = 0;
-    if (!last && !turns_back(a, b, path[segments[i + 1].end], velocity))
-      size = shares[here.end] * std::min(here.length, segments[i + 1].length);
+    const bool last = i + 1 == segments.size(),
+               stops = last || shares[here.end] < kLeast ||
+                       turns_back(a, b, path[segments[i + 1].end], velocity);
+    const double next = last ? 0 : segments[i + 1].length, share = stops ? 0 : shares[here.end],
+                 size = share * std::min(here.length, kLonger * next);
     const double straight = here.length - taken - size;
-    PathPiece line{
-        here.begin,     false,          straight, point_between(a, b, taken / here.length),
-        here.direction, here.direction, a,        a};
+    const Values direction = stretched(here.direction, scale);
+    PathPiece line{here.begin,
+                   false,
+                   straight / scale,
+                   point_between(a, b, taken / here.length),
+                   direction,
+                   direction,
+                   a,
+                   a};
     widen(line, b);
     // What is shorter than roundings of its ends is none.
     if (straight > 1e-14 * here.length) pieces_.push_back(line);
-    if (size > 0) {
-      const Segment& next = segments[i + 1];
-      PathPiece blend{
-          here.end,       true,           2 * size, point_between(b, a, size / here.length),
-          here.direction, next.direction, line.low, line.high};
-      widen(blend, path[next.end]);
+    taken = 0;
+    if (share > 0) {
+      taken = share * std::min(next, kLonger * here.length);
+      const double next_scale = scale * (taken / size);
+      PathPiece blend{here.end,         true,
+                      2 * size / scale, point_between(b, a, size / here.length),
+                      direction,        stretched(segments[i + 1].direction, next_scale),
+                      line.low,         line.high};
+      widen(blend, path[segments[i + 1].end]);
       pieces_.push_back(std::move(blend));
+      scale = next_scale;
     } else {
       stops_.push_back(pieces_.size());
       at_.push_back(last ? path.size() - 1 : here.end);
+      scale = 1;
     }
-    taken = size;
   }
 }
 

@@ -107,11 +107,11 @@ class Decider {
   world::MotionOptions options_;
 };
 
-/// Smaller by a half; left out after kMostHalvings.
+/// Smaller by a quarter; left out below 1/32 of what was asked for.
 void shrink(double& blend, double asked) {
-  constexpr int kMostHalvings = 5;
-  blend /= 2;
-  if (blend < asked / (1 << kMostHalvings)) blend = 0;
+  constexpr double kSmaller = 0.75, kSmallest = 1.0 / 32;
+  blend *= kSmaller;
+  if (blend < asked * kSmallest) blend = 0;
 }
 
 /// The curve of a blend by straight lines between some of its points.
@@ -123,7 +123,7 @@ robot::Path polyline_of(const PathPiece& blend) {
 }
 
 /// Blends that are free by themselves, as far as some of their points tell: each the largest of
-/// what is asked for, a half of it, and so on. Certifies nothing: all samples are looked at after
+/// what is asked for, a quarter less, and so on. Certifies nothing: all samples are looked at after
 /// it.
 std::vector<double> likely_blends(Decider& decider, const robot::Path& path,
                                   const SpeedLimits& limits, const std::vector<double>& asked) {

@@ -3,17 +3,14 @@
 #include <kaboum/motion/blended_path.h>
 #include <kaboum/motion/trajectory.h>
 
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kaboum::motion {
 
-/// Stretch of time in which the third derivative of the path's parameter is constant.
-struct JerkPhase {
-  std::size_t piece = 0;
-  double time = 0;                                          ///< at its beginning [s]
-  double place = 0, speed = 0, acceleration = 0, jerk = 0;  ///< of the parameter, in its piece
-};
+struct SpeedProfile;
 
 /// The parameter of a piece, at an instant, and its derivatives by time.
 struct Progress {
@@ -21,24 +18,43 @@ struct Progress {
   double place = 0, speed = 0, acceleration = 0;
 };
 
-/// A path's parameter over time, from rest to rest: a double-S [biagiotti2008, 3.4] on each piece,
-/// without acceleration where pieces meet. The limits are kept by bounds of the derivatives of each
-/// piece (docs/algorithms/motion-planning.md#blended-corners).
+/// A path in time, from rest to rest: the mean over a time `span` of a motion along the path of
+/// which only velocities and accelerations are limited. So its jerks are limited as well, and where
+/// the path is straight all that time, it is on the path
+/// (docs/algorithms/motion-planning.md#blended-corners).
 class TimeLaw {
  public:
-  /// @param pieces  between two stops
+  /// @param pieces  between two stops; at least one
   TimeLaw(std::span<const PathPiece> pieces, const SpeedLimits& limits);
 
-  [[nodiscard]] double duration() const { return duration_; }  ///< [s]
-  /// @pre There is a piece; 0 ≤ time ≤ duration
-  [[nodiscard]] Progress at(double time) const;
-  /// Time at which a piece begins. [s]
-  [[nodiscard]] double begin_of(std::size_t piece) const { return begins_.at(piece); }
+  [[nodiscard]] double duration() const { return slower_ * (time_ + span_); }  ///< [s]
+  /// @pre 0 ≤ time ≤ duration
+  [[nodiscard]] Instant at(double time) const;
+  /// The parameter where it is on one straight piece.
+  [[nodiscard]] std::optional<Progress> straight_at(double time) const;
+  /// When the motion begins to depend on a piece, and when it no longer does. [s]
+  [[nodiscard]] std::pair<double, double> times_of(std::size_t piece) const;
 
  private:
-  std::vector<JerkPhase> phases_;
-  std::vector<double> begins_, lengths_;
-  double duration_ = 0;
+  /// Stretch of time in which the acceleration of the parameter is constant.
+  struct Stretch {
+    std::size_t piece = 0;
+    double begin = 0;                               ///< [s]
+    double place = 0, speed = 0, acceleration = 0;  ///< of the parameter, in its piece
+    std::vector<double> q, in, bend;  ///< point at the beginning, derivatives by the parameter
+  };
+  void set(const SpeedProfile& profile);
+  [[nodiscard]] std::size_t stretch_at(double time) const;
+  [[nodiscard]] double end_of(std::size_t stretch) const {
+    return stretch + 1 < stretches_.size() ? stretches_[stretch + 1].begin : time_;
+  }
+  [[nodiscard]] Instant moving_at(double time) const;
+
+  std::vector<PathPiece> pieces_;
+  std::vector<Stretch> stretches_;
+  double time_ = 0;    ///< that the motion takes of which this is the mean
+  double span_ = 0;    ///< of which the mean is taken
+  double slower_ = 1;  ///< at least 1: all limits are kept if it is slower by that
 };
 
 }  // namespace kaboum::motion

@@ -88,14 +88,12 @@ std::string names(const robot::Robot& robot) {
 
 }  // namespace
 
-/// The pieces of a path with blends, and the time along them from stop to stop.
+/// The time along a path with blends, from stop to stop.
 struct Trajectory::Blended {
   struct Leg {
     TimeLaw law;
-    std::size_t first = 0;  ///< piece
-    double stretch = 1;     ///< of its time, at least 1, to a whole number of samples
+    double stretch = 1;  ///< of its time, at least 1, to a whole number of samples
   };
-  std::vector<PathPiece> pieces;
   std::vector<Leg> legs;
   std::vector<std::size_t> stopping;                       ///< waypoints, one more than legs
   std::vector<double> passed;                              ///< time of each waypoint [s]
@@ -162,11 +160,11 @@ void Trajectory::add_overshoots(const TimeLaw& law, std::span<const PathPiece> p
     AlongEnd last;
     for (std::size_t k = 1; begin + k <= end; ++k) {
       const std::size_t step = from_end ? end - begin - k : k;
-      const Progress now = law.at(static_cast<double>(step) / rate_ / stretch);
-      if (now.piece != piece) break;  // in a blend, or behind it
+      const auto now = law.straight_at(static_cast<double>(step) / rate_ / stretch);
+      if (!now || now->piece != piece) break;  // at a blend, or behind it
       const double share = 1 / (stretch * rate_), sign = from_end ? -1 : 1;
-      const AlongEnd next{from_end ? pieces[piece].length - now.place : now.place,
-                          now.speed * share, sign * now.acceleration * share * share};
+      const AlongEnd next{from_end ? pieces[piece].length - now->place : now->place,
+                          now->speed * share, sign * now->acceleration * share * share};
       if (may_overshoot(last, next, pieces[piece].length))
         bends.emplace_back(from_end ? end - k : begin + k - 1, from_end ? end - k + 1 : begin + k);
       if (next.distance >= 0.1875 * most / (rate_ * rate_)) break;
@@ -182,23 +180,22 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
   require_positive(limits.jerk, path_.front().size(), "jerk");
   const BlendedPath curve(path_, shares, limits.velocity);
   auto made = std::make_shared<Blended>();
-  made->pieces = curve.pieces();
   made->stopping = curve.stopping_waypoints();
   made->passed.assign(path_.size(), -1);
   made->passed[0] = 0;
   for (std::size_t i = 0; i + 1 < curve.stops().size(); ++i) {
     const std::size_t first = curve.stops()[i], end = curve.stops()[i + 1];
-    TimeLaw law(std::span(made->pieces).subspan(first, end - first), limits);
+    const std::span<const PathPiece> pieces = std::span(curve.pieces()).subspan(first, end - first);
+    TimeLaw law(pieces, limits);
     const double begin = static_cast<double>(first_.back()) / rate_;
     append_steps(law.duration());
     const double whole = static_cast<double>(first_.back()) / rate_ - begin,
                  stretch = whole / law.duration();
     std::vector<std::pair<std::size_t, std::size_t>> bends;
-    for (std::size_t k = first; k < end; ++k) {
-      if (!made->pieces[k].is_blend) continue;
-      const double enters = law.begin_of(k - first),
-                   leaves = k + 1 < end ? law.begin_of(k + 1 - first) : law.duration();
-      made->passed[made->pieces[k].waypoint] = begin + stretch * 0.5 * (enters + leaves);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      if (!pieces[k].is_blend) continue;
+      const auto [enters, leaves] = law.times_of(k);
+      made->passed[pieces[k].waypoint] = begin + stretch * 0.5 * (enters + leaves);
       // A little more: what rounding may take from the times is far less than that of a sample.
       constexpr double kRounding = 1e-6;
       const auto step = [&](double time) { return stretch * time * rate_; };
@@ -209,8 +206,7 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
                                                          std::ceil(step(leaves) + kRounding)));
       bends.emplace_back(before, after);
     }
-    add_overshoots(law, std::span(made->pieces).subspan(first, end - first), stretch, limits,
-                   bends);
+    add_overshoots(law, pieces, stretch, limits, bends);
     std::ranges::sort(bends);
     for (const auto& bend : bends) {
       if (made->bends.empty() || made->bends.back().second < bend.first)
@@ -219,7 +215,7 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
         made->bends.back().second = std::max(made->bends.back().second, bend.second);
     }
     made->passed[made->stopping[i + 1]] = begin + whole;
-    made->legs.push_back({std::move(law), first, stretch});
+    made->legs.push_back({std::move(law), stretch});
   }
   for (std::size_t i = 1; i < path_.size(); ++i)  // those that are the same as the one before
     if (made->passed[i] < 0) made->passed[i] = made->passed[i - 1];
@@ -241,16 +237,10 @@ Instant Trajectory::blended_at(double step) const {
   const Blended& b = *blended_;
   const std::size_t i = segment_of(step);
   const Blended::Leg& leg = b.legs[i];
-  const Progress now =
+  Instant out =
       leg.law.at(std::max(0.0, step - static_cast<double>(first_[i])) / rate_ / leg.stretch);
-  const CurvePoint point = b.pieces[leg.first + now.piece].at(now.place);
-  Instant out{point.q, point.first, point.second};
-  for (std::size_t j = 0; j < out.q.size(); ++j) {
-    out.velocity[j] = point.first[j] * now.speed / leg.stretch;
-    out.acceleration[j] =
-        (point.second[j] * now.speed * now.speed + point.first[j] * now.acceleration) /
-        (leg.stretch * leg.stretch);
-  }
+  for (double& x : out.velocity) x /= leg.stretch;
+  for (double& x : out.acceleration) x /= leg.stretch * leg.stretch;
   return out;
 }
 

@@ -59,9 +59,10 @@ const std::vector<Option<TrajectoryOptions>>& trajectory_options() {
           [](auto& r) -> auto& { return r.rate; }),
       option<R>(
           {.name = "blend",
-           .text = "Goes through corners without a stop, on a curve that leaves and meets the "
-                   "segments by at most this share of the shorter one; less, or a stop, where that "
-                   "is not certified free. 0: it stops at each corner",
+           .text =
+               "Goes through corners without a stop, on a curve that takes at most this share of "
+               "each of the two segments; less, or a stop, where that is not certified free. "
+               "0: it stops at each corner",
            .values = "SHARE",
            .low = 0,
            .high = 0.5},

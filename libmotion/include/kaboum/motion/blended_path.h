@@ -9,12 +9,12 @@ namespace kaboum::motion {
 
 /// Point of a curve, and the curve's derivatives by its parameter.
 struct CurvePoint {
-  std::vector<double> q, first, second, third;
+  std::vector<double> q, first, second;
 };
 
 /// Part of a blended path: straight, or the blend of a corner.
 ///
-/// With u = s / length and W(u) = u³ − u⁴/2 its points are from + s·in + length·W(u)·(out − in).
+/// Its points are from + s·in + s²/(2·length)·(out − in): of a blend, those of a parabola.
 struct PathPiece {
   std::size_t waypoint = 0;  ///< where its segment begins, or that is its corner
   bool is_blend = false;
@@ -23,22 +23,24 @@ struct PathPiece {
   std::vector<double> in, out;    ///< derivatives at 0 and at `length`; of a straight piece alike
   std::vector<double> low, high;  ///< of the values of the waypoints that it lies between
 
-  /// @pre 0 ≤ s ≤ length. The third derivative is that of the inside of the piece.
+  /// @pre 0 ≤ s ≤ length
   [[nodiscard]] CurvePoint at(double s) const;
 };
 
-/// A polyline of which corners are replaced by polynomials of degree 4: twice continuously
-/// differentiable between its stops. Each blend is inside the triangle of its ends and the corner
+/// A polyline of which corners are replaced by parabolas: continuously differentiable between its
+/// stops. Each blend is inside the triangle of its ends and the corner
 /// (docs/algorithms/motion-planning.md#blended-corners).
 ///
-/// The parameter of a segment grows by the largest |Δqⱼ| / vⱼ of a joint: where it grows by 1 a
-/// second, the fastest joint of a segment is at its limit vⱼ. Limits above 1e9 count as that here.
+/// Behind a stop the parameter of a segment grows by the largest |Δqⱼ| / vⱼ of a joint: where it
+/// grows by 1 a second, the fastest joint of a segment is at its limit vⱼ. Limits above 1e9 count
+/// as that here. Behind a blend it is another one, so that derivatives are continuous.
 class BlendedPath {
  public:
   /// @param shares  for each waypoint, 0 to 1/2: the blend takes this share of the shorter one of
-  ///   the two segments, of both; 0: the path stops there. Those of first and last waypoint, and of
-  ///   waypoints that are the same as the one before, to 1e-14, are not looked at. Where a path
-  ///   turns back, by more than 179° in the velocities' units, it stops as well.
+  ///   the two segments, and of the longer one this share as well or, if that is less, half as
+  ///   much more than of the shorter one. Below 1e-6 the path stops there. Those of first and last
+  ///   waypoint, and of waypoints that are the same as the one before, to 1e-14, are not looked at.
+  ///   Where a path turns back, by more than 179° in the velocities' units, it stops as well.
   /// @param velocity  > 0, of each variable
   /// @throws Error{InvalidArgument} for shares that are none, or as many as there are no waypoints.
   BlendedPath(const robot::Path& path, const std::vector<double>& shares,

@@ -56,8 +56,8 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
 /// that are asked for, and such that the trajectory is free at every instant and keeps the
 /// constraints: the straight lines between its samples and, where it is bent, all within
 /// `between_samples` of them (docs/algorithms/motion-planning.md#blended-corners). A blend that is
-/// not is halved, and after five times left out; so is one, of several, that is nearest in time to
-/// where the whole is not.
+/// not is made smaller by a quarter, and below 1/32 left out; so is one, of several, that is
+/// nearest in time to where the whole is not.
 /// @param asked  0 to 1/2, of each waypoint
 /// @param resolution  as of require_free
 /// @return nullopt: without blends it is not free either, for certain
