@@ -5,7 +5,7 @@ usage: blends.py [--paths N] [MOVE-OPTION …]                     (programs on 
        blends.py --plans DIRECTORY NAME …
 
 Without --plans: paths of `kaboum-move` that have corners, between random configurations in two cells of
-examples/geometry/make-cell; beside it what any motion between these takes at least, for the joint that has farthest to go. With it: plans of scenarios, from DIRECTORY/NAME/cell.json, domain.kpl, problem.kpl and plan.json,
+examples/geometry/make-cell; beside it what any motion between these takes at least, for the joint that has farthest to go. With it: plans of scenarios, from DIRECTORY/NAME/cell.json, problem.kpl and plan.json,
 as `examples/scenarios/NAME/run --out DIRECTORY/NAME` leaves them; every branch.
 """
 import argparse
@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-MAKE_CELL = pathlib.Path(__file__).resolve().parent.parent / "examples/geometry/make-cell"
+EXAMPLES = pathlib.Path(__file__).resolve().parent.parent / "examples"
 LIMITS = [2.9, 2.2, 2.7, 3.1, 2.3, 3.1]  # of the joints of make-cell's arm [rad]
 ROWS = [("5 rad/s²", 2, 5, []), ("15 rad/s²", 2, 15, ["--max-acceleration", "15"]), ("5 rad/s², at most 1 rad/s", 1, 5, ["--max-velocity", "1"])]
 BLENDS = ["--blend", "0.5"]
@@ -54,7 +54,7 @@ def paths(count, options):
     for kind, number in (("stacked", "8"), ("remove", "16")):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            subprocess.run([sys.executable, MAKE_CELL, kind, number, folder], check=True, capture_output=True)
+            subprocess.run([sys.executable, EXAMPLES / "geometry/make-cell", kind, number, folder], check=True, capture_output=True)
             cell, chance, found = folder / "cell.json", random.Random(1), []
             while len(found) < count:
                 ends = [",".join(f"{chance.uniform(-x, x):.6f}" for x in LIMITS) for _ in range(2)]
@@ -82,9 +82,9 @@ def plans(folder, names, options):
 
         def run(*more):
             report = files / "motions.json"
-            subprocess.run(["kaboum-plan", "run", files / "domain.kpl", files / "problem.kpl", "--scene", files / "cell.json", "--plan",
+            subprocess.run(["kaboum-plan", "run", EXAMPLES / "scenarios" / name / "domain.kpl", files / "problem.kpl", "--scene", files / "cell.json", "--plan",
                             files / "plan.json", "--report", report, "--quiet", *more], capture_output=True, check=True)
-            return json.loads(report.read_text())["simulation"]["motion_s"]
+            return json.loads(report.read_text())["motion_s"]
 
         rests = run()
         kinds = [(BLENDS, "jerks of 20 times the acceleration"), ([*BLENDS, "--max-jerk", "500"], "of 100 times"), (["--time-optimal"], "trapezoids")]
