@@ -339,7 +339,12 @@ DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const
   out.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (drive) {
     drive->close();
-    drive->note_verdict();
+    try {
+      drive->note_verdict();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::OutputFailed) throw;
+      out.not_noted = error.what();
+    }
   }
   return out;
 }

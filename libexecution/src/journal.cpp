@@ -7,6 +7,8 @@
 #include <kaboum/io/mesh_io.h>
 
 #include <algorithm>
+#include <csignal>
+#include <ctime>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,31 @@ namespace kaboum::execution {
 namespace {
 
 using nlohmann::json;
+
+/// While it lives, a pipe that nobody reads any more is an error of who writes, and no signal that
+/// ends the program: the driver is to be stopped first.
+class BrokenPipeIsAnError {
+ public:
+  BrokenPipeIsAnError() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    sigset_t waiting{};
+    sigpending(&waiting);
+    was_waiting_ = sigismember(&waiting, SIGPIPE) == 1;
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~BrokenPipeIsAnError() {
+    const timespec now{};
+    if (!was_waiting_) sigtimedwait(&pipe_, nullptr, &now);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  BrokenPipeIsAnError(const BrokenPipeIsAnError&) = delete;
+  BrokenPipeIsAnError& operator=(const BrokenPipeIsAnError&) = delete;
+
+ private:
+  sigset_t pipe_{}, before_{};
+  bool was_waiting_ = false;
+};
 
 }  // namespace
 
@@ -57,8 +84,12 @@ void Journal::add(std::string entry) {
   entry.pop_back();
   entry += ",\"t\":" + dump(t) + "}";
   if (file_.is_open()) {
+    const BrokenPipeIsAnError held;
     file_ << entry << std::endl;  // NOLINT(performance-avoid-endl)
-    if (!file_) throw Error(ErrorCode::OutputFailed, name_ + ": cannot be written");
+    if (!file_) {
+      file_.close();  // what it still has would be written when it is closed later
+      throw Error(ErrorCode::OutputFailed, name_ + ": cannot be written");
+    }
   }
   if (noted_) noted_(entry);
 }

@@ -10,6 +10,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import threading
 
 import jsonschema
 import yaml
@@ -416,6 +417,25 @@ def main():
             done, _ = run(scenario, None, "--replay-journal", "damaged.jsonl")
             if done.returncode != code or "damaged.jsonl" not in done.stderr and code == 3:
                 fail(f"damaged journal: exit code {done.returncode}: {done.stderr}")
+
+        # Nobody reads the journal any more when the verdict is to be written: the driver has come to its end, and the report says so.
+        os.mkfifo(scenario / "pipe.jsonl")
+        lines = []
+
+        def read_until_finished():
+            with open(scenario / "pipe.jsonl", encoding="utf-8") as pipe:
+                for line in pipe:
+                    lines.append(json.loads(line))
+                    if "finished" in lines[-1]:
+                        return
+
+        reader = threading.Thread(target=read_until_finished, daemon=True)
+        reader.start()
+        done, report = run(scenario, DRIVER, "--journal", "pipe.jsonl")
+        if done.returncode != 4 or "pipe.jsonl: cannot be written: the journal has all of the run but its verdict" not in done.stderr:
+            fail(f"a journal that nobody reads: exit code {done.returncode}: {done.stderr}")
+        if report is None or report["driver"]["end"] != "goal" or "pipe.jsonl" not in report["driver"]["not_noted"] or not lines[-1]["finished"]:
+            fail(f"a journal that nobody reads: {report and report['driver']}")
 
         # Drivers that do not behave, one by one.
         ready = 'echo \'{"kaboum_driver": 1}\''

@@ -286,10 +286,9 @@ int run_plan(const PlanOptions& o) {
   Json report = report_json(r, summary);
   report["command"] = "run";
   report["scene"] = task.files().scene;
-  if (drives)
-    report["driver"] = driver_json(drive);
-  else
-    report["outcomes"] = o.outcomes;
+  if (drives) report["driver"] = driver_json(drive);
+  if (!drive.not_noted.empty()) report["driver"]["not_noted"] = drive.not_noted;
+  if (!drives) report["outcomes"] = o.outcomes;
   report["rate"] = o.run.simulation.motion.rate;
   report["triangles"] = done.triangles;
   report["notes"] = done.notes;
@@ -319,8 +318,12 @@ int run_plan(const PlanOptions& o) {
               << " s apart, joints are within " << e.most_strayed
               << " of the trajectories, and points within " << e.margin << '\n';
   const int missing = say_missing(replans);
+  if (!drive.not_noted.empty())
+    std::cerr << "kaboum-plan: " << drive.not_noted
+              << ": the journal has all of the run but its verdict\n";
   std::cout.flush();
   seen.end();
+  if (!drive.not_noted.empty()) return kOutputFailed;
   if (!r.good() || drive.stopped) return kNo;
   return good || missing != kDone ? missing : kNo;
 }

@@ -16,6 +16,8 @@ struct DriveReport {
   PlanRunReport run;
   std::optional<DriverStop::Kind> stopped;  ///< none: the driver has come to an end of a plan
   std::string reason;                       ///< of the stop
+  /// Why the verdict, the last line, is not in the journal; empty: it is there, or there is none.
+  std::string not_noted = {};
   std::uint64_t actions = 0;                ///< begun
   std::uint64_t messages = 0;
   double seconds = 0;        ///< from the start to the end [s]
@@ -23,7 +25,8 @@ struct DriveReport {
   double between = 0;        ///< of these, from its answers to what it was told next [s]
   double most_tracking = 0;  ///< largest deviation from the plan that it said [rad, length]
 
-  /// The goal is reached, and nothing on the way was wrong.
+  /// The goal is reached, and nothing on the way was wrong. What could not be noted of that is
+  /// looked at apart.
   [[nodiscard]] bool good() const { return !stopped && run.good(); }
 };
 
