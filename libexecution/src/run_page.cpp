@@ -20,6 +20,10 @@ using nlohmann::json;
 
 constexpr double kPictures = 1.0 / 25;  // between positions of a motion that is drawn [s]
 
+/// Nodes of a plan's graph that are drawn: more take a browser, and the thread that serves it,
+/// seconds.
+constexpr std::size_t kMostDrawn = 2000;
+
 /// A number as it is drawn: to a millionth.
 json rounded(const json& x) {
   const double value = x.get<double>();
@@ -133,11 +137,16 @@ std::string run_event(const std::string& line) {
   json event = json::parse(line, nullptr, false);
   if (!event.is_object()) return kUnread;
   event.erase("svg");
+  event.erase("undrawn");
   try {
     if (event.contains("told")) read_text(event["told"], thin_told);
     if (event.contains("heard")) read_text(event["heard"], thin_heard);
     if (event.contains("graph")) {
-      event["svg"] = drawing_of(event["graph"]);
+      const std::size_t nodes = event["graph"].at("nodes").size();
+      if (nodes > kMostDrawn)
+        event["undrawn"] = nodes;
+      else
+        event["svg"] = drawing_of(event["graph"]);
       event.erase("graph");
     }
   } catch (const json::exception&) {

@@ -53,7 +53,9 @@
       shownPlan = moment.plan;
       shownNode = -2;
       // Drawn by the program, from the plan's graph.
-      $('graph').innerHTML = run.plans[shownPlan] ? run.plans[shownPlan].svg : '';
+      const plan = run.plans[shownPlan];
+      $('graph').innerHTML = plan ? plan.svg : '';
+      if (plan && plan.undrawn) $('graph').textContent = `The plan has ${plan.undrawn} nodes: too many to be drawn. The steps are all listed.`;
     }
     if (moment.node === shownNode) return;
     shownNode = moment.node;

@@ -167,7 +167,7 @@ const KaboumRun = (() => {
         if (event.plan !== undefined && event.step === undefined) {
           plan = event.plan;
           node = -1;
-          run.plans[plan] = {svg: event.svg || '', name: event.name || ''};
+          run.plans[plan] = {svg: event.svg || '', undrawn: event.undrawn || 0, name: event.name || ''};
         }
         if (event.step !== undefined) begun(event);
         if (event.step_done !== undefined) done(event);

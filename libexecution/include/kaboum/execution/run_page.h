@@ -20,7 +20,8 @@ std::vector<std::string> journal_lines(const std::string& file);
 
 /// What a page gets of a line of a journal: the same, with what was told and heard as JSON rather
 /// than as text, trajectories and executed motions by at most 25 positions a second, and a drawing
-/// of each plan. A line that is none of a journal is given back as {"unread": true}.
+/// of each plan; of one with more than 2,000 nodes their number, "undrawn". A line that is none of
+/// a journal is given back as {"unread": true}.
 std::string run_event(const std::string& line);
 
 /// The page of a run that is over: one file.
