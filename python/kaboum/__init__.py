@@ -76,6 +76,7 @@ from ._kaboum import (
     write,
     write_heatmap,
     write_plan_page,
+    write_run_page,
     write_spheres,
 )
 
@@ -144,5 +145,6 @@ __all__ = [
     "write",
     "write_heatmap",
     "write_plan_page",
+    "write_run_page",
     "write_spheres",
 ]

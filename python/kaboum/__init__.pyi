@@ -1299,6 +1299,16 @@ def write_plan_page(
     # end of options
     progress: _Progress | None = None,
 ) -> list[str]: ...
+def write_run_page(
+    file: _Path,
+    journal: _Path,
+    *,
+    scene: _Path,
+    # options of plan_page
+    package_path: _Path | Sequence[_Path] | None = None,
+    # end of options
+    progress: _Progress | None = None,
+) -> list[str]: ...
 def convert_domain(
     domain: _Path,
     problem: _Path | None = None,

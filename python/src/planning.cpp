@@ -1,7 +1,8 @@
-// Planning: kaboum.solve, check_plan, draw_plan, write_plan_page, run_plan and convert_domain, as
-// kaboum-plan.
+// Planning: kaboum.solve, check_plan, draw_plan, write_plan_page, write_run_page, run_plan and
+// convert_domain, as kaboum-plan.
 
 #include <kaboum/execution/plan_page.h>
+#include <kaboum/execution/run_page.h>
 #include <kaboum/execution/task_options.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/plan/check.h>
@@ -302,6 +303,32 @@ std::vector<std::string> write_plan_page(const py::object& file, const py::objec
   });
 }
 
+std::vector<std::string> write_run_page(const py::object& file, const py::object& journal,
+                                        const py::object& scene, const py::kwargs& given_keywords) {
+  py::dict keywords = given_keywords;
+  const std::string path = required_path(file, "file"), lines = required_path(journal, "journal"),
+                    scene_file = required_path(scene, "scene");
+  execution::PlanPageOptions options;
+  take_options(execution::page_options(), keywords, options);
+  const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
+  require_all_taken("write_run_page", keywords, keywords_of(execution::page_options()),
+                    Runs::Alone);
+  Watch watch(running.progress);
+  return run(0, [&] {
+    watch("reading the scene");
+    const world::SceneFile read = world::read_scene(scene_file);
+    watch("reading the journal");
+    const std::vector<std::string> entries = execution::journal_lines(lines);
+    watch("drawing");
+    const execution::PlanPage page =
+        execution::run_page(read.world, scene_file, entries, options.packages);
+    io::write_file(path, page.html);
+    std::vector<std::string> notes = read.notes;
+    notes.insert(notes.end(), page.notes.begin(), page.notes.end());
+    return spelled(std::move(notes));
+  });
+}
+
 /// 'all'; a whole number: at random; or what outcomes_of takes.
 plan::RunOptions run_options(const py::object& outcomes) {
   plan::RunOptions out;
@@ -542,6 +569,29 @@ Returns
 list of str
     What a user should know of scene and page.)";
 
+constexpr const char* kRunPageDoc =
+    R"(Writes a page that shows a run by a robot, from its journal, as `kaboum-plan page`.
+
+Parameters
+----------
+file : path
+    One HTML file, which needs nothing besides itself (docs/pages.md#runs).
+journal : path
+    What `kaboum-plan run --journal` wrote.
+scene : path
+    The scene of the run.
+{keywords}
+
+Returns
+-------
+list of str
+    What a user should know of scene and page.
+
+Raises
+------
+Error
+    'invalid_input' for a file that is no journal, naming the line.)";
+
 constexpr const char* kConvertDoc =
     R"(A domain, with its problem if there is one, in another language, as `kaboum-plan convert`.
 
@@ -591,6 +641,11 @@ void bind_functions_with_options(py::module_& module) {
   module.def("write_plan_page", &write_plan_page, py::arg("file"), py::arg("domain"),
              py::arg("problem"), py::arg("plan"), py::kw_only(), py::arg("scene"),
              py::arg("tree") = false, paging.c_str());
+  const std::string run_paging =
+      document("write_run_page", "file: object, journal: object, *, scene: object",
+               keywords_of(execution::page_options()), "list[str]", kRunPageDoc, Runs::Alone);
+  module.def("write_run_page", &write_run_page, py::arg("file"), py::arg("journal"), py::kw_only(),
+             py::arg("scene"), run_paging.c_str());
   const std::string carrying = document(
       "run_plan", of_plan + "scene: object, outcomes: object = 'all', trajectories: object = None",
       run_keywords(), "kaboum.PlanRun", kRunDoc, Runs::Threads);

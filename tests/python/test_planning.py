@@ -216,6 +216,30 @@ def test_pages_are_the_programs(tmp_path):
         kaboum.write_plan_page(tmp_path / "none.html", *files, solution, scene=scene, package_pat="x")
 
 
+def test_run_pages_are_the_programs(tmp_path):
+    """write_run_page as `kaboum-plan page`; progress, and what it refuses."""
+    scene = make_cell(tmp_path / "cell")
+    files = SOURCE / "examples" / "scenarios" / "stacked" / "domain.kpl", tmp_path / "cell" / "problem.kpl"
+    kaboum.solve(*files, scene=scene, seed=3).write(tmp_path / "plan.json")
+    journal = tmp_path / "run.jsonl"
+    code, text = run("kaboum-plan", "run", *files, "--scene", scene, "--plan", tmp_path / "plan.json", "--journal", journal,
+                     "--robot", f"{sys.executable} {SOURCE / 'examples' / 'drivers' / 'driver.py'}")
+    assert code == 0, text
+    code, text = run("kaboum-plan", "page", journal, "--scene", scene, "-o", tmp_path / "theirs.html")
+    assert code == 0, text
+    stages = []
+    notes = kaboum.write_run_page(tmp_path / "ours.html", journal, scene=scene, progress=stages.append)
+    assert (tmp_path / "ours.html").read_bytes() == (tmp_path / "theirs.html").read_bytes()
+    assert stages and all(note in text for note in notes)
+    damaged = tmp_path / "damaged.jsonl"
+    damaged.write_text("{}\n")
+    with pytest.raises(kaboum.Error, match="damaged.jsonl, line 1"):
+        kaboum.write_run_page(tmp_path / "none.html", damaged, scene=scene)
+    with pytest.raises(TypeError, match="package_path"):
+        kaboum.write_run_page(tmp_path / "none.html", journal, scene=scene, package_pat="x")
+    assert not (tmp_path / "none.html").exists()
+
+
 @pytest.fixture(scope="module")
 def cell(tmp_path_factory):
     return make_cell(tmp_path_factory.mktemp("cell") / "cell")

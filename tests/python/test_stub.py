@@ -111,6 +111,7 @@ FRONT_ENDS = {
     "check_plan": (["task", "margins"], {"scene"} | RUNS, "kaboum-plan check"),
     "draw_plan": (["task"], {"scene", "format", "tree", "progress"}, "kaboum-plan show"),
     "write_plan_page": (["plan_page", "task"], {"scene", "tree", "progress"}, "kaboum-plan show"),
+    "write_run_page": (["plan_page"], {"scene", "progress"}, "kaboum-plan page"),
     "run_plan": (["run_plan", "task"], {"scene", "outcomes", "trajectories"} | RUNS, "kaboum-plan run"),
 }
 
