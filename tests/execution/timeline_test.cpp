@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/manipulation/externals.h>
 #include <kaboum/plan/load.h>
+#include <node_events.h>
 #include <timeline.h>
 
 #include <filesystem>
@@ -112,6 +113,32 @@ TEST(Timeline, WaysOfAStepDifferInWhatIsSensedOrDecides) {
     EXPECT_TRUE(way["if"].is_null());
     EXPECT_TRUE(way["next"].is_null());
   }
+}
+
+/// What the state after a node says is held is taken when its motions are over, and let go
+/// likewise.
+TEST(Timeline, WhatIsHeldAfterwardsIsTakenAtTheEnd) {
+  judge::CellState after;
+  after.objects.resize(3);
+  after.objects[0].hold = judge::Hold{1, 4, {}, {}, true};
+  after.objects[2].hold = judge::Hold{0, 2, {}, {}, true};
+  Held held{{1, {0, 2}}, {2, {1, 4}}};
+  const std::vector<NodeEvent> events = settling_events(after, held);
+  using Kind = NodeEvent::Kind;
+  const auto is = [&](std::size_t k, Kind kind, std::size_t object, const Holder& by) {
+    EXPECT_EQ(events[k].kind, kind) << k;
+    EXPECT_EQ(events[k].object, object) << k;
+    EXPECT_EQ(events[k].by, by) << k;
+    EXPECT_FALSE(events[k].moves_fingers) << k;
+  };
+  // What falls is let go first; what goes from hand to hand is taken before.
+  ASSERT_EQ(events.size(), 4U);
+  is(0, Kind::Release, 1, {0, 2});
+  is(1, Kind::Take, 0, {1, 4});
+  is(2, Kind::Take, 2, {0, 2});
+  is(3, Kind::Release, 2, {1, 4});
+  EXPECT_EQ(held, held_in(after));
+  EXPECT_TRUE(settling_events(after, held).empty());
 }
 
 TEST(Timeline, AWayWithoutABranchNamesThePlanThatIsMade) {
