@@ -18,7 +18,7 @@ struct DriveReport {
   std::string reason;                       ///< of the stop
   /// Why the verdict, the last line, is not in the journal; empty: it is there, or there is none.
   std::string not_noted = {};
-  std::uint64_t actions = 0;                ///< begun
+  std::uint64_t actions = 0;  ///< begun
   std::uint64_t messages = 0;
   double seconds = 0;        ///< from the start to the end [s]
   double waited = 0;         ///< of these, for the driver [s]
