@@ -224,8 +224,10 @@ MotionAnswer check_motions(const Checker& checker, const WorldState& state,
                            const std::vector<RobotPath>& paths, const MotionOptions& options) {
   if (paths.empty()) throw Error(ErrorCode::InvalidArgument, "a motion of no robot");
   std::vector<detail::MovingRobot> robots;
+  MotionOptions own = options;
   for (const RobotPath& p : paths) {
-    detail::require_motion(checker, state, p.robot, p.path, options);
+    own.around = p.around;
+    detail::require_motion(checker, state, p.robot, p.path, own);
     const std::string& name = checker.world().robots[p.robot].name;
     if (std::ranges::find(robots, p.robot, &detail::MovingRobot::robot) != robots.end())
       throw Error(ErrorCode::InvalidArgument, "robot '" + name + "' has two paths");
@@ -235,7 +237,7 @@ MotionAnswer check_motions(const Checker& checker, const WorldState& state,
                       std::to_string(p.path.size()) + ", '" +
                       checker.world().robots[paths.front().robot].name + "' has " +
                       std::to_string(paths.front().path.size()));
-    robots.push_back({p.robot, &p.path});
+    robots.push_back({p.robot, &p.path, &p.around});
   }
   if (Observer* observer = checker.observer())
     for (const RobotPath& p : paths) observer->asked(state, p.robot, p.path, nullptr);

@@ -165,17 +165,32 @@ void MovingPairs::prepare(std::size_t segment) {
 /// How much nearer pairs may be than on the line of a segment.
 void MovingPairs::make_room(std::size_t segment) {
   for (Pair& pair : pairs_) pair.room = pair.room_at_rest;
-  const MovingRobot& moving = robots_.front();
-  if (moving.around == nullptr || moving.around->empty()) return;
-  const robot::Path& path = *moving.path;
-  const auto [base, out] =
-      outward(path[segment], path[std::min(segment + 1, path.size() - 1)], *moving.around);
+  // Of each robot: between these its joints bound the way of what is off. Empty: nothing is.
+  std::vector<std::pair<std::vector<double>, std::vector<double>>> off;
+  for (const MovingRobot& moving : robots_) {
+    off.emplace_back();
+    if (moving.around == nullptr || moving.around->empty()) continue;
+    const robot::Path& path = *moving.path;
+    off.back() =
+        outward(path[segment], path[std::min(segment + 1, path.size() - 1)], *moving.around);
+  }
+  if (std::ranges::all_of(off, [](const auto& ends) { return ends.first.empty(); })) return;
+  const auto off_of = [&](const Mover& m) -> const auto& {
+    const auto robot = std::ranges::find(robots_, m.robot, &MovingRobot::robot);
+    return off[static_cast<std::size_t>(robot - robots_.begin())];
+  };
   std::vector<double> room;
-  for (const Mover& m : movers_) room.push_back(speed_of(m, base, out) * kUp);
+  for (const Mover& m : movers_) {
+    const auto& [base, out] = off_of(m);
+    room.push_back(base.empty() ? 0 : speed_of(m, base, out) * kUp);
+  }
   for (Pair& pair : pairs_) {
     pair.room = (room[pair.mover] + pair.room_at_rest) * kUp;
     if (!pair.other) continue;
     const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
+    pair.room = (room[pair.mover] + room[*pair.other]) * kUp;
+    const auto& [base, out] = off_of(a);
+    if (a.robot != b.robot || base.empty()) continue;
     const std::vector<double> end = held(model_of(a).kinematics, a.link, b.link, base, out);
     pair.room = (speed_of(a, base, end) + speed_of(b, base, end)) * kUp;
   }

@@ -454,7 +454,9 @@ std::vector<world::RobotPath> paths_of(const world::World& world, const py::obje
   const auto add = [&](std::size_t index, const py::object& rows, const std::string& name) {
     bool one = false;
     out.push_back(
-        {index, rows_of(rows, world.robots[index].kinematics.variables.size(), name.c_str(), one)});
+        {index,
+         rows_of(rows, world.robots[index].kinematics.variables.size(), name.c_str(), one),
+         {}});
   };
   if (!py::isinstance<py::dict>(path)) {
     add(robot_index(world, robot), path, "path");
@@ -478,7 +480,7 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
   take_options(motion::keep_options(), keywords, keep);
   const RunKeywords running = take_run_keywords(keywords, Runs::Alone);
   require_all_taken("check_motion", keywords, motion_keywords(), Runs::Alone);
-  const std::vector<world::RobotPath> paths = paths_of(in.world(), path, robot);
+  std::vector<world::RobotPath> paths = paths_of(in.world(), path, robot);
   if (paths.size() > 1 && !keep.keep.empty())
     throw Error(ErrorCode::InvalidArgument, "keep is for one robot that moves, not for several");
   Watch watch(running.progress);
@@ -487,21 +489,19 @@ MotionValue check_motion(const WorldValue& in, const py::object& path,
     MotionValue out{in, {}, {}, {}};
     const world::WorldState state = initial_state(in.world());
     std::vector<std::vector<motion::PathConstraint>> constraints;  // errors come first
-    for (const auto& [index, rows] : paths) {
+    for (const auto& [index, rows, around] : paths) {
       if (rows.empty()) throw Error(ErrorCode::InvalidArgument, "a path without waypoints");
       constraints.push_back(
           constraints_of(in.world(), state, index, rows.front(), {&rows.back(), 1}, keep));
     }
-    for (const auto& [index, rows] : paths) {
-      std::vector<double> around =
-          finger_room_along(in.world(), index, state.attachments, rows, "waypoint");
-      if (paths.size() == 1) options.around = std::move(around);
-    }
+    for (auto& [index, rows, around] : paths)
+      around = finger_room_along(in.world(), index, state.attachments, rows, "waypoint");
+    if (paths.size() == 1) options.around = paths[0].around;
     out.answer = paths.size() == 1 ? world::check_motion(*in.checker, state, paths[0].robot,
                                                          paths[0].path, options)
                                    : world::check_motions(*in.checker, state, paths, options);
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      const auto& [index, rows] = paths[i];
+      const auto& [index, rows, around] = paths[i];
       if (constraints[i].empty()) continue;
       out.constraints = constraints[i];
       out.kept = check_constraints(in.world().robots[index], rows, out.constraints, options);

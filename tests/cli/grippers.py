@@ -171,6 +171,37 @@ def paths_keep_fingers_where_they_hold(folder):
         fail(f"roadmap: {done.returncode} {done.stderr}")
 
 
+def configurations_are_free_wherever_fingers_stop(folder):
+    """One, those of a file, those of a batch, and motions of several robots, as paths are."""
+    home = [0, -0.5, 1.7, 0, 1.9415926535897932, 0, 0.0115]
+    one, off = ",".join(map(str, home)), ",".join(map(str, [*home[:-1], 0.018]))
+    (folder / "few.csv").write_text(f"{one}\n{one}\n")
+    (folder / "off.csv").write_text(f"{one}\n{off}\n")
+    ways = (["--configuration", one], ["--configurations", "few.csv"], ["--batch", "few.csv"], ["--batch", "few.csv", "--motions", "pairs"])
+    held = json.loads((folder / "held.json").read_text())
+    loose = json.loads(json.dumps(held))
+    for g in [g for o in loose["objects"] for g in o["grasps"]]:  # wherever they stop: in the neck as well
+        g["within"] = 0.008
+    other = dict(json.loads(json.dumps(held["robots"][0])), name="other", base={"position": [5, 0, 0]})
+    for name, scene, code in (("held", held, 0), ("loose-held", loose, 1)):
+        (folder / f"{name}.json").write_text(json.dumps(scene))
+        (folder / f"{name}-two.json").write_text(json.dumps({**scene, "robots": [*scene["robots"], other]}))
+        for way in ([], *ways):
+            done = tool(folder, "kaboum-check", f"{name}.json", *way, "--report", "checked.json")
+            report = json.loads((folder / "checked.json").read_text())
+            if done.returncode != code or (report["answer"] == "free") != (code == 0):
+                fail(f"{name} {way}: {done.returncode} {done.stdout} {done.stderr}")
+            if code and way[:1] != ["--batch"] and "not free for certain wherever fingers stop" not in done.stdout:
+                fail(f"{name} {way}: {done.stdout}")
+        done = tool(folder, "kaboum-check", f"{name}-two.json", "--path", "arm=few.csv", "--path", "other=few.csv")
+        if done.returncode != code:
+            fail(f"{name}, two robots: {done.returncode} {done.stdout} {done.stderr}")
+    for way in (["--configuration", off], ["--configurations", "off.csv"], ["--batch", "off.csv"], ["--batch", "off.csv", "--motions", "pairs"]):
+        done = tool(folder, "kaboum-check", "held.json", *way)
+        if done.returncode != 3 or any(word not in done.stderr for word in (way[1] if "off" in way[1] else way[0], "'finger'", "0.018", "state 0.0115")):
+            fail(f"off {way}: {done.returncode} {done.stdout} {done.stderr}")
+
+
 def fingers_that_are_there_already_close(folder):
     """Where the opening is that of home: told, and held to, as any other."""
     def as_home(scene):
@@ -280,6 +311,7 @@ def main():
         what_must_not_touch_is_refused(folder)
         what_is_held_at_first_is_held_so(folder)
         paths_keep_fingers_where_they_hold(folder)
+        configurations_are_free_wherever_fingers_stop(folder)
         fingers_that_are_there_already_close(folder)
         motions_of_fingers_are_such(folder)
         engines_claim_nothing(folder)

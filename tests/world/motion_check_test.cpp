@@ -371,6 +371,52 @@ TEST(CheckMotions, WhatOneCarriesMeetsTheOther) {
   ASSERT_EQ(answer.outcome, Outcome::Contact);
 }
 
+// Wherever the joints of both are within `around` of paths that are free with it, nothing meets.
+TEST(CheckMotions, WithRoomBothAreFreeAllAround) {
+  const SceneFiles files;
+  const World world = two_arms(files);
+  const Checker checker(world);
+  Scratch scratch;
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> turn(-3, 3), step(-0.6, 0.6), side(-1, 1), wide(0, 0.1);
+  int free = 0, lost = 0, lost_by_the_second = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::vector<RobotPath> paths(2);
+    for (std::size_t r = 0; r < 2; ++r) {
+      paths[r].robot = r;
+      paths[r].path.assign(2, std::vector<double>(3));
+      for (std::size_t j = 0; j < 3; ++j) {
+        paths[r].path[0][j] = turn(random);
+        paths[r].path[1][j] = paths[r].path[0][j] + step(random);
+        if (i % 3 != 2 || r == 1) paths[r].around.push_back(wide(random));
+      }
+    }
+    std::vector<RobotPath> lines = paths;
+    for (RobotPath& p : lines) p.around.clear();
+    const WorldState state = initial_state(world);
+    const bool on_lines = check_motions(checker, state, lines, {}).outcome == Outcome::Free;
+    if (check_motions(checker, state, paths, {}).outcome != Outcome::Free) {
+      lost += on_lines ? 1 : 0;
+      lost_by_the_second += on_lines && paths[0].around.empty() ? 1 : 0;
+      continue;
+    }
+    ++free;
+    ASSERT_TRUE(on_lines) << i;
+    for (int k = 0; k <= 100; ++k) {
+      WorldState near = state;
+      for (const RobotPath& p : paths) {
+        std::vector<double>& q = near.q[p.robot] = at(p.path, 0, k / 100.0);
+        for (std::size_t j = 0; j < p.around.size(); ++j)
+          q[j] += p.around[j] * (k % 2 == 0 ? side(random) : side(random) < 0 ? -1 : 1);
+      }
+      ASSERT_TRUE(checker.is_free(near, scratch)) << i;
+    }
+  }
+  EXPECT_GT(free, 40);
+  EXPECT_GT(lost, 5);
+  EXPECT_GT(lost_by_the_second, 0);
+}
+
 TEST(CheckMotions, WhatDoesNotFitIsRefused) {
   const SceneFiles files;
   const World world = two_arms(files);
@@ -391,6 +437,8 @@ TEST(CheckMotions, WhatDoesNotFitIsRefused) {
   refused({{0, two}, {0, two}}, "'arm' has two paths");
   refused({{2, two}}, "no such robot");
   refused({{0, {{0, 0}}}}, "another robot");
+  refused({{0, two, {0, 0, 0}}, {1, two, {0, 0}}}, "from 0 to 1e9");
+  refused({{0, two}, {1, two, {0, -1, 0}}}, "from 0 to 1e9");
 }
 
 }  // namespace

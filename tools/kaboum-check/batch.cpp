@@ -5,6 +5,8 @@
 #include <kaboum/base/error.h>
 #include <kaboum/filter/batch_checker.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/world/gripper.h>
+#include <kaboum/world/motion_check.h>
 
 #include <cstdint>
 
@@ -71,11 +73,42 @@ struct Verdicts {
   filter::BatchCounts counts;
 };
 
-Verdicts decide(const CheckOptions& o, const filter::BatchChecker& batch, const robot::Path& rows) {
+/// What is free where fingers are as the rows have them is so wherever they stop within what the
+/// grasps of what is held allow, or counts as contact.
+void look_at_fingers(const CheckOptions& o, const world::Checker& checker, std::size_t robot,
+                     const std::function<robot::Path(std::size_t)>& path_of, Verdicts& out) {
+  const world::WorldState state = initial_state(checker.world());
+  for (std::size_t i = 0; i < out.free.size(); ++i) {
+    const robot::Path path = path_of(i);
+    world::MotionOptions options = o.motion;
+    try {
+      options.around = world::finger_room_along(
+          checker.world(), robot, state.attachments, path,
+          (o.motions.empty() ? "row " + std::to_string(i + 1)
+                             : "motion " + std::to_string(i + 1) + ", row"));
+    } catch (const Error& error) {
+      throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
+    }
+    if (options.around.empty()) return;
+    options.where = false;
+    if (out.free[i] == 0 || check_motion(checker, state, robot, path, options).outcome ==
+                                world::MotionAnswer::Outcome::Free)
+      continue;
+    out.free[i] = 0;
+    --out.counts.free;
+    ++out.counts.contact;
+  }
+}
+
+Verdicts decide(const CheckOptions& o, const world::Checker& checker, std::size_t robot,
+                const robot::Path& rows) {
+  const filter::BatchChecker batch(checker, initial_state(checker.world()), robot, {});
   Verdicts out;
   if (o.motions.empty()) {
     out.free.resize(rows.size());
     out.counts = batch.decide(joined(rows, 0, 1, rows.size()), out.free);
+    look_at_fingers(
+        o, checker, robot, [&](std::size_t i) { return robot::Path{rows[i]}; }, out);
     return out;
   }
   const bool pairs = o.motions == kPairs;
@@ -89,6 +122,12 @@ Verdicts decide(const CheckOptions& o, const filter::BatchChecker& batch, const 
   out.free.resize(count);
   out.counts = batch.decide_motions(joined(rows, 0, step, count), joined(rows, 1, step, count),
                                     out.free, o.motion);
+  look_at_fingers(
+      o, checker, robot,
+      [&](std::size_t i) {
+        return robot::Path{rows[i * step], rows[i * step + 1]};
+      },
+      out);
   return out;
 }
 
@@ -98,8 +137,7 @@ int check_batch(const CheckOptions& o, const world::SceneFile& scene, std::size_
                 const robot::Path& rows, const std::string& kept,
                 const std::function<void(const std::string&)>& say, Json& report) {
   const world::Checker checker(scene.world);
-  const filter::BatchChecker batch(checker, initial_state(scene.world), robot, {});
-  const auto [free, counts] = decide(o, batch, rows);
+  const auto [free, counts] = decide(o, checker, robot, rows);
   if (!o.verdicts.empty()) {
     const std::string text = text_of(free, is_npy(o.verdicts));
     io::write_file(o.verdicts, std::vector<char>(text.begin(), text.end()));

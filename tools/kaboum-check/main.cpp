@@ -172,28 +172,26 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
   static_cast<void>(tools::parse_inside(scene.world, o.inside));
   std::vector<Constraints> constraints;
   constraints.reserve(paths.size());
-  for (const auto& [robot, path] : paths)
-    constraints.push_back(constraints_of(scene.world, initial_state(scene.world), robot,
-                                         path.front(), {&path.back(), 1}, o.keep));
+  for (const world::RobotPath& p : paths)
+    constraints.push_back(constraints_of(scene.world, initial_state(scene.world), p.robot,
+                                         p.path.front(), {&p.path.back(), 1}, o.keep));
   world::MotionAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
     const world::WorldState state = initial_state(scene.world);
     if (paths.size() > 1) return check_motions(checker, state, paths, told);
-    // Fingers that hold something stop where they touch.
-    told.around = world::finger_room_along(scene.world, paths[0].robot, state.attachments,
-                                           paths[0].path, "waypoint");
+    told.around = paths[0].around;
     return check_motion(checker, state, paths[0].robot, paths[0].path, told);
   }();
   report["waypoints"] = paths.front().path.size();
   report["resolution"] = o.motion.resolution;
   world::WorldState at = initial_state(scene.world);
-  for (const auto& [robot, path] : paths) at.q[robot] = path.back();
+  for (const world::RobotPath& p : paths) at.q[p.robot] = p.path.back();
   std::vector<world::Contact> contacts;
   if (answer.contact) {
-    for (const auto& [robot, path] : paths)
-      at.q[robot] = configuration_at(path, answer.contact_segment, answer.contact_share);
+    for (const world::RobotPath& p : paths)
+      at.q[p.robot] = configuration_at(p.path, answer.contact_segment, answer.contact_share);
     if (answer.meets) {
       world::Scratch scratch;
       checker.measure_depth(*answer.contact, at, scratch);
@@ -250,6 +248,28 @@ std::vector<StatedPath> stated_paths(const tools::CheckOptions& o, const world::
   return out;
 }
 
+/// Whether robots that hold something are free wherever their fingers stop within what the grasps
+/// allow; nullopt: no finger may be elsewhere than it is.
+/// @param what  of the state, in messages
+std::optional<world::MotionAnswer> check_fingers(const tools::CheckOptions& o,
+                                                 const world::Checker& checker,
+                                                 const world::WorldState& state,
+                                                 const std::string& what) {
+  std::vector<world::RobotPath> at;
+  for (std::size_t robot = 0; robot < state.q.size(); ++robot) {
+    const robot::Path here{state.q[robot]};
+    try {
+      std::vector<double> around =
+          world::finger_room_along(checker.world(), robot, state.attachments, here, what);
+      if (!around.empty()) at.push_back({robot, here, std::move(around)});
+    } catch (const Error& error) {
+      throw Error(ErrorCode::InvalidInput, error.what());
+    }
+  }
+  if (at.empty()) return std::nullopt;
+  return check_motions(checker, state, at, o.motion);
+}
+
 int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
                  std::optional<std::size_t> robot, const robot::Path& values, tools::Json& report) {
   const world::Checker checker(scene.world);
@@ -267,7 +287,18 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
     tools::Json one = {{"free", contacts.empty()}, {"contacts", tools::Json::array()}};
     const std::string before =
         values.size() > 1 ? "configuration " + std::to_string(i + 1) + ": " : "";
-    if (contacts.empty()) say(o, before + "free" + kept_apart(o) + not_looked_at(o, scene.world));
+    const auto fingers = check_fingers(
+        o, checker, state,
+        o.configurations.empty() ? "--configuration"
+                                 : o.configurations + ": configuration " + std::to_string(i + 1));
+    if (fingers && fingers->outcome != world::MotionAnswer::Outcome::Free && contacts.empty()) {
+      free = one["free"] = false;
+      one["fingers"] = tools::to_json(scene.world, *fingers);
+      say(o, before + "not free for certain wherever fingers stop: " +
+                 tools::describe(scene.world, *fingers));
+    } else if (contacts.empty()) {
+      say(o, before + "free" + kept_apart(o) + not_looked_at(o, scene.world));
+    }
     for (const world::Contact& contact : contacts) {
       free = false;
       certain = certain || contact.certain;
@@ -360,13 +391,14 @@ int check(const tools::CheckOptions& o) {
         robot::read_timed_path(path.file, scene.world.robots[index].kinematics, o.reading, notes);
     require_same_times(times, read.times, stated.front().file, path.file);
     if (!read.times.empty()) times = std::move(read.times);
-    try {  // what is held decides where fingers are
-      static_cast<void>(world::finger_room_along(scene.world, index, scene.world.attachments,
-                                                 read.waypoints, "waypoint"));
+    std::vector<double> around;  // fingers that hold something stop where they touch
+    try {
+      around = world::finger_room_along(scene.world, index, scene.world.attachments, read.waypoints,
+                                        "waypoint");
     } catch (const Error& error) {
       throw Error(ErrorCode::InvalidInput, path.file + ": " + error.what());
     }
-    paths.push_back({index, std::move(read.waypoints)});
+    paths.push_back({index, std::move(read.waypoints), std::move(around)});
   }
   robot::Path values{{}};
   if (robot && paths.empty()) {

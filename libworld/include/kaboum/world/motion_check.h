@@ -22,7 +22,8 @@ struct MotionOptions {
   Scratch* scratch = nullptr;  ///< that is used; null: one of its own
   /// How far each variable of the robot may be from the straight line of a segment, at any instant:
   /// what is free is free wherever it is within that, at every combination of the variables. Empty:
-  /// it is on the line. Each ≥ 0; of check_motion and find_obstacles only, and not of substitutes.
+  /// it is on the line. Each ≥ 0; of check_motion and find_obstacles only (RobotPath has that of
+  /// robots that move at once), and not of substitutes.
   /// [rad or length]
   std::vector<double> around = {};
   /// Is told now and then what is done; what it throws ends the work.
@@ -63,6 +64,8 @@ struct MotionAnswer {
 struct RobotPath {
   std::size_t robot = 0;
   robot::Path path;
+  /// As MotionOptions::around, of this robot's variables.
+  std::vector<double> around = {};
 };
 
 /// Decides whether a robot may move along a path of straight segments of joint values while all
