@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -243,11 +244,10 @@ TEST(BlendedTrajectory, StopsWhereItHasToAndOnlyThere) {
   EXPECT_EQ(back.at(back.time_at(1)).q, (Values{1, 0.5}));
   EXPECT_TRUE(turns_back({0, 0}, {1, 0}, {0, 0.001}, {1, 1}));
   EXPECT_FALSE(turns_back({0, 0}, {1, 0}, {0, 0.03}, {1, 1}));
-  // Straight on, there is no corner: as fast as without the waypoint, but for what is lost where
-  // its acceleration is 0.
+  // Straight on, there is no corner: as fast as without the waypoint, but for what cells lose.
   const Trajectory on({{0, 0}, {0.5, 0}, {2, 0}}, {0, 0.5, 0}, two, 1000),
       whole({{0, 0}, {2, 0}}, {0, 0}, two, 1000);
-  EXPECT_LE(on.duration(), 1.1 * whole.duration());
+  EXPECT_LE(on.duration(), 1.02 * whole.duration());
   EXPECT_GT(speed_at(on, 1), 0.9);
   // One joint, there and back.
   const SpeedLimits one{{1}, {5}, {100}};
@@ -303,6 +303,8 @@ TEST(BlendedTrajectory, TakesThreeFifthsOfRestToRest) {
   std::ranges::sort(shares);
   EXPECT_LE(shares[20], 0.6);
   EXPECT_LE(shares.back(), 0.7);
+  // 0.5989 if speeds were not evened out where accelerations change too much.
+  EXPECT_LE(std::accumulate(shares.begin(), shares.end(), 0.0) / 40, 0.5987);
 }
 
 /// Of one segment the fastest motion is known: a double-S.
