@@ -182,6 +182,15 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
   return out;
 }
 
+void require_own(const Matrix& matrix, const std::string& name, const robot::Robot& robot) {
+  if (!matrix.pairs.empty() || matrix.faults.empty()) return;
+  const MatrixFault& first = matrix.faults.front();
+  throw Error(ErrorCode::InvalidInput, name + ":" + std::to_string(first.line) +
+                                           ": none of its pairs is one of links of robot '" +
+                                           robot.name + "': are they another robot's? (" +
+                                           first.text + ")");
+}
+
 std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
                               const std::vector<DecidedPair>& decided) {
   std::map<Pair, const DecidedPair*> found;

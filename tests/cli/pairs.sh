@@ -94,6 +94,22 @@ found = [(r["ruleId"], r["locations"][0]["physicalLocation"]["region"]["startLin
 assert found == [("refuted", 4), ("doubled", 5), ("unknown-link", 6)] and {r for r, _ in found} <= rules
 END
 
+# Faults of the file are named, and fail where they are asked for.
+grep -v 'fore' stated.srdf >faulty.srdf
+expect 0 '0 refuted, 0 open; 2 faults' "$P" arm.urdf --judge faulty.srdf --fail-on open
+expect 0 '' "$P" arm.urdf --judge faulty.srdf --fail-on refuted --junit pairs.xml --sarif pairs.sarif
+grep -q 'tests="2" failures="0"' pairs.xml || fail "$(cat pairs.xml)"
+grep -q '"level": "error"' pairs.sarif && fail 'a fault that is no error'
+for on in faults open,faults; do
+  expect 1 '2 faults' "$P" arm.urdf --judge faulty.srdf --fail-on $on --junit pairs.xml --sarif pairs.sarif
+  grep -q 'tests="4" failures="2"' pairs.xml || fail "$(cat pairs.xml)"
+  grep -q 'name="unknown-link in line 5".*line="5"' pairs.xml || fail "$(cat pairs.xml)"
+  [ "$(grep -c '"level": "error"' pairs.sarif)" = 2 ] || fail "$(cat pairs.sarif)"
+done
+grep -v 'hand\|upper" link2' faulty.srdf >clean.srdf
+expect 0 '0 faults' "$P" arm.urdf --judge clean.srdf --fail-on open,faults
+expect 2 'fail-on' "$P" arm.urdf --judge clean.srdf --fail-on warnings
+
 # Nothing is decided in no time, and that is said.
 expect 7 'open' "$P" arm.urdf --timeout 1e-9
 expect 1 '' "$P" arm.urdf --judge stated.srdf --timeout 1e-9 --fail-on open

@@ -74,6 +74,11 @@ std::size_t JudgedMatrix::count(Judgement judgement) const {
   return static_cast<std::size_t>(std::ranges::count(pairs, judgement, &JudgedPair::judgement));
 }
 
+bool JudgedMatrix::fails(const FailOn& on) const {
+  return count(Judgement::Refuted) > 0 || (on.open && count(Judgement::Open) > 0) ||
+         (on.faults && !matrix.faults.empty());
+}
+
 std::string line_of(const JudgedPair& pair) {
   std::string out = "line " + std::to_string(pair.stated.line) + ": " + name_of(pair);
   if (!pair.stated.reason.empty()) out += " (" + pair.stated.reason + ")";
@@ -119,21 +124,25 @@ Json matrix_json(const JudgedMatrix& judged) {
   return out;
 }
 
-std::string to_junit(const JudgedMatrix& judged, bool open_fails) {
+std::string to_junit(const JudgedMatrix& judged, const FailOn& on) {
   const std::size_t refuted = judged.count(Judgement::Refuted),
-                    open = judged.count(Judgement::Open);
+                    open = judged.count(Judgement::Open),
+                    faults = on.faults ? judged.matrix.faults.size() : 0;
+  const std::string file = escape_xml(judged.file);
   std::string out =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" +
-      escape_xml(judged.file) + "\" tests=\"" + std::to_string(judged.pairs.size()) +
-      "\" failures=\"" + std::to_string(refuted + (open_fails ? open : 0)) +
-      "\" errors=\"0\" skipped=\"" + std::to_string(open_fails ? 0 : open) + "\">\n";
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + file +
+      "\" tests=\"" + std::to_string(judged.pairs.size() + faults) + "\" failures=\"" +
+      std::to_string(refuted + (on.open ? open : 0) + faults) + "\" errors=\"0\" skipped=\"" +
+      std::to_string(on.open ? 0 : open) + "\">\n";
+  const auto begin_case = [&](const std::string& name, int line) {
+    out += "    <testcase classname=\"" + file + "\" name=\"" + escape_xml(name) + "\" file=\"" +
+           file + "\" line=\"" + std::to_string(line) + "\"";
+  };
   for (const JudgedPair& pair : judged.pairs) {
     const std::string finding = escape_xml(finding_of(pair));
-    out += "    <testcase classname=\"" + escape_xml(judged.file) + "\" name=\"" +
-           escape_xml(name_of(pair)) + "\" file=\"" + escape_xml(judged.file) + "\" line=\"" +
-           std::to_string(pair.stated.line) + "\"";
+    begin_case(name_of(pair), pair.stated.line);
     const bool fails =
-        pair.judgement == Judgement::Refuted || (open_fails && pair.judgement == Judgement::Open);
+        pair.judgement == Judgement::Refuted || (on.open && pair.judgement == Judgement::Open);
     if (fails) {
       out += ">\n      <failure message=\"" + finding + "\">" +
              escape_xml(replay_of(judged, pair)) + "</failure>\n    </testcase>\n";
@@ -143,10 +152,16 @@ std::string to_junit(const JudgedMatrix& judged, bool open_fails) {
       out += "/>\n";
     }
   }
+  if (on.faults)
+    for (const MatrixFault& fault : judged.matrix.faults) {
+      begin_case(std::string(pairs::name_of(fault.kind)) + " in line " + std::to_string(fault.line),
+                 fault.line);
+      out += ">\n      <failure message=\"" + escape_xml(fault.text) + "\"/>\n    </testcase>\n";
+    }
   return out + "  </testsuite>\n</testsuites>\n";
 }
 
-Json to_sarif(const JudgedMatrix& judged) {
+Json to_sarif(const JudgedMatrix& judged, const FailOn& on) {
   const auto rule = [](const char* id, const char* text) -> Json {
     return {{"id", id}, {"shortDescription", {{"text", text}}}};
   };
@@ -165,11 +180,12 @@ Json to_sarif(const JudgedMatrix& judged) {
                                      text + ". Replay: " + replay_of(judged, pair),
                                      pair.stated.line));
     else if (pair.judgement == Judgement::Open)
-      results.push_back(sarif_result(judged, "open", "warning", text, pair.stated.line));
+      results.push_back(
+          sarif_result(judged, "open", on.open ? "error" : "warning", text, pair.stated.line));
   }
   for (const MatrixFault& fault : judged.matrix.faults)
-    results.push_back(
-        sarif_result(judged, pairs::name_of(fault.kind), "warning", fault.text, fault.line));
+    results.push_back(sarif_result(judged, pairs::name_of(fault.kind),
+                                   on.faults ? "error" : "warning", fault.text, fault.line));
   return {
       {"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
       {"version", "2.1.0"},

@@ -9,6 +9,12 @@
 
 namespace kaboum::tools {
 
+/// What is a no, besides refuted pairs.
+struct FailOn {
+  bool open = false;    ///< open pairs
+  bool faults = false;  ///< of the file
+};
+
 /// A judged matrix, and what it was judged by.
 struct JudgedMatrix {
   std::string robot, file;  ///< names of files
@@ -16,6 +22,7 @@ struct JudgedMatrix {
   std::vector<pairs::JudgedPair> pairs;
 
   [[nodiscard]] std::size_t count(pairs::Judgement judgement) const;
+  [[nodiscard]] bool fails(const FailOn& on) const;
 };
 
 /// "line 12: panda_link2 panda_link6 (Never): refuted, 0.0541 to 0.0812 deep at 0,0,…".
@@ -25,9 +32,11 @@ std::string replay_of(const JudgedMatrix& judged, const pairs::JudgedPair& pair)
 std::string summary_of(const JudgedMatrix& judged);
 /// For reports and --json.
 Json matrix_json(const JudgedMatrix& judged);
-/// A test case for each pair: refuted ones fail, open ones are skipped, or fail as well.
-std::string to_junit(const JudgedMatrix& judged, bool open_fails);
-/// SARIF 2.1.0: what is refuted, open or a fault of the file, each at its line.
-Json to_sarif(const JudgedMatrix& judged);
+/// A test case for each pair: refuted ones fail, open ones are skipped, or fail as well; and, where
+/// these fail, for each fault of the file.
+std::string to_junit(const JudgedMatrix& judged, const FailOn& on);
+/// SARIF 2.1.0: what is refuted, open or a fault of the file, each at its line; an error where it
+/// fails, else a warning.
+Json to_sarif(const JudgedMatrix& judged, const FailOn& on);
 
 }  // namespace kaboum::tools

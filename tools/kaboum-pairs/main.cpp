@@ -88,7 +88,10 @@ int run(const PairsOptions& o) {
   const robot::RobotFile file =
       robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments, o.choice.packages);
   std::optional<pairs::Matrix> matrix;
-  if (!o.judge.empty()) matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
+  if (!o.judge.empty()) {
+    matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
+    pairs::require_own(*matrix, o.judge, file.robot);
+  }
   std::vector<std::string> notes;
   const std::vector<pairs::DecidedPair> pairs = decide(file, o, notes);
   const double seconds =
@@ -100,13 +103,6 @@ int run(const PairsOptions& o) {
   if (matrix) {
     judged = tools::JudgedMatrix{o.robot, o.judge, std::move(*matrix), {}};
     judged->pairs = pairs::judge(judged->matrix, file.robot, pairs);
-    const std::vector<pairs::MatrixFault>& faults = judged->matrix.faults;
-    if (judged->pairs.empty() && !faults.empty())
-      throw Error(ErrorCode::InvalidInput,
-                  o.judge +
-                      ": none of its statements is about a pair of this robot's links; is it "
-                      "another robot's? line " +
-                      std::to_string(faults.front().line) + ": " + faults.front().text);
     report["matrix"] = tools::matrix_json(*judged);
   }
   if (o.json) {
@@ -121,15 +117,14 @@ int run(const PairsOptions& o) {
   if (judged) tools::log(o.common.quiet, tools::summary_of(*judged));
   write(o.srdf, [&] { return tools::to_srdf(file.robot, pairs); });
   if (judged) {
-    write(o.junit, [&] { return tools::to_junit(*judged, o.fail_on_open); });
-    write(o.sarif, [&] { return tools::to_sarif(*judged).dump(2) + "\n"; });
+    write(o.junit, [&] { return tools::to_junit(*judged, o.fail_on); });
+    write(o.sarif, [&] { return tools::to_sarif(*judged, o.fail_on).dump(2) + "\n"; });
     write(o.output, [&] { return pairs::corrected(judged->matrix, judged->pairs, file.robot); });
   }
   tools::write_report(o.common, "kaboum-pairs", report);
   if (judged) {
     const bool open_pair = judged->count(pairs::Judgement::Open) > 0;
-    const bool no = judged->count(pairs::Judgement::Refuted) > 0 || (open_pair && o.fail_on_open);
-    return no ? tools::kNo : open_pair ? tools::kLimit : tools::kDone;
+    return judged->fails(o.fail_on) ? tools::kNo : open_pair ? tools::kLimit : tools::kDone;
   }
   const bool open = std::ranges::any_of(
       pairs, [](const pairs::DecidedPair& pair) { return pair.verdict == pairs::Verdict::Open; });

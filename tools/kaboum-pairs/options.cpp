@@ -7,6 +7,7 @@
 #include <kaboum/robot/shape_options.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "common/request_options.h"
 
@@ -37,11 +38,17 @@ void describe(CLI::App& app, PairsOptions& o) {
   app.add_option("--sarif", o.sarif, "Write what is wrong as SARIF 2.1.0")
       ->type_name("FILE")
       ->needs(judge);
-  app.add_option_function<std::string>(
-         "--fail-on", [&o](const std::string& what) { o.fail_on_open = what == "open"; },
-         "Whether an open pair of the file is a no, as a refuted one is [refuted]")
-      ->type_name("refuted|open")
-      ->check(CLI::IsMember({"refuted", "open"}))
+  app.add_option_function<std::vector<std::string>>(
+         "--fail-on",
+         [&o](const std::vector<std::string>& all) {
+           o.fail_on.open = std::ranges::find(all, "open") != all.end();
+           o.fail_on.faults = std::ranges::find(all, "faults") != all.end();
+         },
+         "What else of the file is a no, besides refuted pairs: open ones, faults (links that the "
+         "robot does not have, pairs stated twice, ...), or both: open,faults [refuted]")
+      ->type_name("refuted|open|faults,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"refuted", "open", "faults"}))
       ->needs(judge);
   add_request_options(app, robot::shape_options(), o.choice, o.stated);
   add_xacro_arguments(app, o.xacro_arguments);
@@ -52,7 +59,9 @@ void describe(CLI::App& app, PairsOptions& o) {
       "Never and always are proved over all of the joints' limits; a contact is shown by a "
       "configuration. What is open has a bracket of the smallest distance.\n"
       "Exit codes: 0 all pairs are decided; with --judge: none that the file disables is refuted, "
-      "nor with --fail-on open left open; 1 with --judge: one is; 2 usage; 3 bad input; 4 output "
+      "nor with --fail-on open left open, nor with --fail-on faults has the file any; 1 with "
+      "--judge: "
+      "one is, or it has; 2 usage; 3 bad input; 4 output "
       "failed; 6 internal error; 7 some pairs stay open (--timeout, --max-boxes).");
 }
 

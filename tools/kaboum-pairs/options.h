@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/cli.h"
+#include "judgement.h"
 
 namespace CLI {
 class App;
@@ -21,7 +22,7 @@ struct PairsOptions {
   std::string srdf;                  ///< to write
   std::string judge;                 ///< a matrix
   std::string output, junit, sarif;  ///< to write, of the judged matrix
-  bool fail_on_open = false;
+  FailOn fail_on;
   robot::ShapeChoice choice;
   std::vector<std::string> xacro_arguments;
   pairs::DecideOptions decide;

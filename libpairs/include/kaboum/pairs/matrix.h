@@ -65,6 +65,11 @@ struct Matrix {
 /// @throws Error{InvalidInput} naming the line: not well-formed, or none of the formats
 Matrix parse_matrix(const std::string& text, const std::string& name, const robot::Robot& robot);
 
+/// Refuses a matrix that states pairs, none of which is of the robot's links: another robot's.
+/// @param name  of the file, for messages
+/// @throws Error{InvalidInput} naming file, line and the first fault
+void require_own(const Matrix& matrix, const std::string& name, const robot::Robot& robot);
+
 /// What was found about a pair that a file disables.
 enum class Judgement {
   Proved,  ///< it never touches, or one link has no shapes of any kind
