@@ -1,6 +1,7 @@
 // A budget for a whole robot: the epsilon that it allows, by halving.
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/certify/robot_budget.h>
 
 #include <algorithm>
@@ -28,9 +29,17 @@ class Trials {
   Trials(const robot::RobotFile& robot, RobotRequest request, const RobotBudget& budget,
          const SetCache* cache, const RobotHooks& hooks)
       : robot_(robot), request_(std::move(request)), budget_(budget), cache_(cache) {
-    hooks_.progress = hooks.progress;
+    if (hooks.progress)
+      hooks_.progress = [this, say = hooks.progress](const std::string& stage) {
+        const std::optional<Length>& epsilon = request_.set.epsilon;
+        say("epsilon " + (!epsilon || epsilon->percent ? "none" : number_text(epsilon->value)) +
+            ": " + stage);
+      };
     if (are_simple()) request_.partial = false;  // larger ones would be no answer
   }
+
+  Trials(const Trials&) = delete;
+  Trials& operator=(const Trials&) = delete;
 
   Trial at(const Length& epsilon) {
     request_.set.epsilon = epsilon;

@@ -109,10 +109,15 @@ class LinkSearch {
     RobotRequest own = request_;
     own.shapes.links = {link};
     own.set.epsilon = epsilon;
+    RobotHooks hooks;
+    if (hooks_.progress)
+      hooks.progress = [&](const std::string& stage) {
+        hooks_.progress("link '" + link + "': " + stage);
+      };
     Holding out;
     out.epsilon = epsilon;
     try {
-      const CertifiedBodies made = certify_bodies(robot_, own, cache_, hooks_);
+      const CertifiedBodies made = certify_bodies(robot_, own, cache_, hooks);
       out.count = made.artefact().size();
       out.distance = made.certificate().distance;
       out.largest = epsilon.percent ? out.distance : epsilon.value;

@@ -1,17 +1,11 @@
 // What claims are about, counted and in words.
 
+#include <kaboum/base/counted.h>
 #include <kaboum/certify/subject.h>
 
 #include <vector>
 
 namespace kaboum::certify {
-namespace {
-
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + ' ' + (n == 1 ? one : many);
-}
-
-}  // namespace
 
 Subject subject_of(const geom::PreparationReport& report) {
   return {report.reversed_triangles, report.dropped_copies, report.dropped_sheets, report.holes};

@@ -128,6 +128,24 @@ expect 2 '' "$D" t.off -o x.glb --max-vertices-per-body 7
 expect 2 '' "$D" t.off -o x.glb --direction sideways
 expect 2 'extension' "$D" t.off -o x.step
 expect 2 'output-format' "$D" t.off -o -
+# Facets of bodies are counted from files alone, as the limit counts them.
+V=$BIN/bound-verify
+for limit in '' '--max-facets-per-body 9'; do
+  # shellcheck disable=SC2086
+  expect 0 '' "$D" "$BRACKET" -o facets.glb --epsilon 3% --effort fast $limit
+  expect 0 '' "$V" cover "$BRACKET" facets.glb --epsilon 3% --prepare --report judged.json
+  json judged.json "r['approximation']['bodies'] > 1 and 4 <= r['approximation']['most_vertices'] <= 64"
+  # shellcheck disable=SC2015
+  [ -n "$limit" ] && json judged.json "4 <= r['approximation']['most_facets'] <= 9" || json judged.json "r['approximation']['most_facets'] > 9"
+done
+echo "<robot name=\"r\"><link name=\"l\"><collision><geometry><mesh filename=\"$BRACKET\"/></geometry></collision></link></robot>" >facets.urdf
+expect 0 '' "$D" facets.urdf -o facets --epsilon 3% --effort fast --max-facets-per-body 9
+expect 0 '' "$V" robot facets.urdf facets/facets.urdf --prepare --report judged.json
+json judged.json "(lambda held: len(held) > 1 and all(4 <= one['facets'] <= 9 <= one['vertices'] + 5 for one in held))(r['links'][0]['shapes'][0]['held_by'])"
+expect 0 '' "$D" "$BRACKET" -o facets.glb --bodies capsules --epsilon 5% --effort fast
+expect 0 '' "$V" cover "$BRACKET" facets.glb --prepare --report judged.json
+json judged.json "r['approximation']['most_facets'] is None and r['approximation']['most_vertices'] == 2"
+
 # What has no effect, or would be misread later, is refused at once.
 expect 2 'ends with .png' "$D" t.off -o x.glb --preview x.jpg
 expect 2 'unit' "$D" t.off -o x.glb --unit parsec

@@ -139,7 +139,7 @@ at='<origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/>'
 capsule() { link "$at<geometry><capsule radius=\"$1\" length=\"$2\"/></geometry>"; }
 link "$at<geometry><box size=\"0.12 0.12 0.3\"/></geometry>" >box.urdf
 capsule 0.1 0.3 >capsule.urdf
-shows 0 '^verified: 1 shapes hold 1 of 1 links' "$V" robot box.urdf --bodies capsule.urdf
+shows 0 '^verified: 1 shape holds 1 of 1 link$' "$V" robot box.urdf --bodies capsule.urdf
 capsule 0.09 0.25 >thin.urdf  # sqrt(0.06² + 0.06² + 0.025²) is 0.0885
 shows 0 '^verified' "$V" robot box.urdf --bodies thin.urdf
 capsule 0.088 0.25 >thin.urdf

@@ -130,7 +130,22 @@ for kind in boxes capsules mixed spheres; do
   shows 0 '^verified' "$V" robot arm.urdf $judge plain.$file --links hand,finger --epsilon 6mm
   shows 1 'hand.: refuted: .*in the region .notch. they reach' "$V" robot arm.urdf $judge plain.$file --links hand,finger --epsilon 6mm --epsilon-map $map
 done
-expect 2 'percentage' "$V" robot arm.urdf --bodies boxes.urdf --links hand,finger --epsilon-map share.json
+
+# The command that is printed decides it as it is, whatever the lengths are stated in.
+echo '{"regions": [{"name": "notch", "frame": "tcp", "radius": 0.016, "epsilon": "3%"}, {"link": "finger", "epsilon": "5%"}]}' >shares.json
+for kind in polytopes boxes capsules mixed spheres; do
+  for epsilon in 6mm 6%; do
+    file=shares-$kind.urdf
+    case $kind in polytopes) file=shares ;; spheres) file=shares.yaml ;; esac
+    expect 0 '' "$B" arm.urdf -o $file --bodies $kind --links hand,finger --epsilon $epsilon --effort fast --epsilon-map shares.json
+    command=$(sed -n 's/^from the files alone: //p' err.txt)
+    case $command in *--epsilon-map*) ;; *) fail "$kind, $epsilon: no map in: $command" ;; esac
+    shows 0 '^verified' sh -c "$BIN/$command --report printed.json"
+    [ $kind = polytopes ] || json printed.json "abs(next(g['bound'] for l in r['links'] if l['link'] == 'hand' for g in l['claims']['regions']) - 0.03 * 0.01 * 102 ** .5) < 1e-9"
+  done
+done
+shows 0 "^verified" "$V" robot arm.urdf --bodies boxes.urdf --links hand,finger --epsilon-map share.json
+shows 1 "hand.: refuted: .*in the region .notch. they reach" "$V" robot arm.urdf --bodies capsules.urdf --links hand,finger --epsilon-map share.json
 
 # A body on a link of the region's group that has no shape is near none.
 for at in tcp flange; do
@@ -149,7 +164,9 @@ import re
 text = open("spheres.yaml").read()
 text = text.replace('collision_link_names: [', 'collision_link_names: ["tcp", ', 1)
 own = re.search(r'^  "hand":\n(    - center.*\n      radius.*\n)', text, re.M)
-open("out.yaml", "w").write(text[:own.start()] + '  "tcp":\n' + own.group(1) + text[own.start():])
+text = text[:own.start()] + '  "tcp":\n' + own.group(1) + text[own.start():]
+count = text.count("radius:")
+open("out.yaml", "w").write(re.sub(r"^(# spheres in this file: )\d+$", rf"\g<1>{count}", text, flags=re.M))
 P
 expect 7 "link 'tcp': undecided: it has no shape" "$V" robot arm.urdf --spheres out.yaml --links hand,finger,tcp --epsilon 6mm
 

@@ -120,6 +120,28 @@ quiet.terminate()
 assert quiet.communicate()[1] == "" and quiet.returncode == -signal.SIGTERM
 END
 absent none
+# A budget: what is looked for is said at once, and when a signal ends it.
+for kind in polytopes spheres; do
+  python3 - "$D" $kind <<'END' || fail "a budget, $kind"
+import os, signal, subprocess, sys, time
+program, kind = sys.argv[1:]
+out = "budget.yaml" if kind == "spheres" else "budget"
+command = [program, "arm.urdf", "-o", out, "--bodies", kind, "--robot-bodies", "60"]
+words = "looking for the least epsilon with no more than 60 " + ("spheres" if kind == "spheres" else "bodies")
+for what in (signal.SIGINT, signal.SIGTERM):
+    for more in ([], ["--no-cache"]):
+        run = subprocess.Popen(command + more, stderr=subprocess.PIPE, text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        line = run.stderr.readline()
+        assert line.startswith(words), line
+        time.sleep(0.2)
+        run.send_signal(what)
+        said = run.communicate()[1]
+        assert run.returncode == -what, (run.returncode, said)
+        assert "bcd-decompose: ended by a signal while it was " + words + "; nothing is written. " in said, said
+        assert ("--no-cache" if more else "The cache keeps") in said, said
+        assert not os.path.exists(out) and not [name for name in os.listdir() if ".tmp" in name], os.listdir()
+END
+done
 # On a terminal: which mesh, what is left, and no line longer than the window.
 python3 - "$D" <<'END' || fail "progress on a terminal"
 import fcntl, os, pty, re, struct, sys, termios

@@ -136,7 +136,7 @@ shows 1 "root is 'world'" "$V" robot robot/r.urdf bad/r.urdf
 sed 's/rpy="0.3 0 0"/quat_xyzw="0 0 0 1"/' out/r.urdf >bad/r.urdf
 expect 3 'write the rotation as rpy' "$V" robot robot/r.urdf bad/r.urdf
 rm -r bad
-expect 3 't.off' "$V" robot robot/r.urdf robot/meshes/t.off
+expect 2 't.off is a mesh' "$V" robot robot/r.urdf robot/meshes/t.off
 expect 2 'RESULT or --spheres FILE or --bodies FILE is needed' "$V" robot robot/r.urdf
 expect 2 'unknown option --geometry' "$V" cover robot/meshes/t.off out/bodies/t --geometry visual
 # Meshes that are closed only together hold nothing; one that is inside out is not held by anything.

@@ -61,6 +61,13 @@ run_tool 1 "$V" robot arm.urdf away.yaml
 grep -q "no sphere of 'base' comes near" err.txt || fail "spheres far away are not noted"
 # Repaired, in the format of the input; what is not touched stays.
 expect 0 'added' "$B" arm.urdf -o mended.yaml --repair one.yaml --epsilon 0.4 --effort fast --report mended.json
+shows 0 '^verified' sh -c "$BIN/$(sed -n 's/^from the files alone: //p' err.txt)"
+json mended.json "r['check'] == 'bound-verify robot arm.urdf --spheres mended.yaml --epsilon 0.4'"
+expect 0 'added' "$B" arm.urdf -o mended.yaml --repair one.yaml --epsilon 10% --effort fast --links base
+printed=$(sed -n 's/^from the files alone: //p' err.txt)
+case $printed in *'--links base --epsilon 0.'*) ;; *) fail "the command: $printed" ;; esac
+shows 0 '^verified' sh -c "$BIN/$printed"
+expect 0 'added' "$B" arm.urdf -o mended.yaml --repair one.yaml --epsilon 0.4 --effort fast --report mended.json
 shows 0 '^verified' "$V" robot arm.urdf mended.yaml
 json mended.json "r['kept'] + r['grown'] + r['moved'] + r['shrunk'] == 2 and r['added'] > 0 and r['reach_upper'] <= 0.4"
 grep -q 'collision_sphere_buffer: 0.05  # kept' mended.yaml || fail "the buffer is lost"
@@ -87,6 +94,7 @@ sed 's/radius: 0.95/radius: 5/' one.yaml | sed '/hand:/,$d' >large.yaml
 expect 0 'smaller\|moved' "$B" arm.urdf -o mended.yaml --repair large.yaml --epsilon 0.6 --effort fast
 shows 0 '^verified' "$V" robot arm.urdf mended.yaml
 expect 2 'format that they have' "$B" arm.urdf -o x.xrdf --repair arm.yaml --epsilon 0.4
+expect 2 'bar.off is a mesh or a set of bodies; it takes spheres' "$B" arm.urdf -o x.yaml --repair bar.off --epsilon 0.4
 expect 2 'repair' "$B" bar.off -o x.yaml --repair arm.yaml --epsilon 0.4
 expect 2 'bodies' "$B" arm.urdf -o x.yaml --repair arm.yaml --epsilon 0.4 --bodies spheres
 expect 2 'epsilon' "$B" arm.urdf -o x.yaml --repair arm.yaml

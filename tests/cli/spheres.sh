@@ -34,7 +34,48 @@ shows 0 'depth: verified' "$V" mesh --inner bar.off in.glb --epsilon 0.2 --repor
 shows 0 'surface claim: verified: every point of the union' "$V" mesh --inner bar.off in.glb --epsilon 0.2
 json judged.json "r['verdict'] == 'verified' and r['claims']['depth']['bound'] == 0.2"
 shows 1 'depth: refuted: .* is in no ball' "$V" mesh --inner bar.off in.glb --epsilon 0.1
-expect 1 '' "$V" cover bar.off in.glb
+expect 1 'note: the set was made to lie inside: bound-verify mesh --inner bar.off in.glb decides that' "$V" cover bar.off in.glb
+# What is printed decides it as it is: of sets inside and outside, by epsilon and by number, scaled, in parts, of other formats.
+cp bar.off bar
+sed 's/^3 0 2 1$/3 0 1 2/' bar.off >turned.off
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >sheet.off
+while IFS='|' read -r input output options; do
+  # shellcheck disable=SC2086
+  expect 0 '' "$B" $input -o "$output" --effort fast $options --report made.json
+  printed=$(sed -n 's/^from the files alone: //p' err.txt)
+  case $printed in bound-verify*) ;; *) fail "no command: $input $options: $(cat err.txt)" ;; esac
+  shows 0 '^verified' sh -c "$BIN/$printed"
+  PRINTED=$printed json made.json "r['check'] == __import__('os').environ['PRINTED']"
+done <<'E'
+bar.off|in.glb|--bodies spheres --direction inner --epsilon 0.2
+bar.off|in.glb|--bodies spheres --direction inner --epsilon 5%
+bar.off|in.glb|--bodies spheres --direction inner --max-bodies 7
+bar.off|in.glb|--bodies spheres --direction inner --epsilon 2 --scale 10
+bar.off|in.glb|--direction inner --epsilon 0.2
+bar.off|in.obj|--direction inner --epsilon 0.2
+bar.off|in|--direction inner --epsilon 0.2
+bar.off|out.glb|--epsilon 0.2
+bar.off|out.glb|--epsilon 5% --prepare off
+bar.off|out.glb|--epsilon 200mm
+bar.off|out.obj|--epsilon 200mm
+bar.off|out file|--epsilon 5% --output-format glb
+bar|out.glb|--epsilon 5% --input-format off
+bar.off|out.glb|--epsilon 2 --scale 10
+bar.off|out|--max-bodies 1
+bar.off|out.glb|--bodies spheres --epsilon 0.4
+bar.off|out.glb|--bodies spheres --max-bodies 5
+bar.off|out.glb|--bodies capsules --epsilon 0.4
+bar.off|out.glb|--bodies mixed --epsilon 0.4
+bar.off|out.glb|--epsilon 0.2 --prepare wrap
+turned.off|out.glb|--epsilon 0.2
+sheet.off|out.glb|--epsilon 0.2
+E
+rm -f 'out file'
+"$B" - -o in.glb --input-format off --bodies spheres --direction inner --epsilon 0.2 --effort fast <bar.off 2>err.txt || fail "a pipe: $(cat err.txt)"
+grep -q 'from the files alone' err.txt && fail "a command that reads a pipe again: $(cat err.txt)"
+expect 0 '' "$B" bar.off -o in.glb --bodies spheres --direction inner --epsilon 0.2 --effort fast --report in.json
+expect 0 '' "$B" bar.off -o around.glb --bodies spheres --epsilon 0.4 --effort fast
+expect 1 'note: the set was made to cover: bound-verify cover bar.off around.glb decides that' "$V" mesh --inner bar.off around.glb
 expect 0 '' "$B" bar.off -o again.glb --bodies spheres --direction inner --epsilon 0.2 --effort fast --no-cache --threads 1
 cmp in.glb again.glb
 sed 's/^4 \(. .\)$/3 \1/' bar.off >short.off
@@ -55,7 +96,17 @@ U
 expect 2 'yaml' "$B" arm.urdf -o out --bodies spheres --epsilon 0.4
 expect 2 'direction inner: decompose' "$B" arm.urdf -o out.yaml --bodies spheres --direction inner --epsilon 0.4
 expect 0 '' "$B" arm.urdf -o arm.yaml --bodies spheres --epsilon 0.4 --effort fast --no-cache
+grep -q '^seen in a browser: by --preview FILE.html here, or --page FILE.html there$' err.txt || fail "nothing says what draws them: $(cat err.txt)"
 shows 0 '^verified: .* hold 2 of 2 links' "$V" robot arm.urdf --spheres arm.yaml --report judged.json
+# A page of them, as bound-verify writes it; of capsules none.
+for file in page.yaml page.urdf; do
+  expect 0 '' "$B" arm.urdf -o $file --bodies spheres --epsilon 0.4 --effort fast --preview mine.html
+  expect 0 '' "$V" robot arm.urdf --spheres $file --page its.html
+  cmp mine.html its.html || fail "another page than bound-verify's"
+done
+expect 2 'of spheres in .yaml, .xrdf, .srdf and .urdf also a page' "$B" arm.urdf -o x.urdf --bodies capsules --epsilon 0.4 --preview x.html
+expect 2 'not x.png' "$B" arm.urdf -o x.yaml --bodies spheres --epsilon 0.4 --preview x.png
+absent x.urdf x.yaml x.html x.png
 json judged.json "r['verdict'] == 'verified' and r['share_outside']['upper'] == 0"
 # The same spheres in other formats, which are judged alike.
 mkdir -p other
@@ -101,7 +152,7 @@ robot_cfg:
         - "center": [0, 0, 0]
           "radius": 0.1
 Y
-shows 1 "link 'base': refuted: between .* % of the surface is outside its 1 spheres, by" "$V" robot arm.urdf --spheres one.yaml
+shows 1 "link 'base': refuted: between .* % of the surface is outside its 1 sphere, by" "$V" robot arm.urdf --spheres one.yaml
 shows 1 "link 'hand': refuted" "$V" robot arm.urdf --spheres one.yaml
 sed 's/radius: 0.5/radius: -1/' one.yaml >negative.yaml
 expect 3 'negative.yaml:[0-9]*: .*above 0' "$V" robot arm.urdf --spheres negative.yaml
@@ -118,13 +169,58 @@ expect 2 'bodies spheres' "$B" arm.urdf -o foo.yaml --epsilon 0.4
 expect 2 'of a mesh' "$B" bar.off -o foo.yaml --epsilon 0.4
 [ ! -e foo.yaml ] || fail "foo.yaml was made"
 expect 2 'state one' "$V" robot arm.urdf arm.urdf --spheres one.yaml
+# Files of another kind: what they are, and what takes them.
+cp arm.urdf arm.xml
+mkdir -p folder
+while IFS='|' read -r code words arguments; do
+  # shellcheck disable=SC2086
+  expect "$code" "$words" "$V" robot $arguments
+done <<'E'
+2|bar.off is a mesh or a set of bodies: --spheres takes those of a robot's links|arm.urdf --spheres bar.off
+2|bar.glb is a mesh or a set of bodies: --spheres takes|arm.urdf --spheres bar.glb
+2|arm.xml is a robot: --bodies takes it|arm.urdf --spheres arm.xml
+2|arm.yaml is a file of spheres: --spheres takes it|arm.urdf --bodies arm.yaml
+2|bar.off is a mesh or a set of bodies: --bodies takes a robot|arm.urdf --bodies bar.off
+2|bar.off is a mesh or a set of bodies: bound-verify cover|arm.urdf bar.off
+2|bar.off is a mesh or a set of bodies: bound-verify cover|bar.off --spheres arm.yaml
+2|arm.yaml is a file of spheres: the robot comes first|arm.yaml arm.urdf
+2|folder is a mesh or a set of bodies: name the robot in it, as in folder/robot.urdf|arm.urdf folder
+3|shapes are to be spheres; this is a mesh.* meshes are judged as RESULT|arm.urdf --spheres arm.urdf
+E
 # Nothing that was asked for is passed over.
 for option in '--epsilon 1%' --prepare --raw '--max-work 1'; do
   # shellcheck disable=SC2086
   expect 2 "${option%% *}" "$V" robot arm.urdf --spheres one.yaml $option
 done
 sed '/hand:/,$d' one.yaml >base.yaml
-shows 1 '1 link has none' "$V" robot arm.urdf --spheres base.yaml
+# A link without spheres is uncovered, and near to nothing.
+shows 1 "^refuted: 1 sphere holds 0 of 2 links; .* 0 links none is farther than 0.1; uncovered, without a sphere: 'hand'" "$V" robot arm.urdf --spheres base.yaml --epsilon 0.1 --report base.json
+json base.json "r['uncovered'] == ['hand'] and 'distance' not in r['links'][1]['claims']"
+shows 1 "^link 'hand': refuted: uncovered: it has no spheres$" "$V" robot arm.urdf --spheres base.yaml --epsilon 0.1
+sed '/<joint/i <link name="drawn"><visual><geometry><box size="1 1 1"/></geometry></visual></link>' arm.urdf |
+  sed '/<joint/a <joint name="k" type="fixed"><parent link="base"/><child link="drawn"/></joint>' >drawn.urdf
+expect 0 "link 'drawn' has no collision shape, only visual ones: nothing of this is judged" "$V" robot drawn.urdf arm.yaml
+# A file of ours that is cut at the end of whatever line is no set with fewer spheres; nor one with others in it.
+for file in arm.yaml arm.xrdf; do
+  [ "$(grep -c radius: $file)" -gt 3 ] || fail "$file has few spheres"
+  n=1
+  while [ $n -lt "$(wc -l <$file)" ]; do
+    head -n $n $file >"cut.${file##*.}"
+    expect 3 "cut.${file##*.}" "$V" robot arm.urdf "cut.${file##*.}"
+    n=$((n + 1))
+  done
+done
+head -n $((n - 2)) arm.xrdf >cut.xrdf
+expect 3 'cut.xrdf:[0-9]*: [0-9]* spheres are stated, and [0-9]* are here: is the file cut?' "$V" robot arm.urdf cut.xrdf
+sed 's/^\(# spheres in this file:\).*/\1 many/' arm.yaml >many.yaml
+expect 3 'many.yaml:[0-9]*: the number of spheres is to be stated here' "$V" robot arm.urdf many.yaml
+# Of others' files: a sphere without its end, a link without its list, a link that is named.
+sed '$d' one.yaml >open.yaml
+expect 3 'open.yaml:[0-9]*: .*is the file cut' "$V" robot arm.urdf --spheres open.yaml
+sed '/hand:/q' one.yaml >open.yaml
+expect 3 "open.yaml:8: link 'hand': a list of spheres is expected (is the file cut?)" "$V" robot arm.urdf --spheres open.yaml
+sed 's/^    collision_spheres:/    collision_link_names: [base, hand]\n&/; /hand:$/,$d' one.yaml >named.yaml
+expect 1 "collision_link_names names 'hand', without a sphere here: is the file cut" "$V" robot arm.urdf --spheres named.yaml
 # Spherised URDF; and shapes of it that are no spheres.
 sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"/>|<sphere radius="0.6"/>|' arm.urdf >spheres.urdf
 shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf
@@ -142,7 +238,7 @@ U
 sed 's/<box size="0.2 0.2 0.2"/<sphere radius="0.3"/' turning.urdf >turning-spheres.urdf
 shows 0 '^verified' "$V" robot turning.urdf --spheres turning-spheres.urdf
 sed '/<link name="base"/d; /name="j"/d; s/<mimic.*>/<\/joint>/; s/<joint name="k".*//' turning-spheres.urdf | sed '/<link name="c"/d' >bare.urdf
-shows 1 "link 'c': refuted: it has no spheres" "$V" robot turning.urdf --spheres bare.urdf
+shows 1 "link 'c': refuted: uncovered: it has no spheres" "$V" robot turning.urdf --spheres bare.urdf
 while IFS='|' read -r edit words; do
   sed "$edit" turning-spheres.urdf >moved.urdf
   cmp -s moved.urdf turning-spheres.urdf && fail "nothing was changed by $edit"
@@ -181,6 +277,7 @@ X
 }
 xrdf 9 0 >robot.xrdf
 shows 0 '^verified: 2 spheres hold 2 of 2 links' "$V" robot arm.urdf --spheres robot.xrdf
+grep -q "^link 'base': verified: 1 sphere holds every triangle and the solid$" out.txt || fail "$(cat out.txt)"
 xrdf 0.1 8.9 >robot.yaml
 shows 0 '^verified' "$V" robot arm.urdf --spheres robot.yaml
 xrdf 0.1 0 >robot.xrdf
@@ -213,7 +310,7 @@ X
 srdf 9 >robot.srdf
 shows 0 '^verified: 2 spheres hold 2 of 2 links' "$V" robot arm.urdf --spheres robot.srdf
 srdf 0 >robot.srdf
-shows 1 "link 'base': refuted: it has no spheres" "$V" robot arm.urdf --spheres robot.srdf
+shows 1 "link 'base': refuted: uncovered: it has no spheres" "$V" robot arm.urdf --spheres robot.srdf
 srdf -1 >bad.srdf
 expect 3 'bad.srdf:4: .*negative' "$V" robot arm.urdf --spheres bad.srdf
 srdf nine >bad.srdf
@@ -255,7 +352,7 @@ geometry:\n  g:\n    spheres:\n      base: []\n| an XRDF says
 E
 # Links that cuRobo does not look at have no spheres; a file that may be cut, and one of another robot, are noted.
 printf 'collision_link_names: [hand]\ncollision_spheres:\n  base:\n    - center: [2, 0.5, 0.5]\n      radius: 9\n  hand:\n    - center: [0, 0, 0]\n      radius: 9' >named.yaml
-shows 1 "link 'base': refuted: it has no spheres" "$V" robot arm.urdf --spheres named.yaml
+shows 1 "link 'base': refuted: uncovered: it has no spheres" "$V" robot arm.urdf --spheres named.yaml
 expect 1 "the spheres of 'base' are none: collision_link_names does not name them" "$V" robot arm.urdf --spheres named.yaml
 expect 1 'does not end with a line break: is it cut' "$V" robot arm.urdf --spheres named.yaml
 srdf 9 | sed 's/robot name="arm"/robot name="panda"/' >other.srdf

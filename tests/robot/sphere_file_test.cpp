@@ -77,6 +77,23 @@ TEST(SphereFile, YamlIsEditedInPlace) {
   expect_same(last, parse_spheres("a.yml", edited_spheres("a.yml", open, last)));
 }
 
+TEST(SphereFile, ANumberThatIsStatedHolds) {
+  const std::string text = sphere_count_comment(3) + kBlock;
+  const SphereFile read = parse_spheres("a.yaml", text);
+  const std::vector<LinkSpheres> wanted = changed(read);  // three more
+  const std::string edited = edited_spheres("a.yaml", text, wanted);
+  EXPECT_TRUE(edited.starts_with(sphere_count_comment(6))) << edited;
+  expect_same(wanted, parse_spheres("a.yaml", edited));
+  for (const std::size_t other : {0, 2, 4, 30})
+    EXPECT_THROW(parse_spheres("a.yaml", sphere_count_comment(other) + kBlock), Error);
+  for (const char* other : {"", "3 or so", "-3", "99999999999999999999999"})
+    EXPECT_THROW(
+        parse_spheres("a.yaml", std::string("# spheres in this file: ") + other + "\n" + kBlock),
+        Error)
+        << other;
+  EXPECT_NO_THROW(parse_spheres("a.yaml", "# spheres in this file: 3 \r\n" + std::string(kBlock)));
+}
+
 TEST(SphereFile, WhatCannotBeEditedIsRefused) {
   const std::string shared =
       "collision_spheres:\n  arm: &a\n    - center: [0, 0, 0]\n      radius: 1\n  hand: *a\n";

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/set_format.h"
+#include "common/shell_word.h"
 #include "options.h"
 #include "robot.h"
 #include "words.h"
@@ -43,6 +44,40 @@ std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& ce
   });
 }
 
+/// The command that decides it from the files alone; empty where one of them is a pipe.
+std::string check_of(const DecomposeOptions& o, io::SetFormat format,
+                     const certify::SetCertificate& c, const geom::ConvexSet& set) {
+  if (o.input == "-" || o.output == "-") return {};
+  const auto file = [](const std::string& path) {
+    return shell_word(path.starts_with('-') ? "./" + path : path);
+  };
+  const bool outer = c.direction == certify::SetRequest::Direction::Outer;
+  std::string out = outer ? "bound-verify cover " : "bound-verify mesh --inner ";
+  out += file(o.input) + " " + file(o.output);
+  if (!outer && format == io::SetFormat::Obj) out += " --set";
+  if (o.set.request.scale != 1) out += " --scale " + Length{o.set.request.scale}.text();
+  if (!o.input_format.name.empty()) out += " --input-format " + o.input_format.name;
+  if (!o.input_format.importer.empty()) out += " --importer " + o.input_format.importer;
+  if (!o.output_format.empty() && format != io::SetFormat::Directory)
+    out += " --approximation-format " + o.output_format;
+  const certify::PreparationOptions& preparation = o.set.preparation;
+  if (preparation.mode != certify::PreparationOptions::Mode::Off) out += " --prepare";
+  if (preparation.drop_sheets) out += " --drop-sheets";
+  // What is claimed then is about the triangles that stand for exact faces.
+  if (outer && !preparation.holds_exact_faces()) out += " --exact-points 0";
+  // Depths left out are decided of spheres; of a wrap, distances are to it as well.
+  const bool decides = outer ? !c.wrap : c.depth_decided;
+  const std::optional<Length> wanted = o.set.request.wanted_epsilon();
+  constexpr double kMore = 1.001;  // so that it is decided
+  if (decides && outer && c.reached() && wanted)
+    out += " --epsilon " + wanted->in(set.provenance.unit).text();
+  else if (decides && c.distance_upper > 0)
+    out += " --epsilon " +
+           (outer ? number_up(kMore * c.distance_upper) : Length{c.distance_upper}.text());
+  if (outer && decides && o.epsilon_map) out += " --epsilon-map " + shell_word(*o.epsilon_map);
+  return out;
+}
+
 int decompose_mesh(const DecomposeOptions& o) {
   if (o.output_format.empty() && robot_folder::sphere_format_of(o.output))
     throw Error(ErrorCode::InvalidArgument,
@@ -72,6 +107,7 @@ int decompose_mesh(const DecomposeOptions& o) {
                   (is_idle ? "; no less than outside of it, so that it changes nothing" : "")
             : "note: no body reaches the region " + one.name);
   }
+  const std::string check = check_of(o, format, certificate, set);
   const std::string why = page::shortfall_of(certificate);
   if (!why.empty()) log(o.common.quiet, why);
   if (is_page(o.preview))
@@ -82,6 +118,7 @@ int decompose_mesh(const DecomposeOptions& o) {
     Json report = report_of(made);
     report["input"] = {{"file", o.input}, {"sha256", made.sha256}};
     report["parameters"] = set.provenance.parameters;
+    if (!check.empty()) report["check"] = check;
     write_report(o.common, "bcd-decompose", report);
   }
   if (!o.depfile.empty()) {
@@ -95,6 +132,7 @@ int decompose_mesh(const DecomposeOptions& o) {
   } else {
     io::write_convex_set(o.output, set, format);
   }
+  if (!check.empty()) log(o.common.quiet, "from the files alone: " + check);
   return code_of(certificate);
 }
 

@@ -81,7 +81,8 @@ void add_output(CLI::App& app, DecomposeOptions& o) {
   app.add_option(
          "--preview", o.preview,
          "Write a picture of the bodies (.png), or a page that shows them over the input in "
-         "a browser (.html); of a robot's spheres, capsules and boxes a scene for viewers (.glb)")
+         "a browser (.html); of a robot's spheres, capsules and boxes a scene for viewers (.glb), "
+         "of spheres also a page that shows the robot with them (.html)")
       ->check(preview_or_scene_name())
       ->type_name("FILE");
   app.add_option("--explode", o.explode,

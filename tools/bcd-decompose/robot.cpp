@@ -2,6 +2,7 @@
 
 #include "robot.h"
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/certify/large_epsilon.h>
@@ -16,11 +17,13 @@
 #include <kaboum/pairs/matrix.h>
 #include <kaboum/picture/bodies.h>
 #include <kaboum/picture/png_file.h>
+#include <kaboum/robot/sphere_file.h>
 #include <kaboum/robot_folder/certified_folder.h>
 #include <kaboum/robot_folder/shapes_glb.h>
 #include <kaboum/robot_folder/simple_shapes.h>
 #include <kaboum/robot_folder/sphere_text.h>
 #include <kaboum/scene/robot_pairs.h>
+#include <kaboum/verify/sphere_verdict.h>
 
 #include <algorithm>
 #include <chrono>
@@ -29,12 +32,14 @@
 #include <optional>
 #include <utility>
 
+#include "common/file_kind.h"
 #include "inertia.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
 #include "robots/next_steps.h"
 #include "robots/output.h"
 #include "robots/progress.h"
+#include "robots/spheres_page.h"
 #include "robots/summary.h"
 #include "words.h"
 
@@ -124,10 +129,18 @@ void take_note(Run& run, const certify::CertifiedLinkMesh& mesh, Notes& shortfal
 /// What a budget for the whole robot allows: one epsilon, or of spheres one for each link.
 void share_out(Run& run, const certify::SetCache* cache) {
   const auto given = [](std::size_t n) { return n > 0 ? std::optional(n) : std::nullopt; };
-  Progress progress(run.o.common.quiet);
+  const bool spheres = run.request.set.body_kind == certify::SetRequest::BodyKind::Spheres;
+  std::string budget;
+  if (run.o.robot_bodies > 0)
+    budget = spheres ? counted(run.o.robot_bodies, "sphere", "spheres")
+                     : counted(run.o.robot_bodies, "body", "bodies");
+  if (run.o.robot_vertices > 0)
+    budget += (budget.empty() ? "" : " and ") + counted(run.o.robot_vertices, "vertex", "vertices");
+  SearchProgress progress("bcd-decompose", run.o.common.quiet,
+                          "the least epsilon with no more than " + budget, cache != nullptr);
   certify::RobotHooks hooks;
-  hooks.progress = [&](const std::string& stage) { progress.show("sharing out: " + stage); };
-  if (run.request.set.body_kind == certify::SetRequest::BodyKind::Spheres)
+  hooks.progress = [&](const std::string& stage) { progress.show(stage); };
+  if (spheres)
     run.request.epsilons =
         share_spheres(run.robot, run.request, run.o.robot_bodies, run.o.share, cache, hooks);
   else
@@ -346,10 +359,14 @@ BodyFormat format_of_shapes(const DecomposeOptions& o) {
     throw Error(ErrorCode::InvalidArgument,
                 "--pairs: pairs of links have a place in .yaml (cuRobo), .xrdf and .srdf, not in " +
                     o.output);
-  if (o.srdf || (!o.preview.empty() && !is_scene(o.preview)) || !o.robot.html.empty())
+  if (o.srdf || !o.robot.html.empty())
     throw Error(ErrorCode::InvalidArgument,
-                "--srdf, --html-report and --preview with a picture or a page need --bodies "
-                "polytopes of a robot; --preview with a scene (.glb) shows other bodies");
+                "--srdf and --html-report need --bodies polytopes of a robot");
+  if (!o.preview.empty() && !is_scene(o.preview) && !(format.spheres && is_page(o.preview)))
+    throw Error(ErrorCode::InvalidArgument,
+                "--preview: of a robot's spheres, capsules and boxes a scene (.glb) is written, of "
+                "spheres in .yaml, .xrdf, .srdf and .urdf also a page (.html), not " +
+                    o.preview);
   if (o.robot_vertices > 0)
     throw Error(ErrorCode::InvalidArgument,
                 "--robot-vertices: spheres, capsules and boxes have no vertices to be shared out; "
@@ -365,11 +382,7 @@ std::vector<robot_folder::UncheckedLinks> unchecked_links(const DecomposeOptions
   const std::vector<char> text = io::read_file(o.pairs);
   const pairs::Matrix matrix =
       pairs::parse_matrix(std::string(text.begin(), text.end()), o.pairs, robot);
-  if (matrix.pairs.empty() && !matrix.faults.empty())
-    throw Error(ErrorCode::InvalidInput,
-                o.pairs + ":" + std::to_string(matrix.faults.front().line) +
-                    ": none of its pairs is one of links of robot '" + robot.name +
-                    "': are they another robot's? (" + matrix.faults.front().text + ")");
+  pairs::require_own(matrix, o.pairs, robot);
   for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
   for (const pairs::MatrixFault& fault : matrix.faults)
     notes.add(o.pairs, "line " + std::to_string(fault.line) + ": " + fault.text);
@@ -390,12 +403,21 @@ double write_shapes(Run& run, const BodyFormat& format, const certify::Certified
     made = robot_folder::text_of_shapes(*format.shapes, run.robot, o.robot.shapes, bodies, shapes,
                                         run.request.parameters(), o.output);
   // Nothing is written where either is refused.
-  const std::vector<char> scene = o.preview.empty()
-                                      ? std::vector<char>()
-                                      : robot_folder::glb_of_shapes(run.robot.robot, shapes);
+  std::vector<char> scene;
+  std::string page;
+  if (is_page(o.preview))
+    page =
+        page_of_spheres(run.robot, o.output,
+                        verify::decide_spheres(run.robot, robot::parse_spheres(o.output, made.text),
+                                               o.output, o.robot.shapes));
+  else if (!o.preview.empty())
+    scene = robot_folder::glb_of_shapes(run.robot.robot, shapes);
   for (const std::string& note : made.notes) run.notes.add(o.output, note);
   io::write_file(o.output, made.text);
-  if (!o.preview.empty()) io::write_file(o.preview, scene);
+  if (is_page(o.preview))
+    io::write_file(o.preview, page);
+  else if (!o.preview.empty())
+    io::write_file(o.preview, scene);
   return format.spheres ? 0 : shapes.beyond;
 }
 
@@ -414,6 +436,8 @@ std::vector<std::string> parts_of(const DecomposeOptions& o, const robot::RobotF
   return out;
 }
 
+constexpr double kMore = 1.001;  ///< of a distance, so that it is decided
+
 /// The command that decides it from the file alone, with epsilon where that is kept; else with how
 /// far the bodies are.
 /// @param distance  of the farthest point [m]
@@ -423,7 +447,6 @@ std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reach
                     (format.spheres ? " --spheres " : " --bodies ") + shell_word(run.o.output) +
                     reading_words(run.o.robot);
   const std::optional<Length> epsilon = run.request.set.wanted_epsilon();
-  constexpr double kMore = 1.001;  // so that it is decided
   if (reached && epsilon && !epsilon->percent && run.request.epsilons.empty())
     out += " --epsilon " + epsilon->text();
   else if (std::isfinite(distance))
@@ -442,8 +465,11 @@ void say_shapes(const Run& run, const BodyFormat& format, const certify::Certifi
                           (spheres ? counted(bodies.artefact().size(), "sphere", "spheres")
                                    : counted(bodies.artefact().size(), "body", "bodies")) +
                           ", no point farther from its link's shapes than " + number_up(distance) +
-                          ", on the mean of links " + number_up(mean_distance(bodies)) + "; " +
-                          check + " decides it");
+                          ", on the mean of links " + number_up(mean_distance(bodies)));
+  log(o.common.quiet, "from the files alone: " + check);
+  if (format.spheres && o.preview.empty())
+    log(o.common.quiet,
+        "seen in a browser: by --preview FILE.html here, or --page FILE.html there");
   using Format = robot_folder::SphereFormat;
   if (without_pairs && (format.spheres == Format::Curobo || format.spheres == Format::Xrdf))
     log(o.common.quiet,
@@ -500,8 +526,8 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   if (const std::optional<Length>& epsilon = run.request.set.epsilon;
       format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
     reached = reached && distance <= epsilon->value;
-  say_shapes(run, format, bodies, check_of_shapes(run, format, reached, distance), distance,
-             unchecked.empty());
+  const std::string check = check_of_shapes(run, format, reached, distance);
+  say_shapes(run, format, bodies, check, distance, unchecked.empty());
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
@@ -512,6 +538,7 @@ int decompose_into_shapes(const DecomposeOptions& o) {
                   {"stop", reached ? "done" : "epsilon not reached"},
                   {"input", {{"file", o.input}, {"sha256", run.robot.sha256}}},
                   {"output", {{"file", o.output}}},
+                  {"check", check},
                   {"parameters", run.request.parameters()},
                   {"regions", regions_report(run)},
                   {"notes", run.notes.lines()}});
@@ -536,9 +563,23 @@ std::string text_of(const certify::RepairedLink& link) {
   return out;
 }
 
+/// The command that decides repaired spheres from the file alone.
+/// @param reach  how far the farthest reaches [m]
+std::string check_of_repaired(const DecomposeOptions& o, double reach) {
+  const Length epsilon = *certify::request_of(o.set).epsilon;
+  return "bound-verify robot " + shell_word(o.input) + " --spheres " + shell_word(o.output) +
+         reading_words(o.robot) + " --epsilon " +
+         (epsilon.percent ? number_up(kMore * reach) : epsilon.text());
+}
+
 /// Somebody's spheres, changed until they hold.
 int repair(const DecomposeOptions& o) {
-  if (sphere_format_of(o.output) != sphere_format_of(o.repair) || !sphere_format_of(o.repair))
+  if (!sphere_format_of(o.repair))
+    throw Error(ErrorCode::InvalidArgument,
+                "--repair: " + o.repair + " is " + in_words(kind_of(o.repair)) +
+                    "; it takes spheres of a robot's links (.yaml, .yml, .xrdf, .srdf, or .urdf "
+                    "with spheres)");
+  if (sphere_format_of(o.output) != sphere_format_of(o.repair))
     throw Error(ErrorCode::InvalidArgument,
                 "--repair: spheres are written in the format that they have: end --output as " +
                     o.repair + " does (.yaml, .yml, .xrdf, .srdf or .urdf)");
@@ -575,6 +616,8 @@ int repair(const DecomposeOptions& o) {
   log(o.common.quiet, o.output + ": " + counted(made.spheres, "sphere", "spheres") + " (" +
                           text_of(all) + ") hold every link; none reaches farther than " +
                           number_up(all.epsilon) + "; decided exactly");
+  const std::string check = check_of_repaired(o, all.epsilon);
+  log(o.common.quiet, "from the files alone: " + check);
   for (const std::string& note : made.notes) log(o.common.quiet, "note: " + note);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
@@ -589,6 +632,7 @@ int repair(const DecomposeOptions& o) {
                   {"stop", "done"},
                   {"input", {{"file", o.input}, {"sha256", robot.sha256}}},
                   {"repaired", {{"file", o.repair}}},
+                  {"check", check},
                   {"output", {{"file", o.output}}},
                   {"notes", made.notes}});
   if (!o.depfile.empty()) write_depfile(o.depfile, {o.output}, {o.input, o.repair});

@@ -2,6 +2,7 @@
 
 #include "robot.h"
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/certify/link_enclosures.h>
 #include <kaboum/certify/mesh_file.h>

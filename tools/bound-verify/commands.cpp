@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/file_kind.h"
 #include "common/request_options.h"
 #include "robot_bodies.h"
 #include "robot_spheres.h"
@@ -136,6 +137,34 @@ void add_cover_command(CLI::App& app, VerifyOptions& o) {
       ->type_name("FILE");
 }
 
+/// Refuses files of a kind that another option, or command, takes.
+/// @throws Error{InvalidArgument}
+void require_kinds(const VerifyRobotOptions& o) {
+  const auto refuse = [](const std::string& file, const std::string& remedy) {
+    throw Error(ErrorCode::InvalidArgument,
+                "robot: " + file + " is " + in_words(kind_of(file)) + ": " + remedy);
+  };
+  const std::string of_mesh =
+      "bound-verify cover ORIGINAL SET and bound-verify mesh decide of meshes";
+  if (kind_of(o.original) == FileKind::Spheres)
+    refuse(o.original, "the robot comes first: bound-verify robot ROBOT --spheres FILE");
+  if (kind_of(o.original) == FileKind::Mesh) refuse(o.original, of_mesh);
+  if (kind_of(o.result) == FileKind::Mesh && !is_folder(o.result)) refuse(o.result, of_mesh);
+  if (kind_of(o.result) == FileKind::Mesh)
+    refuse(o.result, "name the robot in it, as in " + o.result + "/robot.urdf");
+  if (kind_of(o.spheres) == FileKind::Mesh)
+    refuse(o.spheres,
+           "--spheres takes those of a robot's links (.yaml, .yml, .xrdf, .srdf, or .urdf with "
+           "spheres); " +
+               of_mesh);
+  if (kind_of(o.spheres) == FileKind::Robot && !o.spheres.ends_with(".urdf") &&
+      !o.spheres.ends_with(".xacro"))
+    refuse(o.spheres, "--bodies takes it (spheres, boxes and capsules of MJCF and SDF)");
+  if (kind_of(o.bodies) == FileKind::Spheres) refuse(o.bodies, "--spheres takes it");
+  if (kind_of(o.bodies) == FileKind::Mesh)
+    refuse(o.bodies, "--bodies takes a robot (URDF, MJCF, SDF); " + of_mesh);
+}
+
 /// One of a result, spheres and bodies is judged.
 int decide_robot(const CLI::App& app, VerifyOptions& o) {
   require_none(contradiction(o.robot.how));
@@ -148,6 +177,7 @@ int decide_robot(const CLI::App& app, VerifyOptions& o) {
   if (given > 1)
     throw Error(ErrorCode::InvalidArgument,
                 "robot: RESULT, --spheres and --bodies are results to be judged: state one");
+  require_kinds(o.robot);
   // Files of spheres are known by their names.
   if (robot::is_sphere_file(o.robot.result)) o.robot.spheres.swap(o.robot.result);
   if (o.robot.spheres.empty() && !o.robot.page.empty())

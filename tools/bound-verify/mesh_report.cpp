@@ -2,6 +2,7 @@
 
 #include "mesh_report.h"
 
+#include <kaboum/geom/facets.h>
 #include <kaboum/geom/topology.h>
 #include <kaboum/verify/ball_cover.h>
 #include <kaboum/verify/region_excess.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/shell_word.h"
 #include "common/verdict.h"
 
 namespace kaboum::tools {
@@ -97,9 +99,23 @@ std::string line_of_points(const verify::PointClaim& claim, const MeshCase& run)
          (claim.faces == 1 ? " face" : " faces") + " in all)";
 }
 
+/// The command that a set is judged with, where its record says that it is of the other direction.
+std::string other_command(const MeshCase& run) {
+  const bool cover = run.asked.relation == Relation::Cover;
+  const std::string& direction = run.approximation.set.provenance.direction;
+  const std::string files =
+      " " + shell_word(run.asked.original) + " " + shell_word(run.asked.approximation);
+  if (cover && direction == "inner")
+    return "the set was made to lie inside: bound-verify mesh --inner" + files + " decides that";
+  if (!cover && direction == "outer")
+    return "the set was made to cover: bound-verify cover" + files + " decides that";
+  return {};
+}
+
 /// What users most often got wrong when an enclosure is refuted.
 std::vector<std::string> hints(const MeshCase& run) {
   std::vector<std::string> lines;
+  if (std::string other = other_command(run); !other.empty()) return {std::move(other)};
   const geom::Mesh &original = run.original.mesh, &approximation = run.approximation.mesh;
   const geom::Box3 a = geom::bounding_box(original), b = geom::bounding_box(approximation);
   const double ratio = diagonal_of(approximation) / diagonal_of(original);
@@ -109,7 +125,12 @@ std::vector<std::string> hints(const MeshCase& run) {
   const geom::Box3 &enclosing = run.inner() ? a : b, &enclosed = run.inner() ? b : a;
   const bool swapped = (enclosing.min.array() > enclosed.min.array()).all() &&
                        (enclosing.max.array() < enclosed.max.array()).all();
-  if (swapped)
+  if (swapped && run.asked.relation == Relation::Cover)
+    lines.emplace_back(
+        "the box of the bodies lies within the original's: whether they lie inside of it is "
+        "decided "
+        "by bound-verify mesh --inner");
+  else if (swapped)
     lines.emplace_back(
         "the enclosing box lies within the enclosed one: ORIGINAL comes first, "
         "APPROXIMATION second; --outer and --inner say which encloses");
@@ -400,6 +421,19 @@ void add_preparation(const MeshCase& run, Json& original) {
   if (found->hollow) original["hollow_at"] = to_json(*found->hollow);
 }
 
+/// The most vertices and facets that a body has; facets of polytopes only.
+void add_sizes(const MeshCase& run, Json& json) {
+  std::size_t vertices = 0, facets = 0;
+  const bool convex = run.verdict.convex && run.verdict.convex->answer == Answer::Verified;
+  for (const geom::ConvexBody& body : run.approximation.set.bodies) {
+    vertices = std::max(vertices, body.core.vertices.size());
+    if (convex && !body.core.triangles.empty())
+      facets = std::max(facets, geom::float32_facet_count(body.core));
+  }
+  json["most_vertices"] = vertices;
+  json["most_facets"] = facets > 0 ? Json(facets) : Json();
+}
+
 const char* name_of_relation(Relation relation) {
   switch (relation) {
     case Relation::Outer:
@@ -430,6 +464,7 @@ Json report_of(const MeshCase& run) {
   if (run.approximation.is_set) {
     json["approximation"]["bodies"] = run.approximation.set.bodies.size();
     json["approximation"]["margin"] = margin_json(run.approximation.set);
+    add_sizes(run, json["approximation"]);
   }
   json["original"]["scale"] = run.asked.unit.scale;
   json["original"]["single_precision"] = run.original.single_precision;

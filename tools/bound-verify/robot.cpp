@@ -3,6 +3,8 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/notes.h>
+#include <kaboum/geom/convex_set.h>
+#include <kaboum/geom/facets.h>
 #include <kaboum/geom/inside_out.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/io/region_file.h>
@@ -65,8 +67,13 @@ Json shape_json(const verify::ShapeVerdict& s) {
   if (s.file != nullptr) {
     json["file"] = s.file->path;
     json["sha256"] = s.file->sha256;
-    for (const verify::MeshFile* body : s.held_by)
-      json["held_by"].push_back({{"file", body->path}, {"sha256", body->sha256}});
+    for (const verify::MeshFile* body : s.held_by) {
+      json["held_by"].push_back({{"file", body->path},
+                                 {"sha256", body->sha256},
+                                 {"vertices", body->mesh.vertices.size()}});
+      if (geom::is_convex(body->mesh))
+        json["held_by"].back()["facets"] = geom::float32_facet_count(body->mesh);
+    }
   }
   if (s.convex) {
     json["claims"]["convex"] = claim_json(*s.convex);

@@ -2,6 +2,7 @@
 // robot's links.
 #include "robot_bodies.h"
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
 #include <kaboum/geom/convex_hull.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <optional>
 
@@ -255,12 +257,12 @@ std::string text_of(const Vec3& p) {
 }
 
 std::string sentence_of(const LinkAnswer& link) {
-  if (link.shapes == 0) return "it has no shape in the file";
+  if (link.shapes == 0) return "uncovered: it has no shape in the file";
   const verify::Inclusion& in = link.inclusion;
-  const std::string bodies =
-      std::to_string(link.shapes) + (link.shapes == 1 ? " shape" : " shapes");
+  const std::string bodies = counted(link.shapes, "shape", "shapes");
   if (link.answer == Answer::Verified)
-    return bodies + (link.triangles == 0 ? " hold its shapes" : " hold every triangle") +
+    return bodies + (link.shapes == 1 ? " holds " : " hold ") +
+           (link.triangles == 0 ? "its shapes" : "every triangle") +
            (in.solid.answer == Answer::Verified ? " and the solid"
             : link.triangles > 0                ? "; its mesh is open"
                                                 : "");
@@ -388,22 +390,41 @@ Json json_of_bare(const robot::Link& link) {
           {"triangles", 0}};
 }
 
-}  // namespace
+/// What is known of all links.
+struct AllLinks {
+  Answer answer = Answer::Verified;
+  std::size_t held = 0, within = 0, judged = 0, count = 0;
+  std::vector<std::string> uncovered;  ///< links without a shape in the file
+  Json links = Json::array();
 
-int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
-  const ThreadLimit threads(common.threads);
-  require_apart({{"--report", common.report}}, {o.original, o.bodies, o.epsilon_map.value_or("")});
-  const robot::RobotFile robot =
-      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
-  robot::require_links(robot, o.how.shapes.links);
-  const robot::RobotFile bodies = robot::read_robot(o.bodies, robot::Motions::None);
-  require_known(bodies, robot);
+  void take(const LinkAnswer& link) {
+    answer = verify::worse(answer, link.answer);
+    ++judged;
+    held += link.held == Answer::Verified ? 1 : 0;
+    within += link.reach.all && link.reach.all->answer == Answer::Verified ? 1 : 0;
+    count += link.shapes;
+    if (link.shapes == 0) uncovered.push_back(link.name);
+    links.push_back(json_of(link));
+  }
+
+  [[nodiscard]] std::string sentence(std::optional<double> epsilon) const {
+    std::string out = counted(count, "shape holds ", "shapes hold ") + std::to_string(held) +
+                      " of " + counted(judged, "link", "links");
+    if (epsilon)
+      out +=
+          "; of " + counted(within, "link", "links") + " none is farther than " + number(*epsilon);
+    if (!uncovered.empty()) out += "; uncovered, without a shape: " + robot::names_of(uncovered);
+    return out;
+  }
+};
+
+/// Judges the links that have shapes.
+AllLinks judge_links(const VerifyRobotOptions& o, const robot::RobotFile& robot,
+                     const robot::RobotFile& bodies,
+                     const std::function<void(const std::string&)>& say) {
   const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
   const robot::LinkBounds of_links = bounds_of(o, robot);
-  std::ostream& out = common.report == "-" ? std::cerr : std::cout;
-  Answer all = Answer::Verified;
-  std::size_t held = 0, within = 0, judged = 0, count = 0;
-  Json links = Json::array();
+  AllLinks out;
   robot::MeshFiles files(robot.path, o.how.shapes.packages);
   for (const robot::Link& link : robot.robot.links) {
     if (!o.how.shapes.has(link)) continue;
@@ -417,55 +438,69 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
     const robot::Link& own = index ? bodies.robot.links[*index] : none;
     if (mesh.triangles.empty() && round.empty()) {
       if (own.collision.empty() || !verify::asks_how_far(link.name, epsilon, of_links)) continue;
-      all = verify::worse(all, Answer::Undecided);
-      links.push_back(json_of_bare(own));
-      if (!common.quiet) out << verify::text_of_bare_link(link.name) << std::endl;
+      out.answer = verify::worse(out.answer, Answer::Undecided);
+      out.links.push_back(json_of_bare(own));
+      say(verify::text_of_bare_link(link.name));
       continue;
     }
     const Bounds bounds = bounds_of(own, o.bodies);
     LinkAnswer now = judge(link.name, mesh, round, bounds, own.collision);
     now.held = now.answer;
-    now.reach = verify::decide_link_reach(bounds.inside, bounds.outside, link.name,
-                                          o.how.shapes.shapes_of(link), files, epsilon, of_links);
+    if (now.shapes > 0)  // none are not near either
+      now.reach = verify::decide_link_reach(bounds.inside, bounds.outside, link.name,
+                                            o.how.shapes.shapes_of(link), files, epsilon, of_links);
     now.answer = verify::worse(now.answer, now.reach.answer());
     now.sentence += now.reach.sentence();
-    within += now.reach.all && now.reach.all->answer == Answer::Verified ? 1 : 0;
-    all = verify::worse(all, now.answer);
-    ++judged;
-    held += now.held == Answer::Verified ? 1 : 0;
-    count += now.shapes;
-    links.push_back(json_of(now));
-    if (!common.quiet)
-      out << "link '" << now.name << "': " << name_of(now.answer) << ": " << now.sentence
-          << std::endl;
+    out.take(now);
+    say("link '" + now.name + "': " + name_of(now.answer) + ": " + now.sentence);
   }
-  if (judged == 0)
+  if (out.judged == 0)
     throw Error(ErrorCode::InvalidInput,
                 o.original + ": no link has a shape" +
                     (o.how.shapes.visual ? std::string() : "; try --geometry visual"));
+  return out;
+}
+
+}  // namespace
+
+int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
+  const ThreadLimit threads(common.threads);
+  require_apart({{"--report", common.report}}, {o.original, o.bodies, o.epsilon_map.value_or("")});
+  const robot::RobotFile robot =
+      robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
+  robot::require_links(robot, o.how.shapes.links);
+  const robot::RobotFile bodies = robot::read_robot(o.bodies, robot::Motions::None);
+  require_known(bodies, robot);
+  const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
+  const auto say = [&](const std::string& line) {
+    if (!common.quiet) (common.report == "-" ? std::cerr : std::cout) << line << std::endl;
+  };
+  AllLinks all = judge_links(o, robot, bodies, say);
+  const robot::ShapeChoice& shapes = o.how.shapes;
+  for (const std::string& note :
+       robot::notes_on({{}, robot::bare_links(robot.robot, shapes.visual, shapes.links).other},
+                       shapes.visual, ": nothing of this is judged"))
+    log(common.quiet, "note: " + o.original + ": " + note);
   // Shapes in the links' frames hold the robot only where the file has these frames.
   const std::string motion = difference_in_frames(robot, bodies);
-  if (!motion.empty()) all = Answer::Refuted;
-  if (!common.quiet) out << line_on_joints(motion) << std::endl;
+  if (!motion.empty()) all.answer = Answer::Refuted;
+  say(line_on_joints(motion));
   if (!common.report.empty())
     write_report(common, "bound-verify",
                  {{"relation", "bodies"},
-                  {"verdict", name_of(all)},
-                  {"geometry", o.how.shapes.visual ? "visual" : "collision"},
+                  {"verdict", name_of(all.answer)},
+                  {"geometry", shapes.visual ? "visual" : "collision"},
                   {"original", {{"file", o.original}, {"sha256", robot.sha256}}},
                   {"bodies", {{"file", o.bodies}, {"sha256", bodies.sha256}}},
-                  {"count", count},
-                  {"links_held", held},
+                  {"count", all.count},
+                  {"links_held", all.held},
+                  {"uncovered", all.uncovered},
                   {"epsilon", epsilon ? Json(*epsilon) : Json()},
                   {"joints", json_of_joints(motion)},
-                  {"links", std::move(links)}});
-  if (!common.quiet)
-    out << name_of(all) << ": " << count << " shapes hold " << held << " of " << judged << " links"
-        << (epsilon ? "; of " + std::to_string(within) + " links none is farther than " +
-                          number(*epsilon)
-                    : "")
-        << (motion.empty() ? "" : ", but the robots do not move alike") << std::endl;
-  return exit_code(all);
+                  {"links", std::move(all.links)}});
+  say(name_of(all.answer) + (": " + all.sentence(epsilon)) +
+      (motion.empty() ? "" : ", but the robots do not move alike"));
+  return exit_code(all.answer);
 }
 
 }  // namespace kaboum::tools

@@ -9,9 +9,10 @@
 #include <cmath>
 #include <iostream>
 
+#include "common/file_kind.h"
 #include "common/verdict.h"
 #include "robot_bodies.h"
-#include "spheres_page.h"
+#include "robots/spheres_page.h"
 
 namespace kaboum::tools {
 namespace {
@@ -45,6 +46,18 @@ Json link_json(const verify::LinkSpheresVerdict& link) {
   return json;
 }
 
+/// @throws Error as robot::read_spheres; of a robot with other shapes it says what judges them
+robot::SphereFile read(const std::string& file) {
+  try {
+    return robot::read_spheres(file);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::InvalidInput || kind_of(file) != FileKind::Robot) throw;
+    throw Error(error.code(), std::string(error.what()) +
+                                  ". A robot's meshes are judged as RESULT, its boxes, cylinders "
+                                  "and capsules by --bodies");
+  }
+}
+
 }  // namespace
 
 int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
@@ -54,7 +67,7 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
   const robot::RobotFile robot =
       robot::read_robot(o.original, robot::Motions::None, o.xacro_arguments, o.how.shapes.packages);
   robot::require_links(robot, o.how.shapes.links);
-  const robot::SphereFile spheres = robot::read_spheres(o.spheres);
+  const robot::SphereFile spheres = read(o.spheres);
   std::ostream& out = common.report == "-" ? std::cerr : std::cout;
   const verify::SpheresVerdict verdict = verify::decide_spheres(
       robot, spheres, o.spheres, o.how.shapes,
@@ -79,6 +92,7 @@ int verify_spheres(const VerifyRobotOptions& o, const CommonOptions& common) {
          {"spheres", {{"file", o.spheres}, {"format", spheres.format}}},
          {"count", verdict.spheres},
          {"links_held", verdict.held},
+         {"uncovered", verdict.uncovered},
          {"share_outside", {{"lower", verdict.share_lower}, {"upper", verdict.share_upper}}},
          {"depth", verdict.depth},
          {"epsilon", verdict.epsilon ? Json(*verdict.epsilon) : Json()},

@@ -2,6 +2,7 @@
 
 #include "output.h"
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/certify/large_epsilon.h>
 #include <kaboum/io/mesh_io.h>
@@ -13,10 +14,6 @@
 namespace kaboum::tools {
 
 namespace fs = std::filesystem;
-
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + ' ' + (n == 1 ? one : many);
-}
 
 void require_robot_folder(const std::string& output, const std::string& output_format) {
   if (!output_format.empty() || output == "-" || output.empty())

@@ -32,7 +32,4 @@ void say(const robot_folder::RobotWriter& writer, const RobotOptions& options, b
 /// What reports say of it: urdf, documents, stale, links_without_shapes.
 Json report_of(const robot_folder::RobotWriter& writer);
 
-/// "1 body", "2 bodies".
-std::string counted(std::size_t n, const char* one, const char* many);
-
 }  // namespace kaboum::tools

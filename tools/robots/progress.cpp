@@ -25,6 +25,14 @@ std::string time_text(double s) {
   return std::to_string(static_cast<int>(s / 3600 + 0.5)) + " h";
 }
 
+/// Whether there is no terminal that shows more, and nothing was said for long; then it is now.
+bool is_time_to_speak(std::chrono::steady_clock::time_point& said) {
+  const auto now = std::chrono::steady_clock::now();
+  if (::isatty(STDERR_FILENO) == 1 || seconds(now - said) < kSilence) return false;
+  said = now;
+  return true;
+}
+
 }  // namespace
 
 MeshProgress::MeshProgress(const std::string& program, bool quiet, const robot::LinkMeshes& meshes,
@@ -46,6 +54,7 @@ std::string MeshProgress::show(const std::string& stage) {
            (names_.size() == 1 ? " mesh: " : " meshes: ") + names_[done_] + ": " + stage;
   line += ", " + time_text(seconds(Clock::now() - begin_)) + time_left();
   progress_.show(line);
+  if (is_time_to_speak(said_)) log(quiet_, line);
   return line;
 }
 
@@ -59,9 +68,7 @@ void MeshProgress::made(bool cached) {
   ++done_;
   progress_.show("");
   say_end();
-  if (::isatty(STDERR_FILENO) == 1 || done_ >= names_.size() || seconds(now - said_) < kSilence)
-    return;
-  said_ = now;
+  if (done_ >= names_.size() || !is_time_to_speak(said_)) return;
   log(quiet_, std::to_string(done_) + " of " + std::to_string(names_.size()) +
                   " meshes are done, " + time_text(seconds(now - begin_)) + time_left());
 }
@@ -85,6 +92,23 @@ void MeshProgress::say_end() {
              (done_ == 1 ? "is" : "are") + " done, and nothing is written. " +
              (kept_ ? "The cache keeps them: the same command goes on there"
                     : "Nothing is kept (--no-cache)"));
+}
+
+SearchProgress::SearchProgress(const std::string& program, bool quiet, const std::string& what,
+                               bool kept)
+    : what_(what), quiet_(quiet), progress_(quiet), words_(quiet) {
+  words_.set(program + ": ended by a signal while it was looking for " + what +
+             "; nothing is written. " +
+             (kept ? "The cache keeps what was tried: the same command is through with that at once"
+                   : "Nothing is kept (--no-cache)"));
+  if (::isatty(STDERR_FILENO) != 1) log(quiet, "looking for " + what + ", by some ten runs");
+}
+
+void SearchProgress::show(const std::string& stage) {
+  const std::string line =
+      "looking for " + what_ + ", " + time_text(seconds(Clock::now() - begin_)) + ": " + stage;
+  progress_.show(line);
+  if (is_time_to_speak(said_)) log(quiet_, line);
 }
 
 }  // namespace kaboum::tools

@@ -9,7 +9,7 @@
 #include "common/cli.h"
 #include "common/last_words.h"
 
-/// How far the work on a robot's meshes is.
+/// How far the work on a robot is.
 namespace kaboum::tools {
 
 /// Which of a robot's meshes are done, what is left, and what a signal leaves behind.
@@ -39,6 +39,25 @@ class MeshProgress {
   std::size_t done_ = 0;
   double worked_ = 0, worked_seconds_ = 0;  ///< of the meshes that were not in the cache
   Clock::time_point begin_ = Clock::now(), last_ = begin_, said_ = begin_;
+  Progress progress_;
+  LastWords words_;
+};
+
+/// A search of which nobody knows how long it takes.
+class SearchProgress {
+ public:
+  /// Where there is no terminal, it is said at once, and now and then, what is looked for.
+  /// @param kept  what was tried is in the cache
+  SearchProgress(const std::string& program, bool quiet, const std::string& what, bool kept);
+
+  void show(const std::string& stage);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string what_;
+  bool quiet_;
+  Clock::time_point begin_ = Clock::now(), said_ = begin_;
   Progress progress_;
   LastWords words_;
 };

@@ -2,6 +2,7 @@
 #include <kaboum/robot_folder/sphere_text.h>
 
 #include <kaboum/geom/float32.h>
+#include <kaboum/robot/sphere_file.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -217,11 +218,12 @@ std::string sphere_text(SphereFormat format, const robot::RobotFile& robot,
       return urdf_of(robot, bodies, spheres, origin, file);
     case SphereFormat::Xrdf:
       return "format: xrdf\nformat_version: 1.0\n" + yaml_comment(origin) +
-             xrdf_of(robot, spheres, pairs);
+             robot::sphere_count_comment(spheres.size()) + xrdf_of(robot, spheres, pairs);
     case SphereFormat::Curobo:
       break;
   }
-  return yaml_comment(origin) + curobo_of(robot, spheres, pairs);
+  return yaml_comment(origin) + robot::sphere_count_comment(spheres.size()) +
+         curobo_of(robot, spheres, pairs);
 }
 
 }  // namespace kaboum::robot_folder

@@ -1,6 +1,7 @@
 // Spheres of robots as others write them: cuRobo's YAML, XRDF, SRDF and URDF.
 #include <kaboum/robot/sphere_file.h>
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/io/mesh_io.h>
@@ -10,6 +11,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
@@ -18,6 +20,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #ifdef KABOUM_HAS_YAML
@@ -167,7 +170,36 @@ SphereFile read_srdf(const std::string& file, const std::string& text) {
   return out;
 }
 
+constexpr std::string_view kCountWords = "# spheres in this file: ";
+
 #ifdef KABOUM_HAS_YAML
+
+/// Where a text states the number of its spheres.
+struct StatedCount {
+  int line = 0;
+  std::size_t at = 0, length = 0;  ///< of the digits
+  std::size_t count = 0;
+};
+
+/// @throws Error{InvalidInput} on what is no number there
+std::vector<StatedCount> stated_counts(const std::string& file, const std::string& text) {
+  std::vector<StatedCount> out;
+  int line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (std::string_view(text).substr(begin, end - begin).starts_with(kCountWords)) {
+      StatedCount one{line, begin + kCountWords.size(), 0, 0};
+      const char* first = text.data() + one.at;
+      const auto [last, error] = std::from_chars(first, text.data() + end, one.count);
+      one.length = static_cast<std::size_t>(last - first);
+      if (error != std::errc() || one.at + one.length != text.find_last_not_of(" \r", end - 1) + 1)
+        fail(file, line, "the number of spheres is to be stated here");
+      out.push_back(one);
+    }
+    begin = end + 1;
+  }
+  return out;
+}
 
 int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -194,6 +226,9 @@ class TextEdits {
     edits_.push_back({at, scalar.Scalar().size() + (quoted ? 2 : 0), with});
     if (text_.substr(at + (quoted ? 1 : 0), scalar.Scalar().size()) != scalar.Scalar())
       wrong_ = scalar.Mark().line + 1;
+  }
+  void replace(std::size_t at, std::size_t length, const std::string& with) {
+    edits_.push_back({at, length, with});
   }
   void insert(int line, int column, const std::string& what) {
     edits_.push_back({place(line, column), 0, what});
@@ -257,6 +292,12 @@ class YamlFile {
       out = read_xrdf(root);
     else
       out = read_curobo(root);
+    for (const StatedCount& stated : stated_counts(file_, text))
+      if (stated.count != count_)
+        fail(file_, stated.line,
+             counted(stated.count, "sphere is", "spheres are") + " stated, and " +
+                 counted(count_, "is", "are") +
+                 " here: is the file cut? Who changes spheres by hand changes this number, too");
     if (!text.ends_with('\n'))
       out.notes.emplace_back("the file does not end with a line break: is it cut?");
     return out;
@@ -268,16 +309,21 @@ class YamlFile {
     TextEdits edits(text);
     // What is added to a link comes before new links, which may begin where the last link ends.
     std::vector<const LinkSpheres*> added;
+    std::size_t count = count_;
     for (const LinkSpheres& link : wanted) {
       YAML::Node list;
       for (const auto& entry : spheres_)
         if (entry.first.Scalar() == link.link) list = entry.second;
+      const std::size_t known = list.IsSequence() ? list.size() : 0;
+      count += std::max(link.balls.bodies.size(), known) - known;
       if (list.IsSequence())
         edit_link(link, list, edits);
       else
         added.push_back(&link);
     }
     for (const LinkSpheres* link : added) add_link(*link, edits);
+    for (const StatedCount& stated : stated_counts(file_, text))
+      if (count != count_) edits.replace(stated.at, stated.length, std::to_string(count));
     return edits.applied(file_);
   }
 
@@ -320,12 +366,13 @@ class YamlFile {
     if (out.links.empty()) fail(file_, line_of(spheres), kForm);
     require_buffered(out);
     if (buffered_) out.notes.emplace_back("collision_sphere_buffer is added to the radii");
-    leave_out_unnamed(member(kinematics, "collision_link_names"), out);
+    compare_names(member(kinematics, "collision_link_names"), out);
     return out;
   }
 
-  /// Spheres of links that `collision_link_names` does not name are none to cuRobo.
-  void leave_out_unnamed(const YAML::Node& names, SphereFile& out) const {
+  /// Spheres of links that `collision_link_names` does not name are none to cuRobo. Links that it
+  /// names have some, unless the file is cut.
+  void compare_names(const YAML::Node& names, SphereFile& out) const {
     if (!names || names.IsNull()) return;
     if (!names.IsSequence())
       fail(file_, line_of(names), "collision_link_names: a list of links is expected");
@@ -333,10 +380,13 @@ class YamlFile {
     for (const YAML::Node& name : names) named.insert(name.Scalar());
     std::vector<std::string> unnamed;
     for (LinkSpheres& link : out.links) {
-      if (named.contains(link.link) || link.balls.bodies.empty()) continue;
+      if (link.balls.bodies.empty() || named.erase(link.link) > 0) continue;
       unnamed.push_back(link.link);
       link.balls.bodies.clear();
     }
+    if (!named.empty())
+      out.notes.push_back("collision_link_names names " + names_of({named.begin(), named.end()}) +
+                          ", without a sphere here: is the file cut?");
     if (!unnamed.empty())
       out.notes.push_back("the spheres of " + names_of(unnamed) +
                           " are none: collision_link_names does not name them");
@@ -441,13 +491,14 @@ class YamlFile {
       "0, 0.1]\n        radius: 0.05";
 
   /// The spheres of a link by its name.
-  void read_links(const YAML::Node& spheres, SphereFile& out) const {
+  void read_links(const YAML::Node& spheres, SphereFile& out) {
     std::set<std::string> names;
     for (const auto& entry : spheres) {
       LinkSpheres link{entry.first.Scalar(), line_of(entry.first), {}};
       if (!names.insert(link.link).second)
         fail(file_, link.line, "link '" + link.link + "' is there already");
       read_link(entry.second, link);
+      count_ += link.balls.bodies.size();
       out.links.push_back(std::move(link));
     }
   }
@@ -517,14 +568,17 @@ class YamlFile {
 
   void read_link(const YAML::Node& list, LinkSpheres& link) const {
     if (!list.IsSequence())
-      fail(file_, line_of(list), "link '" + link.link + "': a list of spheres is expected");
+      fail(file_, list.IsNull() ? link.line : line_of(list),
+           "link '" + link.link + "': a list of spheres is expected" +
+               (list.IsNull() ? " (is the file cut?)" : ""));
     const double buffer = buffer_of(link.link);
     for (const YAML::Node& sphere : list) {
       const int line = line_of(sphere);
       const YAML::Node center = member(sphere, "center"), radius = member(sphere, "radius");
       if (!sphere.IsMap() || !center || !radius || !center.IsSequence() || center.size() != 3)
         fail(file_, line,
-             "link '" + link.link + "': a sphere needs a center of three numbers and a radius");
+             "link '" + link.link + "': a sphere needs a center of three numbers and a radius" +
+                 (radius ? "" : " (is the file cut?)"));
       for (const auto& entry : sphere)
         if (const std::string key = entry.first.Scalar(); key != "center" && key != "radius")
           fail(file_, line_of(entry.first),
@@ -539,7 +593,8 @@ class YamlFile {
   }
 
   const std::string& file_;
-  YAML::Node spheres_;  ///< by link
+  YAML::Node spheres_;     ///< by link
+  std::size_t count_ = 0;  ///< of all links' spheres
   double buffer_ = 0;
   std::map<std::string, double> of_link_;
   std::vector<std::pair<std::string, int>> buffer_lines_;  ///< of links
@@ -549,6 +604,10 @@ class YamlFile {
 #endif
 
 }  // namespace
+
+std::string sphere_count_comment(std::size_t count) {
+  return std::string(kCountWords) + std::to_string(count) + "\n";
+}
 
 bool is_sphere_file(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();

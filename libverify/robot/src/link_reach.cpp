@@ -11,6 +11,7 @@
 #include <kaboum/verify/region_excess.h>
 #include <kaboum/verify/subject.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -65,6 +66,8 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles
     if (robot::is_point(g)) continue;
     if (g.shape == Geometry::Shape::Mesh) {
       const io::ReadResult read = io::read_mesh(files.only(g.mesh));
+      out.diagonal = std::max(
+          out.diagonal, geom::bounding_box(read.mesh).diagonal() * g.size.cwiseAbs().maxCoeff());
       const Subject subject =
           prepared_subject(read.mesh, {.holes = geom::Holes::Fill,
                                        .quads = read.bent_quads,
@@ -74,6 +77,7 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles
       continue;
     }
     const geom::Mesh round = *geom::convex_hull(robot::bounding_points(g));
+    out.diagonal = std::max(out.diagonal, geom::bounding_box(round).diagonal());
     if (g.shape == Geometry::Shape::Box) {
       take(round, round);
     } else if (const auto inside = geom::convex_hull(points_within(g))) {
@@ -129,18 +133,20 @@ DistanceClaim verify_link_reach(const geom::ConvexSet& inside, const geom::Conve
 
 namespace {
 
-double length_of(const Length& epsilon, const std::string& what) {
-  if (epsilon.percent)
-    throw Error(ErrorCode::InvalidArgument,
-                what +
-                    ": a percentage has no meaning for bodies that hold several meshes: state a "
-                    "length");
-  return epsilon.in("m").value;
+/// @param what  it is of, for messages
+double length_of(const Length& epsilon, const MeasuredLink& link, const std::string& what) {
+  if (!epsilon.percent) return epsilon.in("m").value;
+  const double out = epsilon.of(link.diagonal);
+  if (!(out > 0))
+    throw Error(ErrorCode::InvalidInput,
+                what + ": a percentage of shapes without extent is no length");
+  return out;
 }
 
 LinkReach::InRegion reach_in(const robot::LinkRegion& region, const geom::ConvexSet& inside,
                              const geom::ConvexSet& round, const MeasuredLink& link) {
-  LinkReach::InRegion out{region.name, length_of(region.epsilon, "the region " + region.name)};
+  LinkReach::InRegion out{region.name,
+                          length_of(region.epsilon, link, "the region " + region.name)};
   const auto in = [&](robot::Side side) {
     return [&, side](const geom::ConvexSet& set, const geom::Mesh& shapes) {
       const auto placed = robot::region_in_link(region, side);
@@ -188,11 +194,12 @@ LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet
                             robot::MeshFiles& files, std::optional<double> epsilon,
                             const robot::LinkBounds& bounds) {
   LinkReach out;
-  if (const auto own = bounds.epsilons.find(link); own != bounds.epsilons.end())
-    epsilon = length_of(own->second, "link '" + link + "'");
+  const auto own = bounds.epsilons.find(link);
   const auto regions = bounds.regions.find(link);
-  if (!epsilon && regions == bounds.regions.end()) return out;
+  if (!epsilon && own == bounds.epsilons.end() && regions == bounds.regions.end()) return out;
   const MeasuredLink measured = measured_link(shapes, files);
+  if (own != bounds.epsilons.end())
+    epsilon = length_of(own->second, measured, "link '" + link + "'");
   if (epsilon) {
     out.epsilon = *epsilon;
     out.all = verify_link_reach(inside, round, measured, *epsilon);

@@ -1,6 +1,7 @@
 // Spheres of a robot's links against the links' shapes.
 #include <kaboum/verify/sphere_verdict.h>
 
+#include <kaboum/base/counted.h>
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/base/similar_name.h>
@@ -132,27 +133,28 @@ std::string text_of(const geom::Vec3& p) {
 
 std::string sentence_of(const LinkSpheresVerdict& link) {
   const Inclusion& in = link.inclusion;
+  const std::string own = counted(link.spheres, "sphere", "spheres");
   if (in.surface.answer == Answer::Verified && in.solid.answer == Answer::Refuted)
     return "every triangle is inside, but a void is left in the solid at " +
            text_of(in.solid.witness->point);
   if (link.answer == Answer::Verified && link.triangles == 0)
-    return std::to_string(link.spheres) + " spheres hold its shapes";
+    return counted(link.spheres, "sphere holds its shapes", "spheres hold its shapes");
   if (link.answer == Answer::Verified)
-    return std::to_string(link.spheres) + " spheres hold every triangle" +
+    return counted(link.spheres, "sphere holds every triangle", "spheres hold every triangle") +
            (in.solid.answer == Answer::Verified ? " and the solid" : "; its mesh is open");
   if (link.answer == Answer::Undecided && !link.open.empty()) return link.open;
-  if (link.spheres == 0) return "it has no spheres";
+  if (link.spheres == 0) return "uncovered: it has no spheres";
   if (link.missed && in.surface.answer != Answer::Refuted)
     return "its point " + text_of(link.missed->point) +
-           ", of a shape without triangles, is in none of its " + std::to_string(link.spheres) +
-           " spheres, by " + number_down(link.missed->depth);
+           ", of a shape without triangles, is in none of its " + own + ", by " +
+           number_down(link.missed->depth);
   if (in.surface.answer != Answer::Refuted)
     return (in.surface.answer == Answer::Undecided ? in.surface.reason : in.solid.reason) +
            "; radii that are larger by a millionth would most likely decide it";
   const OutsideBalls& o = link.outside;
   return "between " + percent(o.share_lower) + " and " + percent(o.share_upper) +
-         " % of the surface is outside its " + std::to_string(link.spheres) + " spheres, by " +
-         number_text(o.depth_lower) + " to " + number_text(o.depth_upper) + " at " + text_of(o.at);
+         " % of the surface is outside its " + own + ", by " + number_text(o.depth_lower) + " to " +
+         number_text(o.depth_upper) + " at " + text_of(o.at);
 }
 
 /// The deepest point known of a link that is not held.
@@ -236,7 +238,7 @@ void sum_up(SpheresVerdict& out) {
   for (const LinkSpheresVerdict& link : out.links) {
     out.answer = worse(out.answer, link.answer);
     out.spheres += link.spheres;
-    out.bare += link.spheres == 0 ? 1 : 0;
+    if (link.spheres == 0) out.uncovered.push_back(link.link);
     out.held += link.held == Answer::Verified ? 1 : 0;
     out.within += link.reach.all && link.reach.all->answer == Answer::Verified ? 1 : 0;
     area += link.outside.area;
@@ -247,17 +249,16 @@ void sum_up(SpheresVerdict& out) {
   }
   out.share_lower = area > 0 ? lower / area : 0;
   out.share_upper = area > 0 ? upper / area : 0;
-  out.sentence = std::to_string(out.spheres) + " spheres hold " + std::to_string(out.held) +
-                 " of " + std::to_string(out.links.size()) + " links; " + percent(out.share_lower) +
-                 " to " + percent(out.share_upper) +
+  out.sentence = counted(out.spheres, "sphere holds ", "spheres hold ") + std::to_string(out.held) +
+                 " of " + counted(out.links.size(), "link", "links") + "; " +
+                 percent(out.share_lower) + " to " + percent(out.share_upper) +
                  " % of the surface is outside its own link's spheres" +
                  (out.depth > 0 ? ", by " + number_text(out.depth) + " at the most" : "");
   if (out.epsilon)
-    out.sentence += "; of " + std::to_string(out.within) + " links none is farther than " +
+    out.sentence += "; of " + counted(out.within, "link", "links") + " none is farther than " +
                     number_text(*out.epsilon);
-  if (out.bare > 0)
-    out.sentence +=
-        "; " + std::to_string(out.bare) + (out.bare == 1 ? " link has none" : " links have none");
+  if (!out.uncovered.empty())
+    out.sentence += "; uncovered, without a sphere: " + robot::names_of(out.uncovered);
 }
 
 }  // namespace
@@ -296,8 +297,9 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
       continue;
     }
     judge(round, one);
-    one.reach = decide_link_reach(one.balls, one.balls, link.name, shapes.shapes_of(link), files,
-                                  epsilon, bounds);
+    if (one.spheres > 0)  // none are not near either
+      one.reach = decide_link_reach(one.balls, one.balls, link.name, shapes.shapes_of(link), files,
+                                    epsilon, bounds);
     one.answer = worse(one.answer, one.reach.answer());
     one.sentence += one.reach.sentence();
     out.links.push_back(std::move(one));
@@ -311,6 +313,10 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
   if (!spheres.robot_name.empty() && spheres.robot_name != robot.robot.name)
     out.notes.push_back("the file says that it is of robot '" + spheres.robot_name +
                         "'; this one is '" + robot.robot.name + "'");
+  for (const std::string& note :
+       robot::notes_on({{}, robot::bare_links(robot.robot, shapes.visual, shapes.links).other},
+                       shapes.visual, ": nothing of this is judged"))
+    out.notes.push_back(note);
   note_far_spheres(out);
   sum_up(out);
   return out;

@@ -3,6 +3,7 @@
 #include <kaboum/geom/convex_set.h>
 #include <kaboum/robot/robot.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,10 +31,10 @@ struct SphereFile {
 /// names, where it is there: others have none); of XRDF 1.0 and 2.0 (`geometry`, the one
 /// that `collision` names, with its `buffer_distance`); of an SRDF's <link_sphere_approximation>;
 /// or those of a URDF's <collision> elements, as foam and VAMP write them.
-/// @throws Error{InvalidInput} naming file and line: what is not well-formed or given twice, radii
-///   that are not above 0, numbers that are not finite, shapes that are no spheres, buffers of
-///   links without spheres; Error{NotBuilt} without
-///   yaml-cpp
+/// @throws Error{InvalidInput} naming file and line: what is not well-formed or given twice;
+///   another number of spheres than sphere_count_comment states; radii that are not above 0,
+///   numbers that are not finite, shapes that are no spheres, buffers of links without spheres.
+///   Error{NotBuilt} without yaml-cpp
 SphereFile read_spheres(const std::string& file);
 
 /// The same of a text; a URDF is no xacro.
@@ -48,6 +49,11 @@ SphereFile parse_spheres(const std::string& file, const std::string& text);
 ///   written in a way that is not edited (aliases)
 std::string edited_spheres(const std::string& file, const std::string& text,
                            const std::vector<LinkSpheres>& wanted);
+
+/// A line of YAML that states the number of all spheres of its file, so that one that is cut
+/// between two spheres is told from one that has fewer. Readers of YAML pass over it; read_spheres
+/// refuses another number, and edited_spheres changes it.
+std::string sphere_count_comment(std::size_t count);
 
 /// True if a file holds spheres of links, and nothing else could be meant by it: cuRobo's YAML,
 /// XRDF and SRDF by the extension.

@@ -20,6 +20,9 @@ struct MeasuredLink {
   /// `inside` has polytopes within cylinders, spheres, capsules and ellipsoids, `round` such as
   /// hold them.
   geom::Mesh inside, round;
+  /// The largest diagonal of a shape's box, which percentages are of: of a mesh before its pose,
+  /// of another shape's polytope in the link's frame. [length]
+  double diagonal = 0;
 };
 
 /// @param files  of the robot
@@ -63,8 +66,9 @@ std::string text_of_bare_link(const std::string& link);
 /// that holds what is meant verifies, one that lies in it refutes.
 /// @param inside, round  as of verify_link_reach
 /// @param epsilon  of links without one of their own
-/// @throws Error{InvalidInput} as measured_link; Error{InvalidArgument} on percentages: a link has
-///   several meshes
+/// @param bounds   percentages are of MeasuredLink::diagonal: bodies that are within one of each
+///   shape's own diagonal are within it
+/// @throws Error{InvalidInput} as measured_link, and on percentages of shapes without extent
 LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
                             const std::string& link, const std::vector<robot::Geometry>& shapes,
                             robot::MeshFiles& files, std::optional<double> epsilon,

@@ -30,7 +30,7 @@ struct LinkSpheresVerdict {
   std::string open;      ///< why it is not known that shapes without triangles are held
   std::optional<MissedPoint> missed;  ///< the deepest that is known, where refuted
   Answer held = Answer::Undefined;    ///< `answer` without the distance
-  LinkReach reach;                    ///< of the spheres beyond the shapes, as asked for
+  LinkReach reach;                    ///< of the spheres beyond the shapes, if there are any
   std::string sentence;               ///< in words
   geom::Mesh mesh;                    ///< the triangles
   geom::ConvexSet balls;
@@ -42,8 +42,8 @@ struct SpheresVerdict {
   std::vector<LinkSpheresVerdict> links;  ///< that have a shape, in the robot's order
   std::size_t spheres = 0, held = 0;      ///< held: number of links
   std::optional<double> epsilon = {};     ///< that was asked for [length]
-  std::size_t within = 0;  ///< number of links whose spheres are within it, or what is their own
-  std::size_t bare = 0;    ///< links without spheres
+  std::size_t within = 0;  ///< number of links with spheres, all within it, or what is their own
+  std::vector<std::string> uncovered = {};  ///< links that have shapes and no spheres
   double share_lower = 0, share_upper = 0;  ///< of the area of all links, outside their own spheres
   double depth = 0;                         ///< the largest that is known and finite [length]
   std::vector<std::string> notes;           ///< what a user should know

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "common/verdict.h"
-
 namespace kaboum::tools {
 namespace {
 
@@ -49,8 +47,8 @@ std::vector<std::string> row_of(const verify::LinkSpheresVerdict& link) {
     if (std::isfinite(link.missed->depth)) depth = three_digits(link.missed->depth);
     place = three_digits(p.x()) + ", " + three_digits(p.y()) + ", " + three_digits(p.z());
   }
-  return {link.link, std::to_string(link.spheres), verify::name_of(link.answer), share, depth,
-          place};
+  const char* verdict = link.spheres == 0 ? "uncovered" : verify::name_of(link.answer);
+  return {link.link, std::to_string(link.spheres), verdict, share, depth, place};
 }
 
 }  // namespace
