@@ -973,6 +973,7 @@ def write_spheres(
     robot_bodies: int | None = None,
     share: Literal["farthest", "mean"] = "farthest",
     effort: Literal["fast", "normal", "best"] = "normal",
+    pairs: _Path | None = None,
     # options of shapes
     links: str | Sequence[str] | None = None,
     geometry: Literal["collision", "visual"] = "collision",

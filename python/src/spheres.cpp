@@ -5,6 +5,7 @@
 #include <kaboum/certify/sphere_repair.h>
 #include <kaboum/certify/sphere_shares.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/pairs/matrix.h>
 #include <kaboum/robot/shape_options.h>
 #include <kaboum/robot_folder/sphere_text.h>
 #include <kaboum/verify/sphere_verdict.h>
@@ -63,9 +64,25 @@ certify::SphereShare share_of(const std::string& name) {
   throw Error(ErrorCode::InvalidArgument, "share must be 'farthest' or 'mean'");
 }
 
+/// The pairs of links that a file says need no check.
+/// @param notes  gets what is wrong with the file
+std::vector<robot_folder::UncheckedLinks> unchecked_links(const std::string& file,
+                                                          const robot::Robot& robot,
+                                                          std::vector<std::string>& notes) {
+  const std::vector<char> text = io::read_file(file);
+  const pairs::Matrix matrix =
+      pairs::parse_matrix(std::string(text.begin(), text.end()), file, robot);
+  pairs::require_own(matrix, file, robot);
+  for (const pairs::MatrixFault& fault : matrix.faults)
+    notes.push_back(file + ": line " + std::to_string(fault.line) + ": " + fault.text);
+  std::vector<robot_folder::UncheckedLinks> out;
+  for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
+  return out;
+}
+
 py::dict write_spheres(const py::object& robot, const py::object& file, const py::object& epsilon,
                        const py::object& epsilon_map, std::optional<std::size_t> robot_bodies,
-                       const std::string& share, const std::string& effort,
+                       const std::string& share, const std::string& effort, const py::object& pairs,
                        const py::kwargs& given) {
   certify::RobotRequest r;
   py::dict keywords = given;
@@ -78,6 +95,10 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
     throw Error(ErrorCode::InvalidArgument, "robot_bodies must be 1 at least");
   const std::string path = file_of(file, "file");
   const robot_folder::SphereFormat format = format_of(path);
+  if (!pairs.is_none() && format == robot_folder::SphereFormat::Urdf)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "pairs: pairs of links have a place in .yaml (cuRobo), .xrdf and .srdf, not in " + path);
   const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
   r.set.body_kind = certify::SetRequest::BodyKind::Spheres;
   r.set.effort = effort_of(effort);
@@ -87,6 +108,9 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
   const certify::SphereShare how = share_of(share);
   Watch watch(running.progress);
   std::vector<std::string> notes;
+  const std::vector<robot_folder::UncheckedLinks> unchecked =
+      pairs.is_none() ? std::vector<robot_folder::UncheckedLinks>()
+                      : unchecked_links(file_of(pairs, "pairs"), value.file->robot, notes);
   std::optional<certify::CertifiedBodies> made;
   run(running.threads, [&] {
     const certify::SetCache kept(certify::SetCache::default_folder());
@@ -99,8 +123,8 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
     if (robot_bodies)
       r.epsilons = certify::share_spheres(*value.file, r, *robot_bodies, how, cache, hooks);
     made.emplace(certify::certify_bodies(*value.file, r, cache, hooks));
-    io::write_file(path,
-                   robot_folder::sphere_text(format, *value.file, *made, r.parameters(), path));
+    io::write_file(path, robot_folder::sphere_text(format, *value.file, *made, r.parameters(), path,
+                                                   unchecked));
   });
   py::dict out;
   out["spheres"] = made->artefact().size();
@@ -219,6 +243,7 @@ Verdict verify_spheres(const py::object& robot, const py::object& spheres,
   for (const verify::LinkSpheresVerdict& link : found.links) links.append(dict_of(link));
   out.claims["links"] = links;
   out.claims["share_outside"] = py::make_tuple(found.share_lower, found.share_upper);
+  out.claims["uncovered"] = found.uncovered;
   out.claims["depth"] = found.depth;
   out.claims["sentence"] = found.sentence;
   out.notes = found.notes;
@@ -242,6 +267,9 @@ robot_bodies : int
 share : {'farthest', 'mean'}
     What robot_bodies makes least over the links.
 effort : {'fast', 'normal', 'best'}
+pairs : str or path, optional
+    A file of pairs of links that need no check, as `kaboum-pairs ROBOT --srdf` writes one (SRDF; also MJCF, Drake's filter
+    groups, XRDF and cuRobo's YAML). Those of links with spheres are written as well; not into a URDF.
 {keywords}
 
 Returns
@@ -282,7 +310,8 @@ spheres : str or path
 epsilon : float or str
     Also decides that no point of a sphere is farther from its link's shapes. [length]
 epsilon_map : name of a file, or list of dict, optional
-    The same of whole links, and of regions fixed in their frames, as `certify_robot` takes them; lengths only.
+    The same of whole links, and of regions fixed in their frames, as `certify_robot` takes them; percentages are of the
+    largest diagonal that one of a link's shapes has.
 {keywords}
 
 Returns
@@ -290,7 +319,7 @@ Returns
 Verdict
     Its claims are 'links', a list of dicts with 'link', 'answer', 'sentence', 'spheres', 'share_outside' (bounds of the share
     of the surface), with epsilon 'distance' (an answer), with epsilon_map 'regions' (dicts) and, where it is refuted, 'missed' (a point) and 'depth';
-    'share_outside', 'depth' and 'sentence' of all.
+    'share_outside', 'depth' and 'sentence' of all; 'uncovered', the names of links that have shapes and no spheres.
 
 Raises
 ------
@@ -306,12 +335,13 @@ void bind_spheres(py::module_& module) {
   const std::string write = document(
       "write_spheres",
       "robot: object, file: object, *, epsilon: object = None, epsilon_map: object = None, "
-      "robot_bodies: int = None, share: str = 'farthest', effort: str = 'normal'",
+      "robot_bodies: int = None, share: str = 'farthest', effort: str = 'normal', "
+      "pairs: object = None",
       shapes, "dict", kWriteDoc);
   module.def("write_spheres", &write_spheres, py::arg("robot"), py::arg("file"), py::kw_only(),
              py::arg("epsilon") = py::none(), py::arg("epsilon_map") = py::none(),
              py::arg("robot_bodies") = py::none(), py::arg("share") = "farthest",
-             py::arg("effort") = "normal", write.c_str());
+             py::arg("effort") = "normal", py::arg("pairs") = py::none(), write.c_str());
   const std::string repair = document(
       "repair_spheres",
       "robot: object, spheres: object, file: object, *, epsilon: object, effort: str = 'normal'",

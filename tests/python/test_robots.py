@@ -87,8 +87,10 @@ def test_regions_as_the_tool(arm, tmp_path):
             kaboum.verify_robot(arm, result, epsilon_map=wrong)
     with pytest.raises(kaboum.Error, match="epsilon_map .*epsilons"):
         kaboum.certify_robot(arm, epsilon_map=regions, epsilons={"tool": 0.1})
-    with pytest.raises(kaboum.Error, match="percentage"):
-        kaboum.verify_spheres(arm, spheres, epsilon_map=regions)
+    # Percentages are of the largest diagonal that a shape of the link has.
+    assert kaboum.verify_spheres(arm, spheres, epsilon_map=regions).answer == "refuted"
+    shares = kaboum.verify_spheres(arm, spheres, epsilon_map=[{"frame": "tool", "radius": 1, "epsilon": "1000%"}])
+    assert shares and [r["bound"] > 0.02 for link in shares.claims["links"] for r in link.get("regions", [])] == [True]
 
 
 def test_sweep_holds_the_robot_at_every_instant(arm):
@@ -328,7 +330,7 @@ def test_links_that_could_not_be_held_are_no_frames(arm, tmp_path):
         return set(re.findall(r'link1="(\w+)" link2="(\w+)" reason="(\w+)"', text))
 
     kaboum.certify_robot(shown, geometry="visual", epsilon="5%").write(tmp_path / "all", srdf=True)
-    assert pairs(tmp_path / "all") == {("base", "turned", "Adjacent"), ("turned", "tip", "Adjacent")}
+    assert pairs(tmp_path / "all") == {("base", "turned", "Adjacent"), ("turned", "tip", "Default")}
     (arm.parent / "tool.ply").write_bytes(b"nothing")
     some = kaboum.certify_robot(shown, geometry="visual", epsilon="5%", partial=True)
     assert set(some.links) == {"base", "tip"}
@@ -423,10 +425,34 @@ def test_spheres_are_written_judged_and_repaired(arm, tmp_path):
 
     few = kaboum.write_spheres(arm, tmp_path / "few.xrdf", robot_bodies=12, share="mean", effort="fast")
     assert few["spheres"] <= 12 and kaboum.verify_spheres(arm, tmp_path / "few.xrdf")
+    # Pairs that need no check, as the program writes them.
+    program("kaboum-pairs", arm, "--srdf", tmp_path / "pairs.srdf")
+    for name in ("paired.yaml", "paired.xrdf", "paired.srdf"):
+        paired = kaboum.write_spheres(arm, tmp_path / name, epsilon=0.05, effort="fast", pairs=tmp_path / "pairs.srdf")
+        assert paired["notes"] == []
+        program("bcd-decompose", arm, "-o", tmp_path / ("program-" + name), "--bodies", "spheres", "--epsilon", 0.05,
+                "--effort", "fast", "--pairs", tmp_path / "pairs.srdf")
+        written = (tmp_path / name).read_bytes()
+        assert b"upper" in written and written == (tmp_path / ("program-" + name)).read_bytes()
+    assert 'self_collision_ignore:\n  "base": ["upper"' in (tmp_path / "paired.yaml").read_text()
+    with pytest.raises(kaboum.Error, match="have a place in .yaml"):
+        kaboum.write_spheres(arm, tmp_path / "x.urdf", epsilon=0.05, pairs=tmp_path / "pairs.srdf")
+    (tmp_path / "other.srdf").write_text('<robot name="r"><disable_collisions link1="nose" link2="ear"/></robot>')
+    with pytest.raises(kaboum.Error, match="are they another robot's"):
+        kaboum.write_spheres(arm, tmp_path / "x.yaml", epsilon=0.05, pairs=tmp_path / "other.srdf")
+
     with pytest.raises(kaboum.Error, match="one of epsilon and robot_bodies"):
         kaboum.write_spheres(arm, tmp_path / "x.yaml")
     with pytest.raises(kaboum.Error, match="written to .yaml"):
         kaboum.write_spheres(arm, tmp_path / "x.txt", epsilon=0.05)
+    (tmp_path / "one.yaml").write_text("collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 9\n")
+    one = kaboum.verify_spheres(arm, tmp_path / "one.yaml", epsilon=20)
+    assert one.answer == "refuted" and one.claims["uncovered"] == ["upper", "tool"]
+    assert [link.get("distance") for link in one.claims["links"]] == ["verified", None, None]
+    cut = (tmp_path / "arm.yaml").read_text().splitlines(keepends=True)[:-2]
+    (tmp_path / "cut.yaml").write_text("".join(cut))
+    with pytest.raises(kaboum.Error, match="is the file cut"):
+        kaboum.verify_spheres(arm, tmp_path / "cut.yaml")
     with pytest.raises(kaboum.Error, match="no link 'nose'"):
         (tmp_path / "nose.yaml").write_text("collision_spheres:\n  nose:\n    - center: [0, 0, 0]\n      radius: 1\n")
         kaboum.verify_spheres(arm, tmp_path / "nose.yaml")

@@ -86,7 +86,7 @@ FRONT_ENDS = {
     "verify_cover": (["verify_cover"], {"epsilon_map"} | RUNS, "bound-verify cover"),
     "verify_robot": (["verify_robot"], {"epsilon_map"} | RUNS, "bound-verify robot"),
     "verify_spheres": (["shapes"], {"epsilon", "epsilon_map"} | RUNS, "bound-verify robot"),
-    "write_spheres": (["shapes"], {"epsilon", "epsilon_map", "robot_bodies", "share", "effort", "no_cache"} | RUNS, "bcd-decompose"),
+    "write_spheres": (["shapes"], {"epsilon", "epsilon_map", "robot_bodies", "share", "effort", "pairs", "no_cache"} | RUNS, "bcd-decompose"),
     "repair_spheres": (["shapes"], {"epsilon", "effort"} | RUNS, "bcd-decompose"),
     "verify_sweep": (["verify_sweep"], RUNS, "bound-verify sweep"),
     "World.__init__": (["margins"], set(), "kaboum-check"),
