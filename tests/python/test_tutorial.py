@@ -48,4 +48,8 @@ def test_commands(tmp_path):
     done = subprocess.run(["bash", "-e", "-c", "".join(COMMANDS)], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "every triangle of 7 links is inside" in done.stderr
+    assert "they miss something" in done.stdout and "decided exactly" in done.stderr
+    for page in ("spheres.html", "thin.html"):
+        assert (tmp_path / page).is_file()
+    assert "self_collision_ignore:\n" in (tmp_path / "spheres.yaml").read_text()
     assert "free" in done.stdout
