@@ -94,6 +94,18 @@ TEST(SphereFile, ANumberThatIsStatedHolds) {
   EXPECT_NO_THROW(parse_spheres("a.yaml", "# spheres in this file: 3 \r\n" + std::string(kBlock)));
 }
 
+TEST(SphereFile, LinksThatGetSpheresAreNamed) {
+  const std::string spheres =
+      "collision_spheres:\n  arm:\n    - center: [0, 0, 0]\n      radius: 1\n";
+  for (const char* names :
+       {"collision_link_names: [arm, hand]\n", "collision_link_names: ['arm']  # all\n",
+        "collision_link_names:\n  - arm\n", "collision_link_names:\n- arm\nother: 1\n"}) {
+    const std::string text = names + spheres;
+    const std::vector<LinkSpheres> wanted = changed(parse_spheres("a.yaml", text));
+    expect_same(wanted, parse_spheres("a.yaml", edited_spheres("a.yaml", text, wanted)));
+  }
+}
+
 TEST(SphereFile, WhatCannotBeEditedIsRefused) {
   const std::string shared =
       "collision_spheres:\n  arm: &a\n    - center: [0, 0, 0]\n      radius: 1\n  hand: *a\n";

@@ -322,6 +322,7 @@ class YamlFile {
         added.push_back(&link);
     }
     for (const LinkSpheres* link : added) add_link(*link, edits);
+    add_names(wanted, edits);
     for (const StatedCount& stated : stated_counts(file_, text))
       if (count != count_) edits.replace(stated.at, stated.length, std::to_string(count));
     return edits.applied(file_);
@@ -372,12 +373,12 @@ class YamlFile {
 
   /// Spheres of links that `collision_link_names` does not name are none to cuRobo. Links that it
   /// names have some, unless the file is cut.
-  void compare_names(const YAML::Node& names, SphereFile& out) const {
+  void compare_names(const YAML::Node& names, SphereFile& out) {
     if (!names || names.IsNull()) return;
     if (!names.IsSequence())
       fail(file_, line_of(names), "collision_link_names: a list of links is expected");
-    std::set<std::string> named;
-    for (const YAML::Node& name : names) named.insert(name.Scalar());
+    names_ = names;
+    std::set<std::string> named = named_links();
     std::vector<std::string> unnamed;
     for (LinkSpheres& link : out.links) {
       if (link.balls.bodies.empty() || named.erase(link.link) > 0) continue;
@@ -390,6 +391,33 @@ class YamlFile {
     if (!unnamed.empty())
       out.notes.push_back("the spheres of " + names_of(unnamed) +
                           " are none: collision_link_names does not name them");
+  }
+
+  [[nodiscard]] std::set<std::string> named_links() const {
+    std::set<std::string> out;
+    for (const YAML::Node& name : names_) out.insert(name.Scalar());
+    return out;
+  }
+
+  /// Links that get spheres are named where links have to be.
+  void add_names(const std::vector<LinkSpheres>& wanted, TextEdits& edits) const {
+    if (!names_.IsSequence()) return;
+    const std::set<std::string> named = named_links();
+    const std::string indent(static_cast<std::size_t>(names_.Mark().column), ' ');
+    const bool flow = names_.Style() == YAML::EmitterStyle::Flow;
+    std::string more;
+    for (const LinkSpheres& link : wanted) {
+      if (link.balls.bodies.empty() || named.contains(link.link)) continue;
+      const std::string name = "\"" + link.link + "\"";
+      if (!flow) more.append(indent).append("- ");
+      more.append(name).append(flow ? ", " : "\n");
+    }
+    if (more.empty()) return;
+    if (flow && named.empty()) more.resize(more.size() - 2);
+    if (flow)
+      edits.insert(names_.Mark().line, names_.Mark().column + 1, more);
+    else
+      edits.insert_after_line(last_line(names_), more);
   }
 
   /// @throws Error{InvalidInput} where a link has a buffer and no spheres
@@ -594,6 +622,7 @@ class YamlFile {
 
   const std::string& file_;
   YAML::Node spheres_;     ///< by link
+  YAML::Node names_;       ///< of links that may have some; none: all
   std::size_t count_ = 0;  ///< of all links' spheres
   double buffer_ = 0;
   std::map<std::string, double> of_link_;
