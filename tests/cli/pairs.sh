@@ -117,8 +117,8 @@ expect 2 'requires' "$P" arm.urdf -o corrected.srdf
 expect 2 'links' "$P" arm.urdf --judge stated.srdf --links base,upper
 expect 3 'no two links with shapes' "$P" arm.urdf --links base
 sed 's/collision/visual/g' arm.urdf >drawn.urdf
-expect 3 'no two links with shapes, .*; --visual takes shapes that are drawn' "$P" drawn.urdf
-expect 0 '6 pairs: ' "$P" drawn.urdf --visual
+expect 3 'no two links with shapes, .*; --geometry visual takes shapes that are drawn' "$P" drawn.urdf
+expect 0 '6 pairs: ' "$P" drawn.urdf --geometry visual
 echo '<robot><disable_collisions link1="base"/></robot>' >bad.srdf
 expect 3 "bad.srdf: line 1: <disable_collisions> has no 'link2'" "$P" arm.urdf --judge bad.srdf
 expect 3 'absent.srdf' "$P" arm.urdf --judge absent.srdf

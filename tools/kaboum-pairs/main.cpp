@@ -37,7 +37,7 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
   if (surfaces.size() < 2)
     throw Error(ErrorCode::InvalidInput,
                 o.robot + ": there are no two links with shapes, so there is no pair" +
-                    (o.choice.visual ? "" : "; --visual takes shapes that are drawn"));
+                    (o.choice.visual ? "" : "; --geometry visual takes shapes that are drawn"));
   tools::Progress progress(o.common.quiet);
   std::mutex one;
   std::chrono::steady_clock::time_point shown;
