@@ -180,6 +180,7 @@ RepairedSpheres repair_spheres(const robot::RobotFile& robot, const std::string&
   const robot::SphereFile given = robot::parse_spheres(file, text);
   verify::require_spheres_of(robot, given, file);
   RepairedSpheres out;
+  out.notes = given.notes;
   std::vector<RepairedBalls> links;
   robot::MeshFiles files(robot.path, request.shapes.packages);
   for (std::uint32_t i = 0; i < robot.robot.links.size(); ++i) {

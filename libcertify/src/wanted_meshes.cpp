@@ -74,7 +74,11 @@ WantedMeshes wanted_meshes(const robot::RobotFile& robot, const robot::ShapeChoi
 
 Length in_unit_of_mesh(Length length, const geom::Vec3& scale) {
   length = length.in("m");
-  if (!length.percent) length.value /= scale.maxCoeff();
+  // Lengths grow by the largest scale at most, the diagonal by the least one at least.
+  if (length.percent)
+    length.value *= scale.minCoeff() / scale.maxCoeff();
+  else
+    length.value /= scale.maxCoeff();
   return length;
 }
 

@@ -99,10 +99,15 @@ class Search {
   }
 
   Candidate run() {
-    if (pieces_.size() == 1 && !pieces_.front().is_blend)
-      run_straight();
-    else
-      run_bent();
+    constexpr int kMostTurns = 8;
+    for (int turn = 0; turn < kMostTurns && !std::isfinite(best_.duration); ++turn) {
+      if (pieces_.size() == 1 && !pieces_.front().is_blend)
+        run_straight();
+      else
+        run_bent();
+      if (!(needed_ > usual_)) break;
+      usual_ = 4 * needed_;  // jerks are smaller than they may be then
+    }
     return std::move(best_);
   }
 
@@ -134,7 +139,11 @@ class Search {
     const double jerk = *std::ranges::max_element(changes),
                  slower = std::max({1.0, velocity, std::sqrt(acceleration), std::cbrt(jerk)}),
                  duration = slower * (profile.times.back() + span);
-    if (duration < best_.duration) best_ = {profile, span, slower, duration};
+    const double least = kLeastSpan * profile.times.back();
+    if (span < least)
+      needed_ = std::max(needed_, least);
+    else if (duration < best_.duration)
+      best_ = {profile, span, slower, duration};
     return changes;
   }
 
@@ -171,9 +180,13 @@ class Search {
   static void even_out(const SpeedProfile& profile, const std::vector<double>& changes, double span,
                        std::vector<double>& most);
 
+  /// Of the time: a mean over less is rounded by more than is spared for it.
+  static constexpr double kLeastSpan = 0x1p-20;
+
   std::span<const PathPiece> pieces_;
   const SpeedLimits& limits_;
-  double usual_ = 0;  ///< span in which all accelerations may change by all of them
+  double usual_ = 0;   ///< span in which all accelerations may change by all of them
+  double needed_ = 0;  ///< span that one tried should have had
   Candidate best_;
 };
 
@@ -328,7 +341,8 @@ std::optional<Progress> TimeLaw::straight_at(double time) const {
 }
 
 std::pair<double, double> TimeLaw::times_of(std::size_t piece) const {
-  const auto [first, end] = std::ranges::equal_range(stretches_, piece, {}, &Stretch::piece);
+  const auto first = std::ranges::lower_bound(stretches_, piece, {}, &Stretch::piece),
+             end = std::ranges::upper_bound(stretches_, piece, {}, &Stretch::piece);
   const double begin = first->begin, done = end == stretches_.end() ? time_ : end->begin;
   return {slower_ * begin, slower_ * (done + span_)};
 }

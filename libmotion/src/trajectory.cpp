@@ -214,7 +214,10 @@ Trajectory::Trajectory(robot::Path path, const std::vector<double>& shares,
       else
         made->bends.back().second = std::max(made->bends.back().second, bend.second);
     }
-    made->passed[made->stopping[i + 1]] = begin + whole;
+    const std::size_t stop = made->stopping[i + 1];
+    made->passed[stop] = begin + whole;
+    // Waypoints that are the same as the stop, but before it.
+    for (std::size_t k = stop; k-- > 0 && path_[k] == path_[stop];) made->passed[k] = begin + whole;
     made->legs.push_back({std::move(law), stretch});
   }
   for (std::size_t i = 1; i < path_.size(); ++i)  // those that are the same as the one before

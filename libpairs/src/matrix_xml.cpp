@@ -246,6 +246,9 @@ ReadMatrix read_xml(const std::string& text, const std::string& name,
            "<" + elements.front().name + "> is neither SRDF (<robot>) nor MJCF (<mujoco>)");
   if (std::ranges::any_of(elements, [](const Element& e) { return e.name.starts_with("xacro:"); }))
     refuse(name, elements.front().line, "this is xacro: give what xacro makes of it");
+  for (const Element& e : elements)
+    if (e.name == "link" && e.parent == 0)
+      refuse(name, e.line, "<link>: this is a robot (URDF), which states no pairs: give its SRDF");
   out.end_of_statements = elements.front().end_tag;
   for (const Element& e : elements) {
     if (e.name == "disable_collisions" || e.name == "enable_collisions") {

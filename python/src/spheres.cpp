@@ -11,6 +11,8 @@
 #include <kaboum/verify/sphere_verdict.h>
 
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "answers.h"
 #include "request_options.h"
@@ -26,6 +28,14 @@ std::string file_of(const py::object& value, const char* name) {
   if (!path)
     throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a str or an os.PathLike");
   return *path;
+}
+
+/// @throws Error{InvalidArgument} where what is to be written would take an input's place
+void require_other(const std::string& output, const std::filesystem::path& input) {
+  std::error_code absent;
+  if (std::filesystem::equivalent(output, input, absent))
+    throw Error(ErrorCode::InvalidArgument,
+                output + " would be overwritten, which is read: name another file");
 }
 
 robot_folder::SphereFormat format_of(const std::string& file) {
@@ -100,6 +110,8 @@ py::dict write_spheres(const py::object& robot, const py::object& file, const py
         ErrorCode::InvalidArgument,
         "pairs: pairs of links have a place in .yaml (cuRobo), .xrdf and .srdf, not in " + path);
   const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
+  require_other(path, value.file->path);
+  if (!pairs.is_none()) require_other(path, file_of(pairs, "pairs"));
   r.set.body_kind = certify::SetRequest::BodyKind::Spheres;
   r.set.effort = effort_of(effort);
   if (!epsilon.is_none()) r.set.epsilon = epsilon_of(epsilon);
@@ -145,6 +157,8 @@ py::dict repair_spheres(const py::object& robot, const py::object& spheres, cons
     throw Error(ErrorCode::InvalidArgument,
                 "spheres are written in the format that they have: name the file as " + from);
   const RobotValue value = robot_of(robot, "robot", robot::Motions::None);
+  require_other(to, value.file->path);
+  require_other(to, from);
   robot::require_links(*value.file, r.shapes.links);
   r.epsilon = epsilon_of(epsilon);
   r.effort = effort_of(effort);

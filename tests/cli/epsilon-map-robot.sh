@@ -216,4 +216,13 @@ done
 expect 3 'none.json' "$V" robot arm.urdf ball/arm.urdf --epsilon-map none.json
 expect 2 'epsilon-map is empty' "$V" robot arm.urdf ball/arm.urdf --epsilon-map ''
 expect 2 'epsilon-map is empty' "$B" arm.urdf -o x --epsilon 6mm --epsilon-map ''
+
+# A percentage is of the link's own size, where scales differ by axis, too.
+printf 'OFF\n8 12 0\n' >slab.off
+for z in -5 5; do for y in -5 5; do for x in -0.5 0.5; do echo "$x $y $z" >>slab.off; done; done; done
+printf '3 0 2 3\n3 0 3 1\n3 4 5 7\n3 4 7 6\n3 0 1 5\n3 0 5 4\n3 2 6 7\n3 2 7 3\n3 0 4 6\n3 0 6 2\n3 1 3 7\n3 1 7 5\n' >>slab.off
+echo '<robot name="slab"><link name="base"><collision><geometry><mesh filename="slab.off" scale="10 0.1 0.1"/></geometry></collision></link></robot>' >slab.urdf
+echo '{"regions": [{"link": "base", "epsilon": "1%"}]}' >slab.json
+printf 'collision_spheres:\n  base:\n    - center: [0, 0, 0]\n      radius: 6\n' >slab.yaml
+expect 1 '' "$V" robot slab.urdf --spheres slab.yaml --epsilon-map slab.json
 finish

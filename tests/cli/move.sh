@@ -291,4 +291,16 @@ printf 'j1,j2\n0.8,0\n' >one.csv
 expect 2 "equally many waypoints: 'right' has 1, 'left' has 2" "$BIN/kaboum-check" two.json --path left=down.csv --path right=one.csv
 shows 0 'free at every instant' "$BIN/kaboum-check" two.json --path right=come.csv
 expect 2 'names another robot' "$BIN/kaboum-check" two.json --robot left --path right=come.csv
+# A robot with several last links and no tools: none need be named for joints.
+{
+  echo '<robot name="fork">'
+  for link in a b c; do echo "<link name=\"$link\"><collision><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision></link>"; done
+  for link in b c; do
+    echo "<joint name=\"j$link\" type=\"revolute\"><parent link=\"a\"/><child link=\"$link\"/><origin xyz=\"0 $([ $link = b ] && echo 1 || echo -1) 0\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>"
+  done
+  echo '</robot>'
+} >fork.urdf
+"$BIN/kaboum-scene" make fork.json --robot fork=fork.urdf --no-cache --quiet || fail 'no scene'
+expect 0 '' "$BIN/kaboum-move" fork.json --from=-0.5,0 --to=0.5,0.2 -o fork.csv
+expect 2 'several last links' "$BIN/kaboum-move" fork.json --from=-0.5,0 --to-pose '0 0 0' -o fork.csv
 finish

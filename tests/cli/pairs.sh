@@ -122,6 +122,7 @@ expect 0 '6 pairs: ' "$P" drawn.urdf --geometry visual
 echo '<robot><disable_collisions link1="base"/></robot>' >bad.srdf
 expect 3 "bad.srdf: line 1: <disable_collisions> has no 'link2'" "$P" arm.urdf --judge bad.srdf
 expect 3 'absent.srdf' "$P" arm.urdf --judge absent.srdf
+expect 3 'this is a robot (URDF), which states no pairs' "$P" arm.urdf --judge drawn.urdf
 
 # Bodies in a solid are in it whatever is wrong with its mesh. Never is not said where it is not known.
 cat >in.py <<'END'

@@ -38,6 +38,7 @@ expect 1 'note: the set was made to lie inside: bound-verify mesh --inner bar.of
 # What is printed decides it as it is: of sets inside and outside, by epsilon and by number, scaled, in parts, of other formats.
 cp bar.off bar
 sed 's/^3 0 2 1$/3 0 1 2/' bar.off >turned.off
+sed -e 's/^8 12 0$/8 10 0/' -e '/^3 1 3 5$/d' -e '/^3 3 7 5$/d' bar.off >cup.off
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >sheet.off
 while IFS='|' read -r input output options; do
   # shellcheck disable=SC2086
@@ -67,6 +68,8 @@ bar.off|out.glb|--bodies spheres --max-bodies 5
 bar.off|out.glb|--bodies capsules --epsilon 0.4
 bar.off|out.glb|--bodies mixed --epsilon 0.4
 bar.off|out.glb|--epsilon 0.2 --prepare wrap
+cup.off|out.glb|--epsilon 0.2 --prepare wrap
+cup.off|out.glb|--bodies spheres --epsilon 0.6 --prepare wrap
 turned.off|out.glb|--epsilon 0.2
 sheet.off|out.glb|--epsilon 0.2
 E
@@ -357,4 +360,35 @@ expect 1 "the spheres of 'base' are none: collision_link_names does not name the
 expect 1 'does not end with a line break: is it cut' "$V" robot arm.urdf --spheres named.yaml
 srdf 9 | sed 's/robot name="arm"/robot name="panda"/' >other.srdf
 expect 0 "says that it is of robot 'panda'; this one is 'arm'" "$V" robot arm.urdf --spheres other.srdf
+# The number of all spheres is looked at below something, too, and behind a byte order mark; names are words.
+{ echo 'robot_cfg:'; echo '  kinematics:'; sed 's/^/    /' arm.yaml; } >deep.yaml
+expect 0 '' "$V" robot arm.urdf --spheres deep.yaml
+sed 's/# spheres in this file: /&9/' deep.yaml >cut.yaml
+expect 3 'cut.yaml:[0-9]*: .*spheres' "$V" robot arm.urdf --spheres cut.yaml
+{ printf '\357\273\277# spheres in this file: 7\n'; grep -v '^#' arm.yaml; } >cut.yaml
+expect 3 'cut.yaml:1: .*spheres' "$V" robot arm.urdf --spheres cut.yaml
+printf 'collision_link_names: &n\n  - base\n  - *n\ncollision_spheres:\n  base:\n    - center: [2, 0.5, 0.5]\n      radius: 4\n' >cyc.yaml
+expect 3 'cyc.yaml:[0-9]*: collision_link_names: the name of a link' "$B" arm.urdf --repair cyc.yaml -o x.yaml --epsilon 4
+sed 's/collision_link_names: \[hand\]/collision_link_names: [base]/' named.yaml >unnamed.yaml
+expect 3 "unnamed.yaml:[0-9]*: spheres of link 'hand', which collision_link_names does not name" "$B" arm.urdf --repair unnamed.yaml -o x.yaml --epsilon 9
+absent x.yaml
+
+# Spheres that always meet though their links do not are told, and no longer with a smaller epsilon.
+cat >near.urdf <<'U'
+<robot name="near">
+  <link name="base"><collision><geometry><box size="1 1 0.2"/></geometry></collision></link>
+  <link name="turret"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><box size="1 1 0.2"/></geometry></collision></link>
+  <joint name="a" type="revolute"><parent link="base"/><child link="turret"/><origin xyz="0 0 0.15"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+  <joint name="b" type="revolute"><parent link="turret"/><child link="arm"/><origin xyz="0 0 0.15"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+</robot>
+U
+expect 0 "spheres of 'base' and 'arm' meet in 1000 of 1000 .*--epsilons" "$B" near.urdf -o near.yaml --bodies spheres --epsilon 0.2 --effort fast --report near.json
+json near.json "r['meeting'] == [{'links': ['base', 'arm'], 'of_thousand': 1000}]"
+expect 0 "spheres of 'base' and 'arm' meet in 1000 of 1000" "$B" near.urdf -o mended.yaml --repair near.yaml --epsilon 0.2
+expect 0 '' "$B" near.urdf -o near.yaml --bodies spheres --epsilon 0.03 --effort fast --report near.json
+json near.json "r['meeting'] == []"
+echo '<robot name="near"><disable_collisions link1="arm" link2="base" reason="Never"/></robot>' >near.srdf
+expect 0 'its pairs: kaboum-pairs near.urdf --judge near.yaml --fail-on open' "$B" near.urdf -o near.yaml --bodies spheres --epsilon 0.2 --effort fast --pairs near.srdf --report near.json
+json near.json "r['meeting'] == []"
 finish

@@ -265,6 +265,7 @@ TEST(BlendedTrajectory, WaypointsThatAreRepeatedChangeNothing) {
   EXPECT_EQ(again.time_at(1), 0);
   EXPECT_EQ(again.time_at(2), again.time_at(3));
   EXPECT_EQ(again.time_at(5), again.duration());
+  EXPECT_EQ(again.time_at(4), again.duration());
   EXPECT_EQ(Trajectory({{1, 2}}, Values{0}, two, 500).samples(), 1U);
   EXPECT_EQ(Trajectory({{1, 2}, {1, 2}}, {0, 0}, two, 500).samples(), 1U);
 }

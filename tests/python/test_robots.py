@@ -403,6 +403,9 @@ def test_spheres_are_written_judged_and_repaired(arm, tmp_path):
     assert made["spheres"] > 2 and 0 < made["mean_reach"] <= made["reach"] <= 0.05
     program("bcd-decompose", arm, "-o", tmp_path / "program.yaml", "--bodies", "spheres", "--epsilon", 0.05, "--effort", "fast")
     assert (tmp_path / "arm.yaml").read_bytes() == (tmp_path / "program.yaml").read_bytes()
+    for inputs in ({}, {"pairs": tmp_path / "arm.yaml"}):
+        with pytest.raises(kaboum.Error, match="would be overwritten"):
+            kaboum.write_spheres(arm, arm if not inputs else tmp_path / "arm.yaml", epsilon=0.05, **inputs)
     verdict = kaboum.verify_spheres(arm, tmp_path / "arm.yaml")
     assert verdict and [link["link"] for link in verdict.claims["links"]] == ["base", "upper", "tool"]
     assert verdict.claims["share_outside"] == (0, 0)

@@ -48,12 +48,9 @@ std::string page_of(const DecomposeOptions& o, const certify::SetCertificate& ce
 std::string check_of(const DecomposeOptions& o, io::SetFormat format,
                      const certify::SetCertificate& c, const geom::ConvexSet& set) {
   if (o.input == "-" || o.output == "-") return {};
-  const auto file = [](const std::string& path) {
-    return shell_word(path.starts_with('-') ? "./" + path : path);
-  };
   const bool outer = c.direction == certify::SetRequest::Direction::Outer;
   std::string out = outer ? "bound-verify cover " : "bound-verify mesh --inner ";
-  out += file(o.input) + " " + file(o.output);
+  out += shell_file(o.input) + " " + shell_file(o.output);
   if (!outer && format == io::SetFormat::Obj) out += " --set";
   if (o.set.request.scale != 1) out += " --scale " + Length{o.set.request.scale}.text();
   if (!o.input_format.name.empty()) out += " --input-format " + o.input_format.name;
@@ -61,7 +58,8 @@ std::string check_of(const DecomposeOptions& o, io::SetFormat format,
   if (!o.output_format.empty() && format != io::SetFormat::Directory)
     out += " --approximation-format " + o.output_format;
   const certify::PreparationOptions& preparation = o.set.preparation;
-  if (preparation.mode != certify::PreparationOptions::Mode::Off) out += " --prepare";
+  // A wrap holds triangles of which the solid need not be known.
+  if (preparation.mode != certify::PreparationOptions::Mode::Off && !c.wrap) out += " --prepare";
   if (preparation.drop_sheets) out += " --drop-sheets";
   // What is claimed then is about the triangles that stand for exact faces.
   if (outer && !preparation.holds_exact_faces()) out += " --exact-points 0";

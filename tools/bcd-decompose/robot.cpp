@@ -36,6 +36,7 @@
 #include "inertia.h"
 #include "robots/bodies.h"
 #include "robots/check.h"
+#include "robots/meeting_spheres.h"
 #include "robots/next_steps.h"
 #include "robots/output.h"
 #include "robots/progress.h"
@@ -443,8 +444,8 @@ constexpr double kMore = 1.001;  ///< of a distance, so that it is decided
 /// @param distance  of the farthest point [m]
 std::string check_of_shapes(const Run& run, const BodyFormat& format, bool reached,
                             double distance) {
-  std::string out = "bound-verify robot " + shell_word(run.o.input) +
-                    (format.spheres ? " --spheres " : " --bodies ") + shell_word(run.o.output) +
+  std::string out = "bound-verify robot " + shell_file(run.o.input) +
+                    (format.spheres ? " --spheres " : " --bodies ") + shell_file(run.o.output) +
                     reading_words(run.o.robot);
   const std::optional<Length> epsilon = run.request.set.wanted_epsilon();
   if (reached && epsilon && !epsilon->percent && run.request.epsilons.empty())
@@ -467,6 +468,9 @@ void say_shapes(const Run& run, const BodyFormat& format, const certify::Certifi
                           ", no point farther from its link's shapes than " + number_up(distance) +
                           ", on the mean of links " + number_up(mean_distance(bodies)));
   log(o.common.quiet, "from the files alone: " + check);
+  if (!o.pairs.empty())
+    log(o.common.quiet, "its pairs: kaboum-pairs " + shell_file(o.input) + " --judge " +
+                            shell_file(o.output) + " --fail-on open");
   if (format.spheres && o.preview.empty())
     log(o.common.quiet,
         "seen in a browser: by --preview FILE.html here, or --page FILE.html there");
@@ -477,6 +481,38 @@ void say_shapes(const Run& run, const BodyFormat& format, const certify::Certifi
             ": no pairs of links are stated that need no check, and neighbouring links seem "
             "to collide then: kaboum-pairs ROBOT --srdf FILE finds them, --pairs FILE states "
             "them");
+}
+
+/// Warns of links whose spheres always meet, in what was written.
+/// @return the warnings
+Json warn_of_meeting(const robot::Robot& robot, const std::string& file, const std::string& text,
+                     const std::vector<robot_folder::UncheckedLinks>& unchecked, bool quiet,
+                     const std::string& epsilon) {
+  std::vector<std::pair<std::string, std::string>> left_out;
+  left_out.reserve(unchecked.size());
+  for (const robot_folder::UncheckedLinks& pair : unchecked) left_out.emplace_back(pair.a, pair.b);
+  Json out = Json::array();
+  for (const MeetingLinks& links :
+       meeting_links(robot, robot::parse_spheres(file, text), left_out)) {
+    log(quiet, text_of(links, epsilon));
+    out.push_back({{"links", {links.a, links.b}}, {"of_thousand", links.of_thousand}});
+  }
+  return out;
+}
+
+/// Pairs that a file of spheres states itself; none where it states none that can be read.
+std::vector<robot_folder::UncheckedLinks> stated_pairs(const robot::Robot& robot,
+                                                       const std::string& file,
+                                                       const std::string& text) {
+  std::vector<robot_folder::UncheckedLinks> out;
+  if (sphere_format_of(file) == robot_folder::SphereFormat::Urdf) return out;
+  try {
+    for (const pairs::DisabledPair& pair : pairs::parse_matrix(text, file, robot).pairs)
+      out.push_back({pair.a, pair.b, pair.reason});
+  } catch (const Error&) {
+    return {};
+  }
+  return out;
 }
 
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
@@ -528,10 +564,17 @@ int decompose_into_shapes(const DecomposeOptions& o) {
     reached = reached && distance <= epsilon->value;
   const std::string check = check_of_shapes(run, format, reached, distance);
   say_shapes(run, format, bodies, check, distance, unchecked.empty());
+  Json meeting = Json::array();
+  if (format.spheres) {
+    const std::vector<char> text = io::read_file(o.output);
+    meeting = warn_of_meeting(run.robot.robot, o.output, {text.begin(), text.end()}, unchecked,
+                              o.common.quiet, "--epsilons");
+  }
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
                  {{spheres ? "spheres" : "bodies", bodies.artefact().size()},
+                  {"meeting", std::move(meeting)},
                   {"reach_upper", distance},
                   {"mean_reach_upper", mean_distance(bodies)},
                   {"meshes", std::move(meshes)},
@@ -567,7 +610,7 @@ std::string text_of(const certify::RepairedLink& link) {
 /// @param reach  how far the farthest reaches [m]
 std::string check_of_repaired(const DecomposeOptions& o, double reach) {
   const Length epsilon = *certify::request_of(o.set).epsilon;
-  return "bound-verify robot " + shell_word(o.input) + " --spheres " + shell_word(o.output) +
+  return "bound-verify robot " + shell_file(o.input) + " --spheres " + shell_file(o.output) +
          reading_words(o.robot) + " --epsilon " +
          (epsilon.percent ? number_up(kMore * reach) : epsilon.text());
 }
@@ -619,9 +662,13 @@ int repair(const DecomposeOptions& o) {
   const std::string check = check_of_repaired(o, all.epsilon);
   log(o.common.quiet, "from the files alone: " + check);
   for (const std::string& note : made.notes) log(o.common.quiet, "note: " + note);
+  Json meeting =
+      warn_of_meeting(robot.robot, o.output, made.text,
+                      stated_pairs(robot.robot, o.output, made.text), o.common.quiet, "--epsilon");
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",
                  {{"spheres", made.spheres},
+                  {"meeting", std::move(meeting)},
                   {"kept", all.kept},
                   {"grown", all.grown},
                   {"moved", all.moved},

@@ -80,19 +80,26 @@ void look_at_fingers(const CheckOptions& o, const world::Checker& checker, std::
   const world::WorldState state = initial_state(checker.world());
   for (std::size_t i = 0; i < out.free.size(); ++i) {
     const robot::Path path = path_of(i);
-    world::MotionOptions options = o.motion;
-    try {
-      options.around = world::finger_room_along(
-          checker.world(), robot, state.attachments, path,
-          (o.motions.empty() ? "row " + std::to_string(i + 1)
-                             : "motion " + std::to_string(i + 1) + ", row"));
-    } catch (const Error& error) {
-      throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
+    const std::string what = o.motions.empty() ? "row " + std::to_string(i + 1)
+                                               : "motion " + std::to_string(i + 1) + ", row";
+    // With all robots of which fingers hold something, wherever these stop.
+    std::vector<world::RobotPath> paths;
+    bool any = false;
+    for (std::size_t r = 0; r < state.q.size(); ++r) {
+      world::RobotPath one{r, r == robot ? path : robot::Path(path.size(), state.q[r])};
+      try {
+        one.around =
+            world::finger_room_along(checker.world(), r, state.attachments, one.path, what);
+      } catch (const Error& error) {
+        throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
+      }
+      any = any || !one.around.empty();
+      if (r == robot || !one.around.empty()) paths.push_back(std::move(one));
     }
-    if (options.around.empty()) return;
+    if (!any || out.free[i] == 0) continue;
+    world::MotionOptions options = o.motion;
     options.where = false;
-    if (out.free[i] == 0 || check_motion(checker, state, robot, path, options).outcome ==
-                                world::MotionAnswer::Outcome::Free)
+    if (check_motions(checker, state, paths, options).outcome == world::MotionAnswer::Outcome::Free)
       continue;
     out.free[i] = 0;
     --out.counts.free;

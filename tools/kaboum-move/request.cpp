@@ -53,6 +53,7 @@ void add_goals(MoveRequest& r, robot::Path goals, const MoveOptions& o) {
 
 /// The configurations with which the tool has the poses that are asked for.
 void add_pose_goals(MoveRequest& r, const MoveOptions& o) {
+  if (o.to_pose.empty()) return;  // no tool need be known then
   const world::ToolFrame tool = motion::moving_frame(r.model(), o.keep.tool);
   std::size_t number = o.to.size();
   for (const std::string& text : o.to_pose) {

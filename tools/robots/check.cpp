@@ -75,13 +75,10 @@ RobotCheck check_of(const std::string& original, const std::string& result,
                     const RobotOptions& options, const certify::PreparationOptions& preparation,
                     const std::optional<Length>& epsilon, const std::optional<std::string>& map,
                     const std::vector<certify::LinkVerdict>& verdicts) {
-  const auto file = [](const std::string& path) {
-    return shell_word(path.starts_with('-') ? "./" + path : path);
-  };
   RobotCheck out;
   out.passes = std::ranges::all_of(
       verdicts, [](const auto& link) { return link.outcome < Outcome::Undecided; });
-  out.command = "bound-verify robot " + file(original) + " " + file(result);
+  out.command = "bound-verify robot " + shell_file(original) + " " + shell_file(result);
   using Mode = certify::PreparationOptions::Mode;
   if (preparation.mode == Mode::Wrap)
     out.command += " --prepare=wrap";

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -21,8 +22,8 @@ double seconds(std::chrono::steady_clock::duration time) {
 /// "40 s", "3 min", "2 h"
 std::string time_text(double s) {
   if (s < 90) return std::to_string(static_cast<int>(s)) + " s";
-  if (s < 5400) return std::to_string(static_cast<int>(s / 60 + 0.5)) + " min";
-  return std::to_string(static_cast<int>(s / 3600 + 0.5)) + " h";
+  if (s < 5400) return std::to_string(std::lround(s / 60)) + " min";
+  return std::to_string(std::lround(s / 3600)) + " h";
 }
 
 /// Whether there is no terminal that shows more, and nothing was said for long; then it is now.

@@ -140,7 +140,11 @@ std::optional<geom::RequestedRegion> region_in_shape(const LinkRegion& region,
   }
   geom::RequestedRegion out = region;
   geom::Region& made = out.region;
-  if (!out.epsilon.percent) out.epsilon.value /= side == Side::Round ? most : least;
+  // Of the mesh's diagonal, which grows by the least scale at least.
+  if (out.epsilon.percent)
+    out.epsilon.value *= side == Side::Round ? least / most : 1;
+  else
+    out.epsilon.value /= side == Side::Round ? most : least;
   if (made.sides.empty()) {
     made.center = (pose.linear.transpose() * (made.center - pose.translation)).cwiseQuotient(scale);
     made.radius = (made.radius + sign * rounding) / (side == Side::Round ? least : most);

@@ -187,8 +187,11 @@ std::vector<StatedCount> stated_counts(const std::string& file, const std::strin
   int line = 1;
   for (std::size_t begin = 0; begin < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (std::string_view(text).substr(begin, end - begin).starts_with(kCountWords)) {
-      StatedCount one{line, begin + kCountWords.size(), 0, 0};
+    // Also where the text was put below something, and behind a byte order mark.
+    const std::size_t mark = begin == 0 && text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    const std::size_t words = std::min(text.find_first_not_of(" \t", begin + mark), end);
+    if (std::string_view(text).substr(words, end - words).starts_with(kCountWords)) {
+      StatedCount one{line, words + kCountWords.size(), 0, 0};
       const char* first = text.data() + one.at;
       const auto [last, error] = std::from_chars(first, text.data() + end, one.count);
       one.length = static_cast<std::size_t>(last - first);
@@ -377,6 +380,9 @@ class YamlFile {
     if (!names || names.IsNull()) return;
     if (!names.IsSequence())
       fail(file_, line_of(names), "collision_link_names: a list of links is expected");
+    for (const YAML::Node& name : names)
+      if (!name.IsScalar())
+        fail(file_, line_of(name), "collision_link_names: the name of a link is expected");
     names_ = names;
     std::set<std::string> named = named_links();
     std::vector<std::string> unnamed;
@@ -408,6 +414,10 @@ class YamlFile {
     std::string more;
     for (const LinkSpheres& link : wanted) {
       if (link.balls.bodies.empty() || named.contains(link.link)) continue;
+      if (const YAML::Node list = spheres_[link.link]; list && list.size() > 0)
+        fail(file_, line_of(list),
+             "spheres of link '" + link.link +
+                 "', which collision_link_names does not name: name it, or take them out");
       const std::string name = "\"" + link.link + "\"";
       if (!flow) more.append(indent).append("- ");
       more.append(name).append(flow ? ", " : "\n");

@@ -66,8 +66,9 @@ MeasuredLink measured_link(const std::vector<Geometry>& shapes, robot::MeshFiles
     if (robot::is_point(g)) continue;
     if (g.shape == Geometry::Shape::Mesh) {
       const io::ReadResult read = io::read_mesh(files.only(g.mesh));
-      out.diagonal = std::max(
-          out.diagonal, geom::bounding_box(read.mesh).diagonal() * g.size.cwiseAbs().maxCoeff());
+      const geom::Box3 box = geom::bounding_box(read.mesh);
+      out.diagonal =
+          std::max(out.diagonal, (box.max - box.min).cwiseProduct(g.size.cwiseAbs()).norm());
       const Subject subject =
           prepared_subject(read.mesh, {.holes = geom::Holes::Fill,
                                        .quads = read.bent_quads,

@@ -34,7 +34,8 @@ enum class Profile {
 /// A path in time. From rest to rest along each straight segment, as fast as limits and profile
 /// allow: its points are those of the path, in their order, so what is free at every instant of the
 /// path is free at every instant of this (docs/algorithms/motion-planning.md#execution).
-/// Or with blended corners, without stops at them: its points are those of a BlendedPath.
+/// Or with blended corners, without stops at them: its points are means over a short time of those
+/// of a BlendedPath.
 class Trajectory {
  public:
   /// @param rate  of the controller: waypoints are reached at whole multiples of 1 / rate, so that
