@@ -110,7 +110,7 @@ TEST_F(CacheWords, OfLinks) {
   const CertifiedRobot made =
       certify_robot(robot::read_robot((folder_ / "arm.urdf").string()), request);
   EXPECT_EQ(std::string(cache_words::kLinks) + ": " + hash_of(made.links.at(0).artefact()),
-            "1, coloured: d833137325ee6a23");
+            "2, coloured: 812fd72cdf0aa258");
 }
 
 TEST_F(CacheWords, OfEnclosures) {
