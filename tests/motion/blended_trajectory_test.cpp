@@ -256,6 +256,30 @@ TEST(BlendedTrajectory, StopsWhereItHasToAndOnlyThere) {
   EXPECT_EQ(there.at(there.time_at(1)).q, Values{1});
 }
 
+/// Means over so short a time that their rounding would show are not taken.
+TEST(BlendedTrajectory, JerksOfAnySizeKeepTheOtherLimits) {
+  constexpr int kRate = 1000;
+  for (const double jerk : {1e6, 1e9, 1e14, 1e300}) {
+    const Trajectory moved({{0, 0}, {1, 0.3}, {1.5, 1}, {2.5, 1}}, {0, 0.5, 0.5, 0},
+                           SpeedLimits{{2, 2}, {5, 5}, {jerk, jerk}}, kRate);
+    double fastest = 0;
+    for (std::size_t k = 0; k + 1 < moved.samples(); ++k) {
+      const Instant here = moved.at(static_cast<double>(k) / kRate),
+                    next = moved.at(static_cast<double>(k + 1) / kRate);
+      for (std::size_t j = 0; j < 2; ++j) {
+        const double by_difference = (next.q[j] - here.q[j]) * kRate;
+        EXPECT_LE(std::abs(by_difference), 2 + 1e-9) << jerk;
+        EXPECT_LE(std::abs(here.velocity[j]), 2) << jerk;
+        EXPECT_LE(std::abs(here.acceleration[j]), 5) << jerk;
+        EXPECT_LE(std::abs(next.velocity[j] - here.velocity[j]) * kRate, 5 + 1e-6) << jerk;
+        EXPECT_NEAR(here.velocity[j], by_difference, 5.0 / kRate) << jerk;
+        fastest = std::max(fastest, std::abs(here.velocity[j]));
+      }
+    }
+    EXPECT_GT(fastest, 1) << jerk;
+  }
+}
+
 TEST(BlendedTrajectory, WaypointsThatAreRepeatedChangeNothing) {
   const SpeedLimits two{{1, 2}, {5, 5}, {100, 100}};
   const Trajectory once({{0, 0}, {1, 0}, {1, 1}}, {0, 0.5, 0}, two, 500),
