@@ -196,6 +196,19 @@ def configurations_are_free_wherever_fingers_stop(folder):
         done = tool(folder, "kaboum-check", f"{name}-two.json", "--path", "arm=few.csv", "--path", "other=few.csv")
         if done.returncode != code:
             fail(f"{name}, two robots: {done.returncode} {done.stdout} {done.stderr}")
+        # Of a robot that holds nothing, beside one that does.
+        for way in ways:
+            done = tool(folder, "kaboum-check", f"{name}-two.json", "--robot", "other", *way)
+            if done.returncode != code:
+                fail(f"{name}, the other robot {way}: {done.returncode} {done.stdout} {done.stderr}")
+    # Each row of a batch is looked at, also where a grasp has no room and the first row is as it says.
+    exact = json.loads(json.dumps(held))
+    for g in [g for o in exact["objects"] for g in o["grasps"]]:
+        g["within"] = 0
+    (folder / "exact.json").write_text(json.dumps(exact))
+    done = tool(folder, "kaboum-check", "exact.json", "--batch", "off.csv")
+    if done.returncode != 3 or "row 2" not in done.stderr:
+        fail(f"exact: {done.returncode} {done.stdout} {done.stderr}")
     for way in (["--configuration", off], ["--configurations", "off.csv"], ["--batch", "off.csv"], ["--batch", "off.csv", "--motions", "pairs"]):
         done = tool(folder, "kaboum-check", "held.json", *way)
         if done.returncode != 3 or any(word not in done.stderr for word in (way[1] if "off" in way[1] else way[0], "'finger'", "0.018", "state 0.0115")):
