@@ -375,25 +375,35 @@ BodyFormat format_of_shapes(const DecomposeOptions& o) {
   return format;
 }
 
+std::vector<robot_folder::UncheckedLinks> unchecked_of(const pairs::Matrix& matrix) {
+  std::vector<robot_folder::UncheckedLinks> out;
+  for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
+  return out;
+}
+
 /// The pairs of links that a file says need no check.
 std::vector<robot_folder::UncheckedLinks> unchecked_links(const DecomposeOptions& o,
                                                           const robot::Robot& robot, Notes& notes) {
-  std::vector<robot_folder::UncheckedLinks> out;
-  if (o.pairs.empty()) return out;
+  if (o.pairs.empty()) return {};
   const std::vector<char> text = io::read_file(o.pairs);
   const pairs::Matrix matrix =
       pairs::parse_matrix(std::string(text.begin(), text.end()), o.pairs, robot);
   pairs::require_own(matrix, o.pairs, robot);
-  for (const pairs::DisabledPair& pair : matrix.pairs) out.push_back({pair.a, pair.b, pair.reason});
   for (const pairs::MatrixFault& fault : matrix.faults)
     notes.add(o.pairs, "line " + std::to_string(fault.line) + ": " + fault.text);
-  return out;
+  return unchecked_of(matrix);
 }
 
-/// The file, and the scene of --preview.
-/// @return how far its shapes reach beyond the bodies [length]
-double write_shapes(Run& run, const BodyFormat& format, const certify::CertifiedBodies& bodies,
-                    const std::vector<robot_folder::UncheckedLinks>& unchecked) {
+/// A file of spheres, capsules or boxes.
+struct WrittenShapes {
+  std::string text;
+  double beyond = 0;  ///< the bodies, that its shapes reach [length]
+};
+
+/// Writes the file, and the scene of --preview.
+WrittenShapes write_shapes(Run& run, const BodyFormat& format,
+                           const certify::CertifiedBodies& bodies,
+                           const std::vector<robot_folder::UncheckedLinks>& unchecked) {
   const DecomposeOptions& o = run.o;
   const robot_folder::SimpleShapes shapes = robot_folder::simple_shapes(bodies.artefact());
   robot::ModelText made;
@@ -419,7 +429,7 @@ double write_shapes(Run& run, const BodyFormat& format, const certify::Certified
     io::write_file(o.preview, page);
   else if (!o.preview.empty())
     io::write_file(o.preview, scene);
-  return format.spheres ? 0 : shapes.beyond;
+  return {std::move(made.text), format.spheres ? 0 : shapes.beyond};
 }
 
 /// The files that a robot is read from besides its own, its meshes too.
@@ -504,15 +514,12 @@ Json warn_of_meeting(const robot::Robot& robot, const std::string& file, const s
 std::vector<robot_folder::UncheckedLinks> stated_pairs(const robot::Robot& robot,
                                                        const std::string& file,
                                                        const std::string& text) {
-  std::vector<robot_folder::UncheckedLinks> out;
-  if (sphere_format_of(file) == robot_folder::SphereFormat::Urdf) return out;
+  if (sphere_format_of(file) == robot_folder::SphereFormat::Urdf) return {};
   try {
-    for (const pairs::DisabledPair& pair : pairs::parse_matrix(text, file, robot).pairs)
-      out.push_back({pair.a, pair.b, pair.reason});
+    return unchecked_of(pairs::parse_matrix(text, file, robot));
   } catch (const Error&) {
     return {};
   }
-  return out;
 }
 
 /// Spheres, capsules or boxes of all links, in one file: no meshes.
@@ -558,18 +565,17 @@ int decompose_into_shapes(const DecomposeOptions& o) {
   say_regions(run, bodies);
   say_verdicts(run.robot.robot, run.verdicts, o.common.quiet);
   double distance = bodies.certificate().distance;
-  distance += write_shapes(run, format, bodies, unchecked);
+  const WrittenShapes written = write_shapes(run, format, bodies, unchecked);
+  distance += written.beyond;
   if (const std::optional<Length>& epsilon = run.request.set.epsilon;
       format.shapes && run.request.epsilons.empty() && epsilon && !epsilon->percent)
     reached = reached && distance <= epsilon->value;
   const std::string check = check_of_shapes(run, format, reached, distance);
   say_shapes(run, format, bodies, check, distance, unchecked.empty());
   Json meeting = Json::array();
-  if (format.spheres) {
-    const std::vector<char> text = io::read_file(o.output);
-    meeting = warn_of_meeting(run.robot.robot, o.output, {text.begin(), text.end()}, unchecked,
-                              o.common.quiet, "--epsilons");
-  }
+  if (format.spheres)
+    meeting = warn_of_meeting(run.robot.robot, o.output, written.text, unchecked, o.common.quiet,
+                              "--epsilons");
   say_notes(o.robot, o.common.quiet, run.notes);
   if (!o.common.report.empty())
     write_report(o.common, "bcd-decompose",

@@ -78,23 +78,26 @@ struct Verdicts {
 void look_at_fingers(const CheckOptions& o, const world::Checker& checker, std::size_t robot,
                      const std::function<robot::Path(std::size_t)>& path_of, Verdicts& out) {
   const world::WorldState state = initial_state(checker.world());
+  std::vector<std::size_t> holding;
+  for (std::size_t r = 0; r < state.q.size(); ++r)
+    if (!world::holding_joints(r, state.attachments).empty()) holding.push_back(r);
+  if (holding.empty()) return;
   for (std::size_t i = 0; i < out.free.size(); ++i) {
     const robot::Path path = path_of(i);
     const std::string what = o.motions.empty() ? "row " + std::to_string(i + 1)
                                                : "motion " + std::to_string(i + 1) + ", row";
-    // With all robots of which fingers hold something, wherever these stop.
-    std::vector<world::RobotPath> paths;
+    std::vector<world::RobotPath> paths{{robot, path}};
+    for (const std::size_t r : holding)
+      if (r != robot) paths.push_back({r, robot::Path(path.size(), state.q[r])});
     bool any = false;
-    for (std::size_t r = 0; r < state.q.size(); ++r) {
-      world::RobotPath one{r, r == robot ? path : robot::Path(path.size(), state.q[r])};
+    for (world::RobotPath& one : paths) {
       try {
         one.around =
-            world::finger_room_along(checker.world(), r, state.attachments, one.path, what);
+            world::finger_room_along(checker.world(), one.robot, state.attachments, one.path, what);
       } catch (const Error& error) {
         throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
       }
       any = any || !one.around.empty();
-      if (r == robot || !one.around.empty()) paths.push_back(std::move(one));
     }
     if (!any || out.free[i] == 0) continue;
     world::MotionOptions options = o.motion;

@@ -15,6 +15,7 @@ import sysconfig
 
 import nanobind
 
+# Those of VAMP's own build, for times that are its own. Nothing of ours is compiled with them.
 FLAGS = ("-O3 -DNDEBUG -march=native -mavx2 -fno-math-errno -fno-signed-zeros -fno-trapping-math -fno-rounding-math -ffp-contract=fast "
          "-fassociative-math -fPIC -w").split()  # vamp/cmake/CompilerSettings.cmake
 STRUCTS = {"panda": "Panda", "ur5": "UR5", "fetch": "Fetch"}
