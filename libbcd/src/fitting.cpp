@@ -178,18 +178,24 @@ double room(const RegionalBody& body, const AxesBox& box, int k, bool high, doub
   return out;
 }
 
+// The room of a face does not grow while other faces move outwards. So a face that was moved as far
+// as a cap, or that had no room, is not asked for again.
 void grow(const RegionalBody& body, AxesBox& box, std::span<const int> order, double share) {
   const double far = 4 * body.distance() + (box.high - box.low).maxCoeff();
-  double least = 0.02 * body.distance();
+  const double least = 0.02 * body.distance();
+  std::array<bool, 6> ended{};
   for (int turn = 0; turn < 40; ++turn) {
     bool moved = false;
     for (const int face : order) {
+      bool& end = ended[static_cast<std::size_t>(face)];
+      if (end) continue;
       const int k = face / 2;
       const bool high = face % 2 != 0;
       const double most = share < 1
                               ? std::max(share * (box.high - box.low).maxCoeff(), body.distance())
                               : 1e3 * far;
       const double way = room(body, box, k, high, most);
+      end = way < most;
       if (!(way > least)) continue;
       (high ? box.high : box.low)[k] += high ? way : -way;
       moved = true;

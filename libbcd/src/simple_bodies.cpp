@@ -34,6 +34,7 @@ using geom::Mesh;
 constexpr double kLeft = 5e-3, kTriangleSpare = 2e-3, kPointSpare = 0.02, kCaps = 0.15;
 /// Cubes of the solid that no body holds are cut until half their edge is this share of ε.
 constexpr double kVoid = 0.06;
+constexpr double kSqrt3Up = 1.7320508076;
 constexpr int kPatches = 60;               ///< rounds of points added where no body is
 constexpr std::size_t kAddedPoints = 200;  ///< in a round
 constexpr int kTriangleCuts = 24;          ///< of a triangle
@@ -401,6 +402,34 @@ class BodySearch {
 
   // --- one body for given points ---
 
+  /// Whether a point is farther from the solid than bodies may be.
+  [[nodiscard]] bool is_beyond(const Vec3& p) const {
+    if (query_.within(p, body_->distance() * (1 + 1e-9)) != geom::TriangleSearch::kNone)
+      return false;
+    const std::optional<int> winding = winding_(p);
+    return winding && *winding <= 0;
+  }
+
+  /// Whether a point half way along the capsule is beyond, or one of its tips, of some.
+  [[nodiscard]] bool is_too_wide(const Capsule& one) const {
+    const Vec3 middle = 0.5 * (one.from + one.to);
+    if (is_beyond(middle)) return true;
+    const Eigen::Matrix3d frame = frame_of(axis_of(one), Vec3::Zero());
+    for (const Vec3& c : {middle, one.from, one.to})
+      for (const int k : {1, 2})
+        for (const double side : {-one.radius, one.radius})
+          if (is_beyond(c + side * frame.col(k))) return true;
+    return false;
+  }
+  [[nodiscard]] bool is_too_long(const Capsule& one) const {
+    const Vec3 tip = one.radius * axis_of(one);
+    return is_beyond(one.from - tip) || is_beyond(one.to + tip);
+  }
+  static Vec3 axis_of(const Capsule& one) {
+    const Vec3 way = one.to - one.from;
+    return way.norm() > 0 ? way.normalized() : Vec3::UnitX();
+  }
+
   [[nodiscard]] std::optional<SimpleBody> ball_for(const std::vector<Vec3>& points) const {
     Vec3 center = points[0];
     constexpr int kSteps = 60;
@@ -422,13 +451,19 @@ class BodySearch {
 
   [[nodiscard]] std::optional<SimpleBody> capsule_for(const std::vector<Vec3>& points,
                                                       const std::vector<Vec3>& directions) const {
+    constexpr std::array kShares{0.9, 0.6, 0.3, 0.02};
     for (const Vec3& d : directions) {
       const Cylinder cylinder = cylinder_round(points, d);
       const double least = cylinder.radius + spare_;
-      for (const double share : {0.9, 0.6, 0.3, 0.02}) {
+      // What is too wide where it is narrowest is so with all radii.
+      if (const auto narrow =
+              capsule_round(points, cylinder, least + kShares.back() * epsilon_, spare_);
+          !narrow || is_too_wide(*narrow))
+        continue;
+      for (const double share : kShares) {
         const double radius = least + share * epsilon_;
         const auto found = capsule_round(points, cylinder, radius, spare_);
-        if (!found) continue;
+        if (!found || is_too_long(*found) || is_too_wide(*found)) continue;
         auto one = capsule(found->from, found->to, radius);
         // A capsule far outside the body meets no cap, either.
         const Vec3 middle = 0.5 * (found->from + found->to);
@@ -447,8 +482,9 @@ class BodySearch {
     }
     std::ranges::stable_sort(tried, {}, [](const auto& entry) { return entry.first; });
     for (const auto& [volume, one] : tried) {
-      if (!(body_->signed_distance(one.center).upper < body_->distance()) || !fits(*body_, one))
-        continue;
+      if (!(body_->signed_distance(one.center).upper < body_->distance())) continue;
+      if (std::ranges::any_of(one.corners(), [&](const Vec3& p) { return is_beyond(p); })) continue;
+      if (!fits(*body_, one)) continue;
       SimpleBody out;
       out.kind = SimpleBody::Kind::Box;
       out.box = one;
@@ -793,8 +829,31 @@ class BodySearch {
     if (!out.empty()) holders.clear();
   }
 
+  struct Cube {
+    Vec3 center;
+    double half;
+  };
+
+  /// Where a cube is as to the solid, whatever the bodies are, and its eight parts.
+  struct PlacedCube {
+    enum class Place : std::uint8_t { Unknown, Outside, Inside, Border } place = Place::Unknown;
+    std::uint32_t parts = 0;  ///< the first of eight; 0: none are known
+  };
+  /// A cube, its parts, theirs and so on; the first is the whole.
+  using CubeTree = std::vector<PlacedCube>;
+  static constexpr std::size_t kMostKept = 10'000;  ///< cubes of a tree
+
+  [[nodiscard]] PlacedCube::Place place_of(const Cube& cube) const {
+    using Place = PlacedCube::Place;
+    if (query_.within(cube.center, kSqrt3Up * cube.half) != geom::TriangleSearch::kNone)
+      return Place::Border;
+    const std::optional<int> winding = winding_(cube.center);
+    if (!winding) return Place::Border;
+    return *winding >= 1 ? Place::Inside : Place::Outside;
+  }
+
   /// Points of the solid in cubes that are in no body, one of a small cube.
-  [[nodiscard]] std::vector<Vec3> void_points(const std::vector<Written>& bodies) const {
+  [[nodiscard]] std::vector<Vec3> void_points(const std::vector<Written>& bodies) {
     constexpr int kCuts = 8;
     const Vec3 size = box_.max - box_.min;
     const double edge = size.maxCoeff() / kCuts;
@@ -802,6 +861,7 @@ class BodySearch {
     const std::size_t across = std::max<std::size_t>(count(0), 1);
     const std::size_t deep = std::max<std::size_t>(count(1), 1);
     const std::size_t all_cubes = across * deep * std::max<std::size_t>(count(2), 1);
+    cubes_.resize(all_cubes, CubeTree(1));
     std::vector<std::vector<Vec3>> found(all_cubes);
     kaboum::parallel_for(std::size_t{0}, all_cubes,
                          [&](std::size_t i) {
@@ -811,9 +871,9 @@ class BodySearch {
                            std::vector<const SimpleBody*> near;
                            near.reserve(bodies.size());
                            for (const Written& one : bodies) near.push_back(&one.body);
-                           std::size_t cubes = 0;
+                           VoidSearch search{cubes_[i], found[i]};
                            find_voids({box_.min + edge * (at + Vec3::Constant(0.5)), 0.5 * edge},
-                                      near, false, cubes, found[i]);
+                                      near, PlacedCube::Place::Unknown, 0U, search);
                          },
                          {.alone = true});
     std::vector<Vec3> out;
@@ -821,19 +881,23 @@ class BodySearch {
     return out;
   }
 
-  struct Cube {
-    Vec3 center;
-    double half;
+  struct VoidSearch {
+    CubeTree& known;
+    std::vector<Vec3>& out;
+    std::size_t cubes = 0;  ///< looked at so far
   };
 
   /// Cuts a cube into eight while no body holds it and the solid may reach it.
-  /// @param inside  whether all of it is known to be in the solid
-  /// @param cubes   looked at so far
-  void find_voids(const Cube& cube, const std::vector<const SimpleBody*>& bodies, bool inside,
-                  std::size_t& cubes, std::vector<Vec3>& out) const {
+  /// @param place  as it is known: that of the cube it is a part of, if all of that is inside
+  /// @param index  in what is known; none: beyond that
+  void find_voids(const Cube& cube, const std::vector<const SimpleBody*>& bodies,
+                  PlacedCube::Place place, std::optional<std::uint32_t> index,
+                  VoidSearch& search) const {
+    using Place = PlacedCube::Place;
     constexpr std::size_t kMostCubes = 100'000, kMostPoints = 12;
-    constexpr double kSqrt3Up = 1.7320508076;
-    if (out.size() >= kMostPoints || ++cubes > kMostCubes) return;
+    if (search.out.size() >= kMostPoints || ++search.cubes > kMostCubes) return;
+    if (place == Place::Unknown && index) place = search.known[*index].place;
+    if (place == Place::Outside) return;
     const double spare = kTriangleSpare * finest_ + 4 * spacing_;
     const double reach = kSqrt3Up * cube.half;
     std::vector<const SimpleBody*> near;
@@ -844,22 +908,30 @@ class BodySearch {
       held = held || beyond <= -spare;
       if (beyond <= reach) near.push_back(one);
     }
-    bool is_inside = inside;  // its middle
-    if (!inside) {
-      const ParallelBody::SignedDistance away = body_->signed_distance(cube.center);
-      if (away.lower > reach) return;
-      inside = away.upper < -reach;
-      is_inside = away.upper < 0;
+    if (place == Place::Unknown) {
+      place = place_of(cube);
+      if (index) search.known[*index].place = place;
+      if (place == Place::Outside) return;
     }
     if (cube.half < kVoid * finest_) {
-      if (!held && is_inside) out.push_back(cube.center);
+      if (!held && (place == Place::Inside || winding_(cube.center).value_or(0) >= 1))
+        search.out.push_back(cube.center);
       return;
     }
-    for (int k = 0; k < 8; ++k) {
-      const Vec3 corner((k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0,
-                        (k & 4) != 0 ? 1.0 : -1.0);
-      find_voids({cube.center + 0.5 * cube.half * corner, 0.5 * cube.half}, near, inside, cubes,
-                 out);
+    std::optional<std::uint32_t> parts;
+    if (index && place == Place::Border) {
+      if (search.known[*index].parts == 0 && search.known.size() < kMostKept) {
+        search.known[*index].parts = static_cast<std::uint32_t>(search.known.size());
+        search.known.resize(search.known.size() + 8);
+      }
+      if (search.known[*index].parts != 0) parts = search.known[*index].parts;
+    }
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      const Vec3 corner((k & 1U) != 0 ? 1.0 : -1.0, (k & 2U) != 0 ? 1.0 : -1.0,
+                        (k & 4U) != 0 ? 1.0 : -1.0);
+      find_voids({cube.center + 0.5 * cube.half * corner, 0.5 * cube.half}, near,
+                 place == Place::Inside ? place : Place::Unknown,
+                 parts ? std::optional(*parts + k) : std::nullopt, search);
     }
   }
 
@@ -1083,6 +1155,7 @@ class BodySearch {
   std::unordered_map<std::uint64_t, Held> held_;  ///< by bodies' digests
   /// Digests of the bodies that held each triangle together; empty: none are known.
   std::vector<std::vector<std::uint64_t>> holders_;
+  std::vector<CubeTree> cubes_;  ///< that the mesh's box is cut into, for void_points
 };
 
 }  // namespace

@@ -1,14 +1,17 @@
 // Capsules and boxes: numbers of them that shapes are known to need, what they hold, how far they
 // reach.
 #include <gtest/gtest.h>
+#include <kaboum/base/random.h>
 #include <kaboum/bcd/simple_bodies.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/float32.h>
 #include <kaboum/geom/prepare.h>
 #include <kaboum/verify/cover.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "fitting.h"
 #include "support/shapes.h"
@@ -157,6 +160,52 @@ TEST(SimpleBodies, RoomIsWhatIsLeft) {
   EXPECT_NEAR(clearance(body, {1, 0.5, 1}, {3, 0.5, 1}), 0.5 + kDistance, 0.01);
   EXPECT_LE(clearance(body, {1, 0.5, 1}, {3, 0.5, 1}), 0.5 + kDistance);
   EXPECT_EQ(clearance(body, {1, 0.5, 1}, {9, 0.5, 1}), 0);
+}
+
+// Moves every face in every turn, also those that met a cap before.
+void grow_by_all(const RegionalBody& body, AxesBox& box, std::span<const int> order) {
+  for (int turn = 0; turn < 40; ++turn) {
+    bool moved = false;
+    for (const int face : order) {
+      const double most = std::max(0.25 * (box.high - box.low).maxCoeff(), body.distance());
+      const double way = room(body, box, face / 2, face % 2 != 0, most);
+      if (!(way > 0.02 * body.distance())) continue;
+      (face % 2 != 0 ? box.high : box.low)[face / 2] += face % 2 != 0 ? way : -way;
+      moved = true;
+    }
+    if (!moved) return;
+  }
+}
+
+TEST(SimpleBodies, AFaceThatMetACapNeedNotBeAskedAgain) {
+  const Mesh mesh = kaboum::test::torus(1.5, 0.5, 24, 12);
+  const geom::DistanceQuery query(mesh);
+  const geom::WindingNumber winding(mesh);
+  constexpr double kDistance = 0.2;
+  const RegionalBody body(query, winding, kDistance, 0.1, {}, kDistance);
+  const geom::Box3 around = geom::bounding_box(mesh);
+  Random random(5);
+  const auto any = [&](double low, double high) {
+    return Vec3(random.between(low, high), random.between(low, high), random.between(low, high));
+  };
+  int grown = 0;
+  for (int turn = 0; turn < 200; ++turn) {
+    const Vec3 at = around.min + any(0, 1).cwiseProduct(around.max - around.min);
+    const Vec3 axis = any(-1, 1).normalized();
+    const double half = 0.3 * body.radius_about(at);
+    if (!(half > 0)) continue;
+    AxesBox one{at, Eigen::AngleAxisd(turn % 3 * 0.4, axis).toRotationMatrix(),
+                Vec3::Constant(-half), Vec3::Constant(half)};
+    AxesBox other = one;
+    std::array<int, 6> order{0, 1, 2, 3, 4, 5};
+    std::swap(order[static_cast<std::size_t>(turn % 6)], order[0]);
+    grow(body, one, order, 0.25);
+    grow_by_all(body, other, order);
+    EXPECT_EQ(one.low, other.low) << turn;
+    EXPECT_EQ(one.high, other.high) << turn;
+    grown += one.high.maxCoeff() > 2 * half ? 1 : 0;
+  }
+  EXPECT_GT(grown, 50);
 }
 
 }  // namespace
