@@ -214,9 +214,10 @@ double clearance(const ParallelBody& body, const Vec3& from, const Vec3& to, dou
   const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
   const auto bound = [&](const geom::Box3& node) {
     if (best < least) return std::numeric_limits<double>::infinity();
-    // From the segment to the ball round the box, and from its box to the box.
-    const double to_ball = segment.distance(node.center()) - 0.5 * (node.max - node.min).norm();
+    // From the segment's box to the box, and from the segment to the ball round it.
     const double to_box = (low - node.max).cwiseMax(node.min - high).cwiseMax(0.0).norm();
+    if (to_box - h - rounding > best) return std::numeric_limits<double>::infinity();
+    const double to_ball = segment.distance(node.center()) - 0.5 * (node.max - node.min).norm();
     return std::max(to_ball, to_box) - h - rounding;
   };
   body.visit_caps(best, bound, [&](const ParallelBody::Cap& cap) {

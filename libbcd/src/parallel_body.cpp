@@ -167,32 +167,36 @@ Vec3 nearest_of_cap(const Vec3& center, const Vec3& normal, double height, doubl
 
 }  // namespace
 
-void ParallelBody::visit_near(const Vec3& c, double& limit,
-                              const std::function<void(const Cap&, double)>& visit) const {
+template <class Visit>
+void ParallelBody::visit_near(const Vec3& c, const double& limit, const Visit& visit) const {
   if (caps_.empty()) return;
   const auto nodes = tree_.nodes();
+  // Squares are compared, with room for rounding.
   const auto to_box = [&](const geom::Box3& box) {
-    return (box.min - c).cwiseMax(c - box.max).cwiseMax(0.0).norm() - h_;
+    return (box.min - c).cwiseMax(c - box.max).cwiseMax(0.0).squaredNorm();
   };
+  const auto cutoff = [&] { return (limit + h_) * (limit + h_) * (1 + kRounding); };
   std::array<std::pair<double, std::uint32_t>, geom::Bvh::kMaxDepth> stack;
   int size = 0;
+  double most = cutoff();
   stack[size++] = {to_box(nodes[0].box), 0};
   while (size > 0) {
-    const auto [bound, index] = stack[--size];
-    if (bound >= limit) continue;
+    const auto [square, index] = stack[--size];
+    if (square >= most) continue;
     const geom::Bvh::Node& node = nodes[index];
     if (node.leaf()) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Cap& cap = caps_[tree_.order()[i]];
         visit(cap, distance_from_cap(cap.center, cap.normal, cap.height, h_, c));
       }
+      most = cutoff();
       continue;
     }
     std::pair<double, std::uint32_t> near{to_box(nodes[index + 1].box), index + 1};
     std::pair<double, std::uint32_t> far{to_box(nodes[node.first].box), node.first};
     if (far.first < near.first) std::swap(near, far);
-    if (far.first < limit) stack[size++] = far;
-    if (near.first < limit) stack[size++] = near;
+    if (far.first < most) stack[size++] = far;
+    if (near.first < most) stack[size++] = near;
   }
 }
 

@@ -5,7 +5,6 @@
 #include <kaboum/geom/winding.h>
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -111,8 +110,8 @@ class ParallelBody {
                                          double share) const;
   void find_caps();
   /// Calls visit(cap, distance) for caps that may be nearer than `limit`, which it may change.
-  void visit_near(const geom::Vec3& c, double& limit,
-                  const std::function<void(const Cap&, double)>& visit) const;
+  template <class Visit>
+  void visit_near(const geom::Vec3& c, const double& limit, const Visit& visit) const;
 
   const geom::DistanceQuery& surface_;
   const geom::WindingNumber& winding_;

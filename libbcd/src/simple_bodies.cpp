@@ -50,6 +50,16 @@ struct SimpleBody {
   [[nodiscard]] double beyond(const Vec3& p) const {
     return kind == Kind::Box ? box.beyond(p) : capsule.beyond(p);
   }
+
+  /// The centre and the radius of a ball that holds it.
+  [[nodiscard]] std::pair<Vec3, double> ball_round() const {
+    constexpr double kUp = 1 + 1e-9;
+    if (kind == Kind::Box)
+      return {box.center + 0.5 * box.axes * (box.low + box.high),
+              0.5 * kUp * (box.high - box.low).norm()};
+    return {0.5 * (capsule.from + capsule.to),
+            kUp * (0.5 * (capsule.to - capsule.from).norm() + capsule.radius)};
+  }
 };
 
 /// A number that differs for different sequences of numbers, but with a probability of 2^-64 each.
@@ -383,9 +393,13 @@ class BodySearch {
 
   [[nodiscard]] std::vector<std::uint32_t> held_by(const SimpleBody& one,
                                                    const std::vector<Vec3>& points) const {
+    // Few points are in the ball round a body.
+    const auto [center, radius] = one.ball_round();
+    const double most = radius * radius;
     std::vector<std::uint32_t> out;
     for (std::uint32_t p = 0; p < points.size(); ++p)
-      if (one.beyond(points[p]) <= -spare_) out.push_back(p);
+      if ((points[p] - center).squaredNorm() <= most && one.beyond(points[p]) <= -spare_)
+        out.push_back(p);
     return out;
   }
 
