@@ -16,7 +16,7 @@
 namespace kaboum::pairs::detail {
 namespace {
 
-constexpr std::size_t kMostPierced = 1'500;  ///< pairs of triangles that are looked at
+constexpr std::size_t kStepsToTriangles = 40;  ///< down the trees, for each pair of triangles
 
 using Corners = std::array<Vec3, 3>;
 
@@ -182,6 +182,12 @@ Contact::Nearest Contact::nearest(const BoxMotion& box, double gap, std::size_t 
   double closed = kInfinite;  // least lower bound of what was left
   std::priority_queue<Open> open;
   const auto look = [&](std::uint32_t i, std::uint32_t j, const Vec3& hint) {
+    const double balls = (box.placed().b * tb[j].center - ta[i].center).norm() - ta[i].reach -
+                         tb[j].reach - rounding();
+    if (balls > out.upper) {
+      closed = std::min(closed, balls);
+      return;
+    }
     const Gap g = gaps_.at_middle(ta[i], tb[j], box, hint, out.upper);
     const bool leaf = ta[i].leaf() && tb[j].leaf();
     if (leaf && g.upper < out.upper) {
@@ -216,23 +222,24 @@ Contact::Nearest Contact::nearest(const BoxMotion& box, double gap, std::size_t 
 }
 
 template <typename Look>
-void Contact::visit_meeting(const BoxMotion& box, std::size_t most, const Look& look) const {
+void Contact::visit_meeting(const BoxMotion& box, std::size_t most_steps, const Look& look) const {
   const HullTree &ta = a_->tree(), &tb = b_->tree();
   struct Open {
     std::uint32_t a, b;
     Vec3 direction;
   };
-  std::size_t looked = 0;
   std::vector<Open> open{{0, 0, Vec3::Zero()}};
-  while (!open.empty() && looked < most) {
+  for (std::size_t step = 0; !open.empty() && step < most_steps; ++step) {
     const Open top = open.back();
     open.pop_back();
     const Cluster &a = ta[top.a], &b = tb[top.b];
+    // Balls round them tell most apart, at less expense.
+    const double balls = a.reach + b.reach + rounding();
+    if ((box.placed().b * b.center - a.center).squaredNorm() > balls * balls) continue;
     const Gap g = gaps_.at_middle(a, b, box, top.direction, 0);
     if (g.lower > 0) continue;
     if (a.leaf() && b.leaf()) {
-      ++looked;
-      look(a.triangle, b.triangle);
+      if (!look(a.triangle, b.triangle)) return;
     } else if (!a.leaf() && (b.leaf() || a.reach > b.reach)) {
       open.push_back({a.left, top.b, g.direction});
       open.push_back({a.right, top.b, g.direction});
@@ -243,41 +250,62 @@ void Contact::visit_meeting(const BoxMotion& box, std::size_t most, const Look& 
   }
 }
 
-double Contact::pierced(const BoxMotion& box) const {
-  const Transform& at = box.placed().b;
+double Contact::margin_of(const BoxMotion& box, std::uint32_t of_a, std::uint32_t of_b) const {
   const auto corners = [](const Mesh& mesh, std::uint32_t t) {
     const geom::Triangle& v = mesh.triangles[t];
     return Corners{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
   };
+  Corners placed = corners(b_->mesh(), of_b);
+  for (Vec3& p : placed) p = box.placed().b * p;
+  return margin(corners(a_->mesh(), of_a), placed);
+}
+
+double Contact::pierced(const BoxMotion& box, std::size_t most_triangles) const {
   double best = 0;
-  visit_meeting(box, kMostPierced, [&](std::uint32_t i, std::uint32_t j) {
-    Corners of_b = corners(b_->mesh(), j);
-    for (Vec3& p : of_b) p = at * p;
-    best = std::max(best, margin(corners(a_->mesh(), i), of_b));
+  std::size_t looked = 0;
+  visit_meeting(box, kStepsToTriangles * most_triangles, [&](std::uint32_t i, std::uint32_t j) {
+    best = std::max(best, margin_of(box, i, j));
+    return ++looked < most_triangles;
   });
   return best;
 }
 
+double Contact::some_depth(const BoxMotion& box, std::size_t most_steps) const {
+  const Gap hulls = gaps_.at_middle(a_->tree()[0], b_->tree()[0], box, Vec3::Zero(), 0);
+  if (hulls.lower > 0) return 0;
+  double found = 0;
+  visit_meeting(box, most_steps, [&](std::uint32_t i, std::uint32_t j) {
+    found = margin_of(box, i, j) - rounding();
+    return !(found > 0);
+  });
+  if (found > 0) return found;
+  return std::max(0.0, inside(box, most_steps / 16, true) - rounding());
+}
+
 double Contact::farthest_meeting(const BoxMotion& box, const Vec3& in_a, const Vec3& in_b) const {
   double most = 0;
-  visit_meeting(box, 100'000, [&](std::uint32_t i, std::uint32_t j) {
-    for (const std::uint32_t v : a_->mesh().triangles[i])
-      most = std::max(most, (a_->mesh().vertices[v] - in_a).norm());
-    for (const std::uint32_t v : b_->mesh().triangles[j])
-      most = std::max(most, (b_->mesh().vertices[v] - in_b).norm());
-  });
+  std::size_t looked = 0;
+  visit_meeting(box, std::numeric_limits<std::size_t>::max(),
+                [&](std::uint32_t i, std::uint32_t j) {
+                  for (const std::uint32_t v : a_->mesh().triangles[i])
+                    most = std::max(most, (a_->mesh().vertices[v] - in_a).norm());
+                  for (const std::uint32_t v : b_->mesh().triangles[j])
+                    most = std::max(most, (b_->mesh().vertices[v] - in_b).norm());
+                  return ++looked < 100'000;
+                });
   return most;
 }
 
-double Contact::inside(const BoxMotion& box, std::size_t most_corners) const {
+double Contact::inside(const BoxMotion& box, std::size_t most_corners, bool few) const {
   const Transform& at = box.placed().b;
   const Transform back{at.linear.transpose(), -(at.linear.transpose() * at.translation)};
   double best = 0;
   const auto look = [&](const Surface& in, const Surface& of, const Transform& to) {
     const Cluster& root = in.tree()[0];
     std::vector<Vec3> found;
-    for (const std::uint32_t v : of.corners()) {
-      const Vec3 p = to * of.mesh().vertices[v];
+    const std::size_t apart = few ? of.corners().size() / most_corners + 1 : 1;
+    for (std::size_t i = 0; i < of.corners().size(); i += apart) {
+      const Vec3 p = to * of.mesh().vertices[of.corners()[i]];
       if ((p - root.center).norm() <= root.reach) found.push_back(p);
     }
     // Spread over all of them where these are too many.
@@ -292,9 +320,21 @@ double Contact::inside(const BoxMotion& box, std::size_t most_corners) const {
   return best;
 }
 
-double Contact::depth_below(const BoxMotion& box, std::size_t most_corners) const {
-  const double off = 4 * gaps_.error() + 0x1p-36 * gaps_.reach();
-  return std::max({0.0, pierced(box) - off, inside(box, most_corners) - off});
+double Contact::depth_below(const BoxMotion& box, std::size_t most_corners,
+                            std::size_t most_triangles) const {
+  return std::max({0.0, pierced(box, most_triangles) - rounding(),
+                   inside(box, most_corners, false) - rounding()});
+}
+
+double Contact::depth_above_roughly(const BoxMotion& box) const {
+  const Cluster &a = a_->tree()[0], &b = b_->tree()[0];
+  double best = kInfinite;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x != 0 || y != 0 || z != 0)
+          best = std::min(best, gaps_.overlap(a, b, box.placed(), Vec3(x, y, z)));
+  return std::max(0.0, best);
 }
 
 double Contact::depth_above(const BoxMotion& box) const {

@@ -56,6 +56,8 @@ class Contact {
       : a_(&a), b_(&b), gaps_(a.tree(), b.tree(), chain) {}
 
   [[nodiscard]] const Gaps& gaps() const { return gaps_; }
+  [[nodiscard]] const Surface& a() const { return *a_; }
+  [[nodiscard]] const Surface& b() const { return *b_; }
 
   /// The distance of the surfaces, by their triangles; 0 where some meet.
   struct Nearest {
@@ -70,9 +72,16 @@ class Contact {
   /// How deep the solids are certainly in each other: no translation by less parts them. 0: not
   /// known to meet. Rounding is taken off.
   /// @param most_corners  of each that are looked for in the other solid
-  [[nodiscard]] double depth_below(const BoxMotion& box, std::size_t most_corners = 1'500) const;
+  /// @param most_triangles  of pairs of triangles
+  [[nodiscard]] double depth_below(const BoxMotion& box, std::size_t most_corners = 1'500,
+                                   std::size_t most_triangles = 1'500) const;
+  /// A depth as depth_below has it, of the first place that is found to have one. 0: none was found
+  /// in so many steps down the trees.
+  [[nodiscard]] double some_depth(const BoxMotion& box, std::size_t most_steps) const;
   /// The length of a translation that parts them.
   [[nodiscard]] double depth_above(const BoxMotion& box) const;
+  /// The same, longer mostly, of few directions.
+  [[nodiscard]] double depth_above_roughly(const BoxMotion& box) const;
   /// Largest distance of a corner from a point, of triangles whose hulls meet. @param point  in the
   /// frames of a and b
   [[nodiscard]] double farthest_meeting(const BoxMotion& box, const Vec3& in_a,
@@ -87,12 +96,17 @@ class Contact {
   [[nodiscard]] Held held(const BoxMotion& box) const;
 
  private:
-  /// Calls look(triangle of a, triangle of b) for pairs that are not clearly apart, as many as
-  /// `most` at least.
+  /// Calls look(triangle of a, triangle of b) for pairs that are not clearly apart, until it says
+  /// false, or after so many steps down the trees.
   template <typename Look>
-  void visit_meeting(const BoxMotion& box, std::size_t most, const Look& look) const;
-  [[nodiscard]] double pierced(const BoxMotion& box) const;
-  [[nodiscard]] double inside(const BoxMotion& box, std::size_t most_corners) const;
+  void visit_meeting(const BoxMotion& box, std::size_t most_steps, const Look& look) const;
+  [[nodiscard]] double margin_of(const BoxMotion& box, std::uint32_t of_a,
+                                 std::uint32_t of_b) const;
+  [[nodiscard]] double pierced(const BoxMotion& box, std::size_t most_triangles) const;
+  /// @param few  that the corners are taken of at once, before those are left out that are far
+  [[nodiscard]] double inside(const BoxMotion& box, std::size_t most_corners, bool few) const;
+  /// What rounding takes off a depth.
+  [[nodiscard]] double rounding() const { return 4 * gaps_.error() + 0x1p-36 * gaps_.reach(); }
 
   const Surface *a_, *b_;
   Gaps gaps_;

@@ -13,6 +13,7 @@
 
 #include "numbers.h"
 #include "search.h"
+#include "swept.h"
 
 namespace kaboum::pairs {
 namespace {
@@ -23,6 +24,13 @@ using detail::Shapes;
 using detail::Surface;
 using geom::Mesh;
 using geom::Vec3;
+
+/// Pairs of clusters that are looked at of one pair's parts away from their joint, and of each pair
+/// in the first round of boxes.
+constexpr std::size_t kAwayWork = 200'000, kFirstWork = 4'000;
+constexpr std::size_t kWorkOfUnsure = 4 * kFirstWork;  ///< after which nothing more is sought
+constexpr std::size_t kManyJoints = 3;
+constexpr std::size_t kCoarseNodes = 50'000, kMostNodes = 3'000'000;  ///< of what links sweep
 
 Shapes shapes_of(const Mesh& outer, const std::optional<Mesh>& inner) {
   Shapes out;
@@ -103,7 +111,7 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
   Search search(robot, links.first, links.second, of_a, of_b, options.samples);
   search.begin(stop);
   for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
-  search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), stop);
+  search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), kAwayWork, stop);
   out.verdict = search.verdict();
   out.nearest = search.nearest();
   out.q = configuration(robot, search);
@@ -133,6 +141,7 @@ struct Sought {
   std::size_t a, b;
   std::unique_ptr<Search> search;
   std::optional<AwayFromJoint> away;
+  double apart = 0;  ///< a lower bound of the distance in all configurations [length]
 };
 
 DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const LinkSurface& a,
@@ -151,6 +160,7 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   pair.nearest = found.search->nearest();
   pair.depth = found.search->depth();
   pair.boxes = found.search->boxes();
+  pair.unfinished = pair.verdict == Verdict::Open && !found.search->decided();
   pair.q = configuration(robot, *found.search);
   if (pair.verdict != Verdict::Never) pair.away = std::move(found.away);
   if (unsure.empty()) return pair;
@@ -158,8 +168,144 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   if (pair.away) doubt(*pair.away);
   pair.depth.upper = pair.depth.lower > 0 ? kInfinite : 0;
   if (pair.verdict == Verdict::Open) pair.why = unsure;
+  pair.unfinished = false;
   return pair;
 }
+
+/// All pairs of some surfaces' links, those that are not decided yet in rounds.
+class Pairs {
+ public:
+  Pairs(const robot::Robot& robot, const std::vector<LinkSurface>& given,
+        const DecideOptions& options)
+      : robot_(robot), options_(options), surfaces_(in_order(robot, given)) {
+    shapes_.resize(surfaces_.size());
+    parallel_for(
+        std::size_t{0}, surfaces_.size(),
+        [&](std::size_t i) { shapes_[i] = shapes_of(surfaces_[i]->outer, surfaces_[i]->inner); },
+        {.alone = true});
+    shaped_.assign(robot.links.size(), 0);
+    for (std::size_t l = 0; l < shaped_.size(); ++l)
+      shaped_[l] = robot.links[l].collision.empty() ? 0 : 1;
+    for (const LinkSurface* s : surfaces_) shaped_[s->link] = 1;
+    for (std::size_t a = 0; a < surfaces_.size(); ++a)
+      for (std::size_t b = a + 1; b < surfaces_.size(); ++b) {
+        if (shapes_[a].outer && shapes_[b].outer) left_.push_back(pairs_.size());
+        pairs_.push_back({a, b, nullptr, std::nullopt, 0});
+      }
+  }
+
+  std::vector<DecidedPair> decide() {
+    const std::function<bool()> stop = [&] { return stopped(); };
+    round([&](Sought& pair) {
+      pair.search =
+          std::make_unique<Search>(robot_, surfaces_[pair.a]->link, surfaces_[pair.b]->link,
+                                   shapes_[pair.a], shapes_[pair.b], options_.samples);
+      pair.search->begin(stop);
+    });
+    look_for_contacts(stop);
+    sweep(kCoarseNodes, stop);
+    // Before pairs that are hard take all of the time.
+    look_away_from_joints(stop);
+    // More and more of each, so that what is easy is decided before the time is up.
+    std::size_t nodes = kCoarseNodes;
+    for (std::size_t work = kFirstWork; !left_.empty() && !stop(); work *= 2) {
+      if (work > kFirstWork) look_for_contacts(stop);
+      if (nodes < kMostNodes) sweep(nodes *= 4, stop);
+      round([&](Sought& pair) {
+        const std::size_t looked = pair.search->boxes() / 2;
+        if (looked < options_.most_boxes && !unsure(pair))
+          pair.search->go_on(options_.most_boxes - looked, work, stop);
+      });
+      // Of links that may lack something contacts are all that can be found.
+      std::erase_if(left_, [&](std::size_t i) {
+        const Sought& pair = pairs_[i];
+        return pair.search->boxes() / 2 >= options_.most_boxes ||
+               (unsure(pair) && work >= kWorkOfUnsure);
+      });
+    }
+    return found();
+  }
+
+ private:
+  [[nodiscard]] bool stopped() const {
+    if (options_.progress) options_.progress(decided_, pairs_.size());
+    if (options_.stop && options_.stop()) return true;
+    const std::chrono::duration<double> passed = Clock::now() - begin_;
+    return passed.count() > options_.most_seconds;
+  }
+  [[nodiscard]] bool unsure(const Sought& pair) const {
+    return !surfaces_[pair.a]->unsure.empty() || !surfaces_[pair.b]->unsure.empty();
+  }
+  /// Does something to each pair that is left; those that are decided then are left no more.
+  void round(const std::function<void(Sought&)>& work) {
+    parallel_for(std::size_t{0}, left_.size(),
+                 [&](std::size_t i) {
+                   Sought& pair = pairs_[left_[i]];
+                   work(pair);
+                   if (pair.search->decided()) ++decided_;
+                 },
+                 {.alone = true});
+    std::erase_if(left_, [&](std::size_t i) { return pairs_[i].search->decided(); });
+  }
+  void look_for_contacts(const std::function<bool()>& stop) {
+    round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
+  }
+  void sweep(std::size_t most_nodes, const std::function<bool()>& stop) {
+    std::vector<std::uint32_t> links;
+    std::vector<const Surface*> outer;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      links.push_back(surfaces_[i]->link);
+      outer.push_back(surfaces_[i]->unsure.empty() ? shapes_[i].outer.get() : nullptr);
+    }
+    std::vector<std::size_t> open;
+    std::vector<detail::PairOfSurfaces> sides;
+    for (const std::size_t i : left_) {
+      // Of few joints boxes prove more than finer grids.
+      const bool few = pairs_[i].search->chain().joints().size() < kManyJoints;
+      if (unsure(pairs_[i]) || (few && most_nodes > kCoarseNodes)) continue;
+      open.push_back(i);
+      sides.emplace_back(pairs_[i].a, pairs_[i].b);
+    }
+    const std::vector<double> apart =
+        detail::apart_by_sweeping(robot_, links, outer, sides, most_nodes, stop);
+    for (std::size_t i = 0; i < open.size(); ++i) pairs_[open[i]].apart = apart[i];
+    round([&](Sought& pair) { pair.search->take_apart(pair.apart, stop); });
+  }
+  void look_away_from_joints(const std::function<bool()>& stop) {
+    parallel_for(
+        std::size_t{0}, pairs_.size(),
+        [&](std::size_t i) {
+          Sought& pair = pairs_[i];
+          if (pair.search == nullptr || pair.search->verdict() == Verdict::Never) return;
+          const std::pair links(surfaces_[pair.a]->link, surfaces_[pair.b]->link);
+          if (relation_of(robot_, shaped_, links.first, links.second) == Relation::Adjacent)
+            pair.away = look_away(robot_, links, shapes_[pair.a], shapes_[pair.b], *pair.search,
+                                  options_, stop);
+        },
+        {.alone = true});
+  }
+  std::vector<DecidedPair> found() {
+    std::vector<DecidedPair> out(pairs_.size());
+    parallel_for(std::size_t{0}, pairs_.size(),
+                 [&](std::size_t i) {
+                   out[i] = found_of(robot_, shaped_, *surfaces_[pairs_[i].a],
+                                     *surfaces_[pairs_[i].b], std::move(pairs_[i]));
+                 },
+                 {.alone = true});
+    return out;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin_ = Clock::now();
+  const robot::Robot& robot_;
+  const DecideOptions& options_;
+  std::vector<const LinkSurface*> surfaces_;
+  std::vector<Shapes> shapes_;
+  Shaped shaped_;
+  std::vector<Sought> pairs_;
+  std::vector<std::size_t> left_;  ///< of the pairs
+  std::atomic<std::size_t> decided_ = 0;
+};
 
 }  // namespace
 
@@ -195,80 +341,7 @@ std::string text_of(const std::vector<double>& q) {
 std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const std::vector<LinkSurface>& given,
                                       const DecideOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  const std::vector<const LinkSurface*> surfaces = in_order(robot, given);
-  std::vector<Shapes> shapes(surfaces.size());
-  parallel_for(
-      std::size_t{0}, surfaces.size(),
-      [&](std::size_t i) { shapes[i] = shapes_of(surfaces[i]->outer, surfaces[i]->inner); },
-      {.alone = true});
-  Shaped shaped(robot.links.size(), 0);
-  for (std::size_t l = 0; l < shaped.size(); ++l)
-    shaped[l] = robot.links[l].collision.empty() ? 0 : 1;
-  for (const LinkSurface* s : surfaces) shaped[s->link] = 1;
-
-  std::vector<Sought> pairs;
-  for (std::size_t a = 0; a < surfaces.size(); ++a)
-    for (std::size_t b = a + 1; b < surfaces.size(); ++b)
-      pairs.push_back({a, b, nullptr, std::nullopt});
-
-  std::atomic<std::size_t> decided = 0;
-  const auto stop = [&] {
-    if (options.progress) options.progress(decided, pairs.size());
-    if (options.stop && options.stop()) return true;
-    return std::chrono::duration<double>(Clock::now() - begin).count() > options.most_seconds;
-  };
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (shapes[pairs[i].a].outer && shapes[pairs[i].b].outer) left.push_back(i);
-  const auto round = [&](const auto& work) {
-    parallel_for(std::size_t{0}, left.size(),
-                 [&](std::size_t i) {
-                   Sought& pair = pairs[left[i]];
-                   work(pair);
-                   if (pair.search->decided()) ++decided;
-                 },
-                 {.alone = true});
-    std::erase_if(left, [&](std::size_t i) { return pairs[i].search->decided(); });
-  };
-  round([&](Sought& pair) {
-    pair.search = std::make_unique<Search>(robot, surfaces[pair.a]->link, surfaces[pair.b]->link,
-                                           shapes[pair.a], shapes[pair.b], options.samples);
-    pair.search->begin(stop);
-  });
-  round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
-  // Before pairs that are hard take all of the time.
-  parallel_for(std::size_t{0}, pairs.size(),
-               [&](std::size_t i) {
-                 Sought& pair = pairs[i];
-                 if (pair.search == nullptr || pair.search->verdict() == Verdict::Never) return;
-                 const std::pair links(surfaces[pair.a]->link, surfaces[pair.b]->link);
-                 if (relation_of(robot, shaped, links.first, links.second) == Relation::Adjacent)
-                   pair.away = look_away(robot, links, shapes[pair.a], shapes[pair.b], *pair.search,
-                                         options, stop);
-               },
-               {.alone = true});
-  // More and more boxes, so that what is easy is decided before the time is up.
-  for (std::size_t boxes = 500; !left.empty(); boxes *= 2) {
-    const bool last = boxes >= options.most_boxes;
-    if (boxes > 500) round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
-    round([&](Sought& pair) {
-      const std::size_t most = std::min(boxes, options.most_boxes);
-      if (pair.search->boxes() / 2 < most)
-        pair.search->go_on(most - pair.search->boxes() / 2, stop);
-    });
-    if (last || stop()) break;
-  }
-
-  std::vector<DecidedPair> out(pairs.size());
-  parallel_for(std::size_t{0}, pairs.size(),
-               [&](std::size_t i) {
-                 out[i] = found_of(robot, shaped, *surfaces[pairs[i].a], *surfaces[pairs[i].b],
-                                   std::move(pairs[i]));
-               },
-               {.alone = true});
-  return out;
+  return Pairs(robot, given, options).decide();
 }
 
 }  // namespace kaboum::pairs

@@ -60,64 +60,59 @@ void BoxMotion::set(std::span<const double> middle, std::span<const double> half
   const auto& joints = chain_->joints();
   half_.resize(joints.size());
   chord_.resize(joints.size());
+  turned_.assign(joints.size() + 1, 0);
   turns_ = 0;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     half_[k] = std::abs(joints[k].multiplier) * half[joints[k].variable] * kUp;
     chord_[k] = joints[k].revolute ? 2 * std::sin(0.5 * std::min(half_[k], std::numbers::pi)) * kUp
                                    : half_[k];
     if (joints[k].revolute) turns_ += half_[k];
+    turned_[k + 1] = turns_;
   }
 }
 
-BoxMotion::Side BoxMotion::side(const Vec3& center, double reach, std::size_t nearest,
-                                std::size_t end, int step) const {
-  std::array<double, 64> radius;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+BoxMotion::Sums BoxMotion::sums(const Vec3& center, double reach, bool of_b) const {
   const auto& joints = chain_->joints();
-  const auto count =
-      static_cast<std::size_t>(step > 0 ? static_cast<std::ptrdiff_t>(end - nearest)
-                                        : static_cast<std::ptrdiff_t>(nearest - end));
-  const auto joint = [&](std::size_t i) { return step > 0 ? nearest + i : nearest - 1 - i; };
-  Side out;
-  for (std::size_t i = count; i-- > 0;) {
-    const std::size_t k = joint(i);
-    if (half_[k] == 0) {
-      radius[i] = 0;
-      continue;
-    }
+  const std::size_t n = joints.size();
+  Sums out;  // of no joint: 0
+  const auto add = [&](std::size_t k, std::size_t from, std::size_t to) {
+    const double half = half_[k], both = turned_[k] + turned_[k + 1];
+    double moved = half, share = half, turned = 2 * half * turned_[of_b ? k : k + 1];
     if (joints[k].revolute) {
-      radius[i] = placed_.axes[k].cross(center - placed_.origins[k]).norm() + reach + out.first;
-      out.first += chord_[k] * radius[i];
-    } else {
-      out.first += half_[k];
+      const double radius =
+          placed_.axes[k].cross(center - placed_.origins[k]).norm() + reach + out.first[from];
+      moved = chord_[k] * radius;
+      share = half * radius;
+      turned = share * both;
     }
-  }
-  double turned = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = joint(i);
-    if (joints[k].revolute) {
-      const double now = turned + half_[k];
-      out.second += radius[i] * (now * now - turned * turned);
-      turned = now;
-    } else {
-      out.second += 2 * half_[k] * turned;
-    }
-  }
-  out.second *= 0.5;
+    out.first[to] = out.first[from] + moved;
+    out.share[to] = out.share[from] + share;
+    out.turned[to] = out.turned[from] + turned;
+  };
+  if (of_b)
+    for (std::size_t k = n; k-- > 0;) add(k, k + 1, k);
+  else
+    for (std::size_t k = 0; k < n; ++k) add(k, k, k + 1);
   return out;
 }
 
 BoxMotion::Bound BoxMotion::bound(const Vec3& center_a, double reach_a, const Vec3& center_b,
                                   double reach_b) const {
   Bound out{kInfinite, kInfinite, 0, 0};
-  const std::size_t n = chain_->joints().size();
-  for (Split s = 0; s <= n; ++s) {
-    const Side a = side(center_a, reach_a, s, 0, -1), b = side(center_b, reach_b, s, n, 1);
-    if (a.first + b.first < out.first) {
-      out.first = a.first + b.first;
+  const Sums a = sums(center_a, reach_a, false), b = sums(center_b, reach_b, true);
+  for (Split s = 0; s <= chain_->joints().size(); ++s) {
+    const double first = a.first[s] + b.first[s];
+    if (first < out.first) {
+      out.first = first;
       out.first_split = s;
     }
-    if (a.second + b.second < out.second) {
-      out.second = a.second + b.second;
+    // Turns are counted from the frame between on: those up to joint k less those up to the frame.
+    const double up_to = 2 * turned_[s];
+    const double second =
+        0.5 * (up_to * a.share[s] - a.turned[s] + b.turned[s] - up_to * b.share[s]) +
+        kRounding * (up_to * (a.share[s] + b.share[s]) + a.turned[s] + b.turned[s]);
+    if (second < out.second) {
+      out.second = second;
       out.second_split = s;
     }
   }

@@ -52,15 +52,17 @@ class BoxMotion {
   [[nodiscard]] double half_of(std::size_t joint) const { return half_[joint]; }
 
  private:
-  struct Side {
-    double first = 0, second = 0;
+  /// Of a ball's motion, for each split: the bound of its displacement, and two sums of which the
+  /// bound of the second order is made.
+  struct Sums {
+    std::array<double, Linear::kMost + 1> first{}, share{}, turned{};
   };
-  [[nodiscard]] Side side(const Vec3& center, double reach, std::size_t nearest, std::size_t end,
-                          int step) const;
+  [[nodiscard]] Sums sums(const Vec3& center, double reach, bool of_b) const;
 
   const Chain* chain_;
   Chain::Placed placed_;
   std::vector<double> half_, chord_;  ///< of each joint
+  std::vector<double> turned_;        ///< half turns of the joints before each, and of all
   double turns_ = 0;
 };
 

@@ -119,6 +119,9 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
   const auto fault = [&](Kind kind, const std::string& what, int line) {
     out.faults.push_back({kind, what, line});
   };
+  const auto idle = [&](const DisabledPair& pair) {
+    out.idle.insert(out.idle.end(), pair.statements.begin(), pair.statements.end());
+  };
   std::set<std::string> unknown;
   std::map<Pair, const detail::StatedPair*> disabled, enabled;
   for (const detail::StatedPair& stated : read.pairs) {
@@ -132,6 +135,7 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
       if (const auto similar = similar_name(link, links)) what += "; is '" + *similar + "' meant?";
       fault(Kind::UnknownLink, what, pair.line);
     }
+    if (!known || pair.a == pair.b) idle(pair);
     if (!known) continue;
     if (pair.a == pair.b) {
       if (!stated.expanded)
@@ -147,6 +151,7 @@ Matrix parse_matrix(const std::string& text, const std::string& name, const robo
       if (before.expanded && !stated.expanded) at->second = &stated;
       continue;
     }
+    idle(pair);
     const bool differs = before.pair.reason != pair.reason;
     fault(differs ? Kind::Contradicting : Kind::Doubled,
           "the pair " + quoted(key) + " is stated in line " + std::to_string(before.pair.line) +
@@ -222,6 +227,41 @@ std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
   return out;
 }
 
+namespace {
+
+/// A text without stretches of it, with some other text put in before.
+std::string without(const std::string& text, std::vector<Stretch> gone, const std::string& added,
+                    std::size_t place) {
+  // From the end on; what is inside of another stretch is gone with it.
+  std::ranges::sort(gone, [](const Stretch& x, const Stretch& y) {
+    return x.begin != y.begin ? x.begin > y.begin : x.end > y.end;
+  });
+  std::string out = text;
+  if (!added.empty()) out.insert(place, added);
+  std::size_t next = std::string::npos;
+  for (const Stretch& stretch : gone) {
+    if (stretch.begin >= next) continue;
+    const std::size_t end = std::min(stretch.end, next);
+    out.erase(stretch.begin, end - stretch.begin);
+    next = stretch.begin;
+  }
+  return out;
+}
+
+/// Whether a text disables just these pairs.
+bool disables(const std::string& text, const std::set<Pair>& pairs, const robot::Robot& robot) {
+  std::set<Pair> left;
+  try {
+    for (const DisabledPair& pair : parse_matrix(text, "the corrected file", robot).pairs)
+      left.insert(sorted(pair.a, pair.b));
+  } catch (const Error&) {
+    return false;
+  }
+  return left == pairs;
+}
+
+}  // namespace
+
 std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged,
                       const robot::Robot& robot) {
   std::vector<Stretch> gone;
@@ -243,26 +283,15 @@ std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judge
     enabled += "  <enable_collisions link1=\"" + escape_xml(pair.stated.a) + "\" link2=\"" +
                escape_xml(pair.stated.b) + "\"/>\n";
   }
-  // From the end on; what is inside of another stretch is gone with it.
-  std::ranges::sort(gone, [](const Stretch& x, const Stretch& y) {
-    return x.begin != y.begin ? x.begin > y.begin : x.end > y.end;
-  });
-  std::string out = matrix.text;
-  if (!enabled.empty()) out.insert(*matrix.end_of_statements, enabled);
-  std::size_t next = std::string::npos;
-  for (const Stretch& stretch : gone) {
-    if (stretch.begin >= next) continue;
-    const std::size_t end = std::min(stretch.end, next);
-    out.erase(stretch.begin, end - stretch.begin);
-    next = stretch.begin;
+  const std::size_t place = matrix.end_of_statements.value_or(0);
+  std::vector<Stretch> all = gone;
+  all.insert(all.end(), matrix.idle.begin(), matrix.idle.end());
+  for (const std::vector<Stretch>& stretches : {all, gone}) {
+    std::string out = without(matrix.text, stretches, enabled, place);
+    if (disables(out, kept, robot)) return out;
   }
-  std::set<Pair> left;
-  for (const DisabledPair& pair : parse_matrix(out, "the corrected file", robot).pairs)
-    left.insert(sorted(pair.a, pair.b));
-  if (left != kept)
-    throw Error(ErrorCode::InvalidArgument,
-                "the refuted pairs cannot be taken out without others: change the file by hand");
-  return out;
+  throw Error(ErrorCode::InvalidArgument,
+              "the refuted pairs cannot be taken out without others: change the file by hand");
 }
 
 }  // namespace kaboum::pairs

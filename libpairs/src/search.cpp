@@ -18,11 +18,14 @@ namespace {
 constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                 23, 29, 31, 37, 41, 43, 47, 53};
 constexpr std::size_t kFirstSamples = 50;
-constexpr std::size_t kClimbs = 4;         ///< from the best places of each time
-constexpr std::size_t kMostSteps = 5'000;  ///< of a search for the nearest triangles
-constexpr std::size_t kFirstBoxes = 30;    ///< before contacts are looked for
+constexpr std::size_t kClimbs = 4;          ///< from the best places of each time
+constexpr std::size_t kTargets = 8;         ///< of each time, by twos from the best places
+constexpr std::size_t kFewSteps = 400;      ///< down the trees, until a contact is seen
+constexpr std::size_t kManySteps = 20'000;  ///< the same, where it matters more
+constexpr std::size_t kMostSteps = 1'000;   ///< of a search for the nearest triangles
 constexpr std::size_t kAlwaysBoxes = 3'000;
-constexpr std::size_t kFewItems = 300, kMostItems = 6'000;
+constexpr std::size_t kFewItems = 60, kMostItems = 6'000;
+constexpr std::size_t kMostFixedItems = 300'000;  ///< of links that fixed joints connect
 
 }  // namespace
 
@@ -49,6 +52,7 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
   }
   shows_ = shows_ && chain_.own_limits();
   best_values_ = shows_ ? within_own_limits(middle_) : middle_;
+  still_.assign(middle_.size(), 0);
 }
 
 std::vector<double> Search::within_own_limits(std::vector<double> values) const {
@@ -65,11 +69,9 @@ Bracket Search::nearest() const {
   return {std::clamp(lower, 0.0, nearest_), nearest_};
 }
 
-Contact::Nearest Search::measure(const std::vector<double>& values, double gap,
-                                 std::size_t most_steps) {
-  const std::vector<double> still(values.size(), 0);
-  motion_.set(values, still);
-  Contact::Nearest out = inner_.nearest(motion_, gap, most_steps);
+Contact::Nearest Search::measure(const std::vector<double>& values, std::size_t most_steps) {
+  motion_.set(values, still_);
+  Contact::Nearest out = inner_.nearest(motion_, 0, most_steps);
   if (out.upper < nearest_) {
     nearest_ = out.upper;
     best_values_ = values;
@@ -77,14 +79,153 @@ Contact::Nearest Search::measure(const std::vector<double>& values, double gap,
   return out;
 }
 
-bool Search::climb(std::vector<double> values) {
+bool Search::shows(const std::vector<double>& values, std::size_t most_steps) {
+  motion_.set(values, still_);
+  const double depth = inner_.some_depth(motion_, most_steps);
+  if (!(depth > 0)) return false;
+  if (depth > depth_.lower) {
+    depth_.lower = depth;
+    best_values_ = values;
+  }
+  nearest_ = 0;
+  verdict_ = Verdict::CanTouch;
+  return true;
+}
+
+Search::Pull Search::pull(const std::vector<double>& values, const Target* target) {
+  motion_.set(values, still_);
+  const Transform& at = motion_.placed().b;
+  if (target != nullptr) {
+    const Vec3 from = at * target->in_b;
+    return {from, target->in_a, (from - target->in_a).norm(), true};
+  }
+  const Cluster &a = inner_.a().tree()[0], &b = inner_.b().tree()[0];
+  const Gap gap = inner_.gaps().at_middle(a, b, motion_, Vec3::Zero(), kInfinite);
+  if (gap.upper > 1e-9 * inner_.gaps().reach()) {
+    const double beyond = 0.1 * std::min(a.reach, b.reach);
+    return {gap.on_b, gap.on_a + beyond / gap.upper * (gap.on_a - gap.on_b), gap.upper, true};
+  }
+  const Vec3 from = at * b.center;
+  return {from, a.center, (from - a.center).norm(), false};
+}
+
+std::vector<double> Search::stepped(const std::vector<double>& values, const Pull& pull,
+                                    double damping) {
+  motion_.set(values, still_);
+  const auto& [low, high] = *chain_.own_limits();
+  std::vector<Vec3> columns(values.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < chain_.joints().size(); ++k) {
+    const Chain::Joint& joint = chain_.joints()[k];
+    const Vec3& axis = motion_.placed().axes[k];
+    columns[joint.variable] +=
+        joint.multiplier *
+        (joint.revolute ? axis.cross(pull.from - motion_.placed().origins[k]).eval() : axis);
+  }
+  // Steps are shares of the limits' widths; what is at a limit does not go beyond it.
+  for (std::size_t v = 0; v < values.size(); ++v) columns[v] *= half_[v];
+  std::vector<double> step(values.size(), 0);
+  std::vector<char> blocked(values.size(), 0);
+  double scale = 0;
+  for (const Vec3& column : columns) scale += column.squaredNorm();
+  for (int pass = 0; pass < 4; ++pass) {
+    Eigen::Matrix3d square = (damping * scale + 1e-300) * Eigen::Matrix3d::Identity();
+    for (std::size_t v = 0; v < values.size(); ++v)
+      if (blocked[v] == 0) square += columns[v] * columns[v].transpose();
+    const Vec3 solved = square.ldlt().solve(pull.to - pull.from);
+    bool again = false;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      step[v] = blocked[v] == 0 ? columns[v].dot(solved) : 0;
+      if (!(step[v] > 0 ? values[v] >= high[v] : step[v] < 0 && values[v] <= low[v])) continue;
+      step[v] = 0;
+      blocked[v] = 1;
+      again = true;
+    }
+    if (!again) break;
+  }
+  double most = 0.5;  // of the half widths
+  for (const double s : step) most = std::max(most, std::abs(s));
+  std::vector<double> out = values;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    out[v] = std::clamp(values[v] + 0.5 / most * step[v] * half_[v], low[v], high[v]);
+  return out;
+}
+
+bool Search::approach(std::vector<double> values, const Target* target) {
+  values = within_own_limits(std::move(values));
+  Pull at = pull(values, target);
+  const double arrived = 1e-5 * inner_.gaps().reach();
+  double damping = 1e-3;
+  bool moved = true;
+  int meeting = 0;  // places at which the hulls do
+  for (int step = 0; step < 40 && damping < 1e3 && !stopped(); ++step) {
+    if (moved && !at.apart && shows(values, kFewSteps)) return true;
+    if (moved && !at.apart && ++meeting == 8) return false;
+    if (at.distance <= arrived) break;
+    std::vector<double> next = stepped(values, at, damping);
+    const Pull there = pull(next, target);
+    moved = there.apart == at.apart ? there.distance <= at.distance * (1 - 1e-3) : !there.apart;
+    damping = moved ? std::max(1e-6, 0.1 * damping) : 10 * damping;
+    if (!moved) continue;
+    values = std::move(next);
+    at = there;
+  }
+  return at.apart && shows(values, kFewSteps);
+}
+
+Search::Target Search::target(std::size_t i) const {
+  const auto point = [&](const Surface& of, std::uint32_t base) {
+    const Mesh& mesh = of.mesh();
+    const auto count = static_cast<double>(mesh.triangles.size());
+    const auto t = static_cast<std::size_t>(radical_inverse(i, base) * count);
+    const geom::Triangle& corners = mesh.triangles[std::min(t, mesh.triangles.size() - 1)];
+    const Vec3 &p = mesh.vertices[corners[0]], &q = mesh.vertices[corners[1]],
+               &r = mesh.vertices[corners[2]];
+    const Vec3 normal = (q - p).cross(r - p);
+    const double length = normal.norm();
+    // A little below the surface.
+    const Vec3 middle = (p + q + r) / 3;
+    return length > 0 ? (middle - 0.01 * of.tree()[0].reach / length * normal).eval() : middle;
+  };
+  return {point(inner_.a(), 2), point(inner_.b(), 3)};
+}
+
+std::vector<double> Search::sample(std::size_t i) const {
+  const auto& [low, high] = *chain_.own_limits();
+  std::vector<double> values = within_own_limits(middle_);
+  for (std::size_t v = 0; v < values.size() && i > 0; ++v)
+    values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
+  return values;
+}
+
+std::vector<std::vector<double>> Search::look_at_samples(const std::function<bool()>& stop) {
+  const std::size_t samples =
+      middle_.empty() ? 1 : std::min(samples_, std::max(kFirstSamples, 2 * sampled_));
+  std::vector<std::pair<double, std::vector<double>>> near;
+  const Cluster &a = inner_.a().tree()[0], &b = inner_.b().tree()[0];
+  for (; sampled_ < samples && !stop(); ++sampled_) {
+    std::vector<double> values = sample(sampled_);
+    motion_.set(values, still_);
+    const Gap gap = inner_.gaps().at_middle(a, b, motion_, Vec3::Zero(), kInfinite);
+    if (gap.lower > 0 || !shows(values, always_ ? kManySteps : kFewSteps)) {
+      always_ = false;
+      near.emplace_back(gap.upper, std::move(values));
+    }
+    if (!always_ && verdict_ == Verdict::CanTouch) break;
+  }
+  std::ranges::stable_sort(near, {}, [](const auto& place) { return place.first; });
+  std::vector<std::vector<double>> out;
+  for (auto& place : near) out.push_back(std::move(place.second));
+  return out;
+}
+
+bool Search::climb(std::vector<double> values, std::size_t most_steps) {
   const double touching = 1e-11 * inner_.gaps().reach();
   const auto& [low, high] = *chain_.own_limits();
   values = within_own_limits(std::move(values));
-  Contact::Nearest at = measure(values, 0, kMostSteps);
+  Contact::Nearest at = measure(values, most_steps);
   for (int step = 0; step < 60 && at.upper > touching && !stopped(); ++step) {
     // Derivative of the distance: all joints move b.
-    motion_.set(values, std::vector<double>(values.size(), 0));
+    motion_.set(values, still_);
     const Vec3 along = (at.on_b - at.on_a) / at.upper;
     std::vector<double> gradient(values.size(), 0);
     for (std::size_t k = 0; k < chain_.joints().size(); ++k) {
@@ -108,11 +249,11 @@ bool Search::climb(std::vector<double> values) {
       if (std::abs(gradient[v]) * scale > 0.25 * half_[v])
         scale = 0.25 * half_[v] / std::abs(gradient[v]);
     bool better = false;
-    for (int half = 0; half < 8 && !better; ++half, scale *= 0.4) {
+    for (int half = 0; half < 8 && !better && !stopped(); ++half, scale *= 0.4) {
       std::vector<double> next = values;
       for (std::size_t v = 0; v < values.size(); ++v)
         next[v] = std::clamp(values[v] - scale * gradient[v], low[v], high[v]);
-      const Contact::Nearest there = measure(next, 0, kMostSteps);
+      const Contact::Nearest there = measure(next, most_steps);
       if (there.upper >= at.upper * (1 - 1e-4)) continue;
       values = std::move(next);
       at = there;
@@ -127,22 +268,23 @@ bool Search::climb(std::vector<double> values) {
 
 void Search::show_contact(std::vector<double> values) {
   const auto& [low, high] = *chain_.own_limits();
-  const std::vector<double> still(values.size(), 0);
-  const auto depth_at = [&](const std::vector<double>& v, std::size_t corners) {
-    motion_.set(v, still);
-    return inner_.depth_below(motion_, corners);
+  const auto depth_at = [&](const std::vector<double>& v) {
+    motion_.set(v, still_);
+    return inner_.depth_below(motion_, 40, 60);
   };
-  double deepest = depth_at(values, 150), overlap = outer_.depth_above(motion_);
+  double deepest = std::max(depth_.lower, depth_at(values));
+  double overlap = outer_.depth_above_roughly(motion_);
   Random random(1);
   double width = 0.05;
-  for (int step = 0; step < 150 && !values.empty() && !stopped(); ++step) {
+  const int steps = deepest > 0 ? 20 : 100;
+  for (int step = 0; step < steps && !values.empty() && !stopped(); ++step) {
     std::vector<double> next = values;
     for (std::size_t v = 0; v < next.size(); ++v)
       next[v] = std::clamp(next[v] + random.between(-1, 1) * width * half_[v], low[v], high[v]);
     // Where the hulls overlap more, the solids mostly do; that is cheap to see.
-    motion_.set(next, still);
-    const double over = outer_.depth_above(motion_);
-    const double there = over > overlap ? depth_at(next, 150) : 0;
+    motion_.set(next, still_);
+    const double over = outer_.depth_above_roughly(motion_);
+    const double there = over > overlap ? depth_at(next) : 0;
     if (there > deepest) {
       deepest = there;
       overlap = over;
@@ -152,16 +294,11 @@ void Search::show_contact(std::vector<double> values) {
       width = std::max(0.002, width * 0.93);
     }
   }
-  const double lower = depth_at(values, 1'500);
-  if (!(lower > 0)) {
-    // They touch up to rounding.
-    nearest_ = 0;
-    best_values_ = std::move(values);
-    return;
-  }
-  depth_ = {lower, std::max(lower, outer_.depth_above(motion_))};
   nearest_ = 0;
   best_values_ = std::move(values);
+  if (!(deepest > 0)) return;  // they touch up to rounding
+  motion_.set(best_values_, still_);
+  depth_ = {deepest, std::max(deepest, outer_.depth_above(motion_))};
   verdict_ = Verdict::CanTouch;
 }
 
@@ -170,33 +307,31 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   stop_ = &stop;
   searched_ = true;
   if (!shows_) return;
-  const auto& [low, high] = *chain_.own_limits();
-  const std::size_t samples =
-      middle_.empty() ? 1 : std::min(samples_, std::max(kFirstSamples, 2 * sampled_));
-  std::vector<std::pair<double, std::vector<double>>> near;
-  const double touching = 1e-11 * inner_.gaps().reach();
-  for (; sampled_ < samples && !stop(); ++sampled_) {
-    const std::size_t i = sampled_;
-    std::vector<double> values = within_own_limits(middle_);
-    for (std::size_t v = 0; v < values.size() && i > 0; ++v)
-      values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
-    const Contact::Nearest at = measure(values, 0.3 * std::min(nearest_, 1e3), kMostSteps / 10);
-    if (at.upper <= touching) {
-      if (depth_.lower == 0) show_contact(values);
-    } else {
-      always_ = false;
-      near.emplace_back(at.upper, std::move(values));
-    }
-    if (!always_ && verdict_ == Verdict::CanTouch) return;
-  }
-  if (always_ && verdict_ == Verdict::CanTouch) {
+  const std::size_t round = rounds_++;
+  const std::vector<std::vector<double>> near = look_at_samples(stop);
+  const auto found = [&] {
+    if (verdict_ == Verdict::CanTouch) show_contact(best_values_);
+    return verdict_ != Verdict::Open;
+  };
+  if (always_ && found()) {
     std::size_t left = kAlwaysBoxes;
     if (meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
     return;
   }
-  std::ranges::stable_sort(near, {}, [](const auto& place) { return place.first; });
+  if (found()) return;
   for (std::size_t i = 0; i < near.size() && i < kClimbs && !stop(); ++i)
-    if (climb(near[i].second) && verdict_ == Verdict::CanTouch) return;
+    if (approach(near[i], nullptr)) break;
+  if (found()) return;
+  for (std::size_t i = 0; i < kTargets && !near.empty() && !stop(); ++i) {
+    const Target to = target(1 + round * kTargets + i);
+    if (approach(near[i / 2 % near.size()], &to)) break;
+  }
+  if (found() || near.empty() || stop()) return;
+  if (round == 0)
+    measure(near.front(), kMostSteps / 4);
+  else
+    for (std::size_t i = 0; i < near.size() && i < kClimbs && !stop(); ++i)
+      if (climb(near[i], kMostSteps) && verdict_ == Verdict::CanTouch) return;
 }
 
 bool Search::meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
@@ -264,6 +399,7 @@ void Search::look_at(std::vector<double> middle, std::vector<double> half, const
   while (!stack.empty()) {
     Item item = stack.back();
     stack.pop_back();
+    ++work_;
     const Cluster &a = (*tree_a_)[item.a], &b = (*tree_b_)[item.b];
     const double lower = gaps.lower(a, b, motion_, item.direction, 0);
     if (lower > 0) {
@@ -308,7 +444,7 @@ void Search::look_at(std::vector<double> middle, std::vector<double> half, const
 
 void Search::end_proof() {
   // No surfaces meet anywhere; so what one solid holds of the other it holds everywhere.
-  motion_.set(middle_, std::vector<double>(middle_.size(), 0));
+  motion_.set(middle_, still_);
   switch (outer_.held(motion_)) {
     case Contact::Held::Nothing:
       verdict_ = Verdict::Never;
@@ -332,26 +468,39 @@ void Search::end_proof() {
   }
 }
 
-void Search::begin(const std::function<bool()>& stop) {
-  next_climb_ = std::numeric_limits<std::size_t>::max();
-  most_items_ = kFewItems;
-  go_on(kFirstBoxes, stop);
-  most_items_ = kMostItems;
-  next_climb_ = 64;
+void Search::take_apart(double distance, const std::function<bool()>& stop) {
+  const bool above_rounding = distance > 1e-6 * outer_.gaps().reach();
+  if (verdict_ != Verdict::Open || exhausted_ || !above_rounding) return;
+  stop_ = &stop;
+  begun_ = true;
+  open_ = {};
+  proved_ = distance;
+  end_proof();
 }
 
-void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
+void Search::begin(const std::function<bool()>& stop) {
+  if (exhausted_ || middle_.empty()) return;
+  most_items_ = kFewItems;
+  go_on(0, 0, stop);
+  most_items_ = kMostItems;
+}
+
+void Search::go_on(std::size_t boxes, std::size_t work, const std::function<bool()>& stop) {
   if (verdict_ != Verdict::Open || exhausted_) return;
   stop_ = &stop;
   if (!begun_) {
     begun_ = true;
+    if (middle_.empty()) most_items_ = kMostFixedItems;
     look_at(middle_, half_, {{0, 0, Vec3::Zero()}});
   }
-  for (std::size_t i = 0; i < boxes && !open_.empty() && !exhausted_; ++i) {
+  const std::size_t enough = work_ + work;
+  for (std::size_t i = 0; i < boxes && work_ < enough && !open_.empty() && !exhausted_; ++i) {
     if (stop()) return;
     if (shows_ && looked_ >= next_climb_) {
       next_climb_ = looked_ + std::clamp<std::size_t>(looked_ / 2, 32, 2'000);
-      if (climb(open_.top().middle) && verdict_ == Verdict::CanTouch) return;
+      if (approach(open_.top().middle, nullptr)) show_contact(best_values_);
+      if (verdict_ == Verdict::Open) climb(open_.top().middle, kMostSteps);
+      if (verdict_ == Verdict::CanTouch) return;
     }
     const Box box = open_.top();
     open_.pop();
@@ -367,7 +516,7 @@ void Search::go_on(std::size_t boxes, const std::function<bool()>& stop) {
 
 std::optional<Search::Joint> Search::joint() const {
   if (chain_.joints().size() != 1 || !chain_.joints().front().revolute) return std::nullopt;
-  motion_.set(middle_, std::vector<double>(middle_.size(), 0));
+  motion_.set(middle_, still_);
   Joint out{};
   out.in_a = motion_.placed().origins.front();
   const Transform& at = motion_.placed().b;

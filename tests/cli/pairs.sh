@@ -78,8 +78,8 @@ expect 1 '3 pairs disabled: 1 proved never to touch, 1 connected, 0 always in co
 grep -q 'line 4: fore turret (Never): refuted: they touch at ' out.txt || fail "$(cat out.txt)"
 grep -q "line 5: the pair 'base', 'upper' is stated in line 3 already" out.txt || fail "$(cat out.txt)"
 grep -q "line 6: the robot has no link 'hand'" out.txt || fail "$(cat out.txt)"
-grep -v 'fore' stated.srdf | cmp -s - corrected.srdf || fail "corrected.srdf: $(cat corrected.srdf)"
-expect 0 '' "$P" arm.urdf --judge corrected.srdf --fail-on open
+grep -v 'fore\|hand\|upper" link2' stated.srdf | cmp -s - corrected.srdf || fail "corrected.srdf: $(cat corrected.srdf)"
+expect 0 '0 faults' "$P" arm.urdf --judge corrected.srdf --fail-on open,faults
 python3 - <<'END' || fail 'JUnit or SARIF'
 import json
 import xml.etree.ElementTree as xml
@@ -110,8 +110,15 @@ grep -v 'hand\|upper" link2' faulty.srdf >clean.srdf
 expect 0 '0 faults' "$P" arm.urdf --judge clean.srdf --fail-on open,faults
 expect 2 'fail-on' "$P" arm.urdf --judge clean.srdf --fail-on warnings
 
+# A file that disables nothing is said to be one.
+echo '<robot name="arm"><group name="g"/></robot>' >none.srdf
+expect 0 'none.srdf disables no pair of links: there is nothing to judge' "$P" arm.urdf --judge none.srdf
+
 # Nothing is decided in no time, and that is said.
-expect 7 'open' "$P" arm.urdf --timeout 1e-9
+expect 7 '6 open' "$P" arm.urdf --timeout 1e-9 --srdf late.srdf
+[ "$(grep -c 'open, .*; a longer --timeout or more --max-boxes may decide it' out.txt)" = 6 ] || fail "$(cat out.txt)"
+grep -q 'late.srdf: 3 pairs of adjacent links are not disabled, .*: base turret; turret upper; upper fore' err.txt ||
+  fail "$(cat err.txt)"
 expect 1 '' "$P" arm.urdf --judge stated.srdf --timeout 1e-9 --fail-on open
 expect 2 'requires' "$P" arm.urdf -o corrected.srdf
 expect 2 'links' "$P" arm.urdf --judge stated.srdf --links base,upper

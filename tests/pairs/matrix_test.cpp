@@ -134,6 +134,34 @@ TEST(Matrix, FaultsHaveTheirLines) {
   EXPECT_EQ(pairs_of(matrix), "ac2 bd7 ");
 }
 
+TEST(Matrix, StatementsThatChangeNothingAreTakenOut) {
+  const robot::Robot robot = chain();
+  const auto after = [&](const std::string& text) {
+    const Matrix matrix = parse_matrix(text, "m", robot);
+    return corrected(matrix, judge(matrix, robot, all()), robot);
+  };
+  EXPECT_EQ(after(R"(<robot name="r">
+<disable_collisions link1="a" link2="c" reason="Never"/>
+<disable_collisions link1="c" link2="a" reason="Never"/>
+<disable_collisions link1="a" link2="c" reason="Adjacent"/>
+<disable_collisions link1="a" link2="e" reason="Never"/> <!-- kept -->
+<disable_collisions link1="e" link2="f" reason="Never"/>
+<enable_collisions link1="e" link2="b"/>
+<disable_collisions link1="b" link2="b" reason="Never"/>
+</robot>)"),
+            R"(<robot name="r">
+<disable_collisions link1="a" link2="c" reason="Never"/>
+ <!-- kept -->
+</robot>)");
+  EXPECT_EQ(after("<mujoco><contact><exclude body1='a' body2='c'/><exclude body1='a' body2='e'/>"
+                  "</contact></mujoco>"),
+            "<mujoco><contact><exclude body1='a' body2='c'/></contact></mujoco>");
+#ifdef KABOUM_HAS_YAML
+  EXPECT_EQ(after("self_collision_ignore:\n  a: [c, e, c, d]\n"),
+            "self_collision_ignore:\n  a: [c, ]\n");
+#endif
+}
+
 TEST(Matrix, DefaultsAreExceptedByEnabledPairs) {
   const robot::Robot robot = chain();
   const std::string text = R"(<robot name="r">

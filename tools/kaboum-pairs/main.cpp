@@ -94,6 +94,10 @@ int run(const PairsOptions& o) {
   }
   std::vector<std::string> notes;
   const std::vector<pairs::DecidedPair> pairs = decide(file, o, notes);
+  if (matrix && matrix->pairs.empty()) {
+    notes.push_back(o.judge + " disables no pair of links: there is nothing to judge");
+    tools::log(o.common.quiet, notes.back());
+  }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   tools::Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
@@ -116,6 +120,9 @@ int run(const PairsOptions& o) {
   tools::log(o.common.quiet, tools::summary_of(pairs, seconds));
   if (judged) tools::log(o.common.quiet, tools::summary_of(*judged));
   write(o.srdf, [&] { return tools::to_srdf(file.robot, pairs); });
+  if (const std::string left = tools::left_out_of_srdf(file.robot, pairs);
+      !o.srdf.empty() && !left.empty())
+    tools::log(o.common.quiet, o.srdf + ": " + left);
   if (judged) {
     write(o.junit, [&] { return tools::to_junit(*judged, o.fail_on); });
     write(o.sarif, [&] { return tools::to_sarif(*judged, o.fail_on).dump(2) + "\n"; });

@@ -29,7 +29,9 @@ void describe(CLI::App& app, PairsOptions& o) {
              "groups, XRDF, cuRobo's YAML")
           ->type_name("FILE");
   app.add_option("-o,--output", o.output,
-                 "Write that file without the pairs that are refuted; all else of it stays")
+                 "Write that file without the pairs that are refuted, and without statements that "
+                 "change nothing (links that the robot does not have, pairs stated twice); all "
+                 "else of it stays")
       ->type_name("FILE")
       ->needs(judge);
   app.add_option("--junit", o.junit, "Write the judgement as JUnit XML")

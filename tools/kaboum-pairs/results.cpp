@@ -51,6 +51,7 @@ Json pairs_json(const robot::Robot& robot, const std::vector<DecidedPair>& pairs
     if (pair.depth.lower > 0) j["depth"] = bracket_json(pair.depth);
     if (!pair.q.empty()) j["configuration"] = configuration_json(robot, pair.q);
     if (!pair.why.empty()) j["why"] = pair.why;
+    if (pair.unfinished) j["unfinished"] = true;
     j["boxes"] = pair.boxes;
     if (pair.away) {
       j["away_from_joint"] = {{"beyond", pair.away->beyond},
@@ -82,6 +83,7 @@ std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
     out += pairs::name_of(pair.away->verdict);
   }
   if (!pair.why.empty()) out += "; " + pair.why;
+  if (pair.unfinished) out += "; a longer --timeout or more --max-boxes may decide it";
   return out;
 }
 
@@ -103,6 +105,20 @@ std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& d
         {pair.a, pair.b, pair.adjacent ? "Adjacent" : (never ? "Never" : "Default")});
   }
   return pairs::srdf_text(robot, disabled);
+}
+
+std::string left_out_of_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& decided) {
+  std::string names;
+  std::size_t count = 0;
+  for (const DecidedPair& pair : decided) {
+    if (!pair.adjacent || pair.verdict == Verdict::Never || pairs::is_connected(pair)) continue;
+    names += (count++ == 0 ? "" : "; ") + robot.links[pair.a].name + " " + robot.links[pair.b].name;
+  }
+  if (count == 0) return {};
+  return std::to_string(count) +
+         " pairs of adjacent links are not disabled, as they touch away from their joint, or it is "
+         "not proved that they do not: " +
+         names;
 }
 
 }  // namespace kaboum::tools

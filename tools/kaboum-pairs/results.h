@@ -19,5 +19,8 @@ std::string words_of(const pairs::Bracket& bracket);
 std::string summary_of(const std::vector<pairs::DecidedPair>& pairs, double seconds);
 /// SRDF with <disable_collisions> of the pairs that never touch and of those that are connected.
 std::string to_srdf(const robot::Robot& robot, const std::vector<pairs::DecidedPair>& pairs);
+/// A sentence on adjacent links that it does not have; empty: it has all.
+std::string left_out_of_srdf(const robot::Robot& robot,
+                             const std::vector<pairs::DecidedPair>& pairs);
 
 }  // namespace kaboum::tools

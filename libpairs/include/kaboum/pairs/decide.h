@@ -77,6 +77,8 @@ struct DecidedPair {
   std::size_t boxes = 0;              ///< that were looked at
   std::optional<AwayFromJoint> away;  ///< of adjacent links that touch
   std::string why = {};  ///< of an open pair, where it could not be decided: what is not known
+  /// Open as the time or the boxes were used up; more of them may decide it.
+  bool unfinished = false;
 };
 
 /// Whether contacts of a pair say nothing: fixed joints connect the links, or one joint does, and

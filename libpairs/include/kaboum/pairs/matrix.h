@@ -58,6 +58,9 @@ struct Matrix {
   std::vector<MatrixFault> faults;  ///< by line
   /// Where enabled pairs may be written; of formats that have a word for it.
   std::optional<std::size_t> end_of_statements;
+  /// Statements that change nothing: of links that the robot does not have, of a link with itself,
+  /// and of a pair that is stated before.
+  std::vector<Stretch> idle = {};
 };
 
 /// Reads a file of any of the formats; which one is seen from its text.
@@ -95,8 +98,9 @@ struct JudgedPair {
 std::vector<JudgedPair> judge(const Matrix& matrix, const robot::Robot& robot,
                               const std::vector<DecidedPair>& decided);
 
-/// The file's text without refuted pairs; all else of it, its comments and its order stay. It has
-/// been read again: it disables none of them, and all others as before.
+/// The file's text without refuted pairs, and without statements that change nothing where these
+/// can be taken out; all else of it, its comments and its order stay. It has been read again: it
+/// disables none of the refuted pairs, and all others as before.
 /// @throws Error{InvalidArgument} where a refuted pair is part of a statement about several, and
 ///   the format has no word for an exception; or where pairs cannot be told apart in the text
 std::string corrected(const Matrix& matrix, const std::vector<JudgedPair>& judged,
