@@ -39,6 +39,22 @@ TEST(ReadJson, MembersThatAreGivenTwiceAreRefusedWithTheirPlace) {
   EXPECT_EQ(message(R"({"a": {"x": 1}, "b": {"x": 1}, "c": [{"x": 1}, {"x": 1}]})"), "taken");
 }
 
+TEST(ReadJson, AnObjectOfManyMembersKeepsTheirOrder) {
+  // In a time that is square in their number this would not end.
+  constexpr int kMembers = 150'000;
+  std::string text = "{";
+  for (int i = kMembers; i > 0; --i)
+    text += (i < kMembers ? ",\"" : "\"") + std::to_string(i) + "\":" + std::to_string(i);
+  const auto read = read_json<nlohmann::ordered_json>(text + "}", "", "");
+  ASSERT_EQ(read.size(), static_cast<std::size_t>(kMembers));
+  int next = kMembers;
+  for (const auto& [key, value] : read.items()) {
+    ASSERT_EQ(key, std::to_string(next));
+    ASSERT_EQ(value, next--);
+  }
+  EXPECT_EQ(message(text + ",\"7\":0}").find("a.json: line 1, column "), 0U);
+}
+
 TEST(ReadJson, OtherDamageIsRefused) {
   EXPECT_EQ(message(""),
             "a.json: the JSON is cut short: it ends at line 1, column 1; write it again");

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <set>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace kaboum {
@@ -57,6 +60,97 @@ inline std::size_t start_of_json_string(std::string_view text, std::size_t end) 
   return at;
 }
 
+/// Builds a JSON value of a parser's events (nlohmann's SAX interface), in linear time, and says
+/// of a member that its object has already.
+/// @tparam Json  nlohmann::json or nlohmann::ordered_json
+template <class Json>
+class JsonBuilder {
+ public:
+  using String = typename Json::string_t;
+
+  bool null() { return put(Json(nullptr)); }
+  bool boolean(bool value) { return put(Json(value)); }
+  bool number_integer(typename Json::number_integer_t value) { return put(Json(value)); }
+  bool number_unsigned(typename Json::number_unsigned_t value) { return put(Json(value)); }
+  bool number_float(typename Json::number_float_t value, const String& /*text*/) {
+    return put(Json(value));
+  }
+  bool string(String& value) { return put(Json(std::move(value))); }
+  bool binary(typename Json::binary_t& value) { return put(Json(std::move(value))); }
+  bool start_object(std::size_t /*size*/) {
+    members_.emplace_back();
+    return open(Json::object());
+  }
+  bool start_array(std::size_t /*size*/) { return open(Json::array()); }
+  bool end_array() {
+    open_.pop_back();
+    return true;
+  }
+  bool end_object() {
+    members_.pop_back();
+    return end_array();
+  }
+  bool key(String& name) {
+    if (!members_.back().insert(name).second) {
+      doubled_ = name;
+      return false;
+    }
+    key_ = std::move(name);
+    return true;
+  }
+  template <class Exception>
+  bool parse_error(std::size_t byte, const std::string& /*token*/, const Exception& /*error*/) {
+    constexpr bool kDamage = std::is_same_v<Exception, typename Json::parse_error>;
+    if constexpr (kDamage)
+      damage_ = byte;
+    else
+      out_of_range_ = true;
+    return false;
+  }
+
+  [[nodiscard]] Json& value() { return value_; }
+  /// The name of the member that is given twice.
+  [[nodiscard]] const std::optional<String>& doubled() const { return doubled_; }
+  /// How many bytes were read where the text stopped being JSON.
+  [[nodiscard]] std::optional<std::size_t> damage() const { return damage_; }
+  [[nodiscard]] bool out_of_range() const { return out_of_range_; }
+
+ private:
+  Json* add(Json&& value) {
+    if (open_.empty()) {
+      value_ = std::move(value);
+      return &value_;
+    }
+    Json& in = *open_.back();
+    if (in.is_array()) {
+      auto& items = in.template get_ref<typename Json::array_t&>();
+      return &items.emplace_back(std::move(value));
+    }
+    // The key is new; an ordered object's own emplace would look through all others.
+    auto& object = in.template get_ref<typename Json::object_t&>();
+    if constexpr (requires { object.emplace_back(std::move(key_), std::move(value)); })
+      return &object.emplace_back(std::move(key_), std::move(value)).second;
+    else
+      return &object.emplace(std::move(key_), std::move(value)).first->second;
+  }
+  bool put(Json&& value) {
+    add(std::move(value));
+    return true;
+  }
+  bool open(Json&& value) {
+    open_.push_back(add(std::move(value)));
+    return true;
+  }
+
+  Json value_;
+  std::vector<Json*> open_;  // the last item of each is the next one, so that none of them moves
+  std::vector<std::unordered_set<String>> members_;
+  String key_;
+  std::optional<String> doubled_;
+  std::optional<std::size_t> damage_;
+  bool out_of_range_ = false;
+};
+
 /// The value of JSON from elsewhere. Members that are given twice, of which parsers take the last
 /// one, are refused.
 /// @tparam Json    nlohmann::json or nlohmann::ordered_json
@@ -66,31 +160,21 @@ inline std::size_t start_of_json_string(std::string_view text, std::size_t end) 
 /// besides: deeper than kDeepestJson, a number out of range.
 template <class Json>
 Json read_json(std::string_view text, const std::string& name, const std::string& remedy) {
-  using Event = typename Json::parse_event_t;
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::InvalidInput,
                 std::string(name).append(": ").append(what) + "; " + remedy);
   };
   if (is_nested_too_deep(text)) fail(describe_json_depth());
   const char* read = text.data();
-  std::vector<std::set<std::string>> members;
-  const auto look = [&](int /*depth*/, Event event, Json& value) {
-    if (event == Event::object_start) members.emplace_back();
-    if (event == Event::object_end) members.pop_back();
-    if (event == Event::key && !members.back().insert(value.template get<std::string>()).second)
-      fail(place_in_text(text, start_of_json_string(text, read - text.data())) + ": '" +
-           value.template get<std::string>() + "' is given twice");
-    return true;
-  };
-  try {
-    return Json::parse(CountedText(text.data(), &read),
-                       CountedText(text.data() + text.size(), &read), look);
-  } catch (const typename Json::parse_error& error) {
-    fail(describe_json_damage(text, error.byte));
-  } catch (const typename Json::exception&) {
-    fail("a number in it is out of range");
-  }
-  return {};
+  JsonBuilder<Json> builder;
+  const bool done = Json::sax_parse(CountedText(text.data(), &read),
+                                    CountedText(text.data() + text.size(), &read), &builder);
+  if (builder.doubled())
+    fail(place_in_text(text, start_of_json_string(text, read - text.data())) + ": '" +
+         *builder.doubled() + "' is given twice");
+  if (builder.damage()) fail(describe_json_damage(text, *builder.damage()));
+  if (!done) fail("a number in it is out of range");
+  return std::move(builder.value());
 }
 
 }  // namespace kaboum
