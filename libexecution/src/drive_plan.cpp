@@ -80,8 +80,13 @@ class Drive {
   void note_planned(const plan::Replan& replan) { driver_.note(RunNotes::planned(replan)); }
   /// That it has ended otherwise than at the goal.
   void note_end(const std::string& kind, const std::string& why) { driver_.end(kind, why); }
-  /// What comes of it, judged by exact meshes. @pre it is closed
-  void note_verdict() { driver_.note(RunNotes::verdict(report_)); }
+  /// Tells the robot to stand still, unless the plan has come to its end.
+  void stop() { driver_.stop(); }
+  /// What comes of it, judged by exact meshes. @pre it is stopped and closed
+  void note_verdict() {
+    driver_.note(RunNotes::verdict(report_));
+    report_.not_noted = driver_.not_noted();
+  }
 
   /// What is to be said however it ends. All that was done to its end is judged by exact meshes.
   void close() {
@@ -337,15 +342,13 @@ DriveReport drive_plan(const PlanningTask& task, const plan::Model& model, const
     throw;
   }
   out.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  if (drive) {
-    drive->close();
-    try {
-      drive->note_verdict();
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::OutputFailed) throw;
-      out.not_noted = error.what();
-    }
+  if (!drive) {
+    if (out.stopped == Kind::Journal) out.not_noted = out.reason;
+    return out;
   }
+  drive->stop();  // it is not to wait for what follows
+  drive->close();
+  drive->note_verdict();
   return out;
 }
 

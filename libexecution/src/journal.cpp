@@ -49,11 +49,9 @@ std::string dump(const json& value) {
 }
 
 Journal::Journal(const DriverOptions& options) : name_(options.journal), noted_(options.noted) {
-  if (!name_.empty()) {
-    file_.open(name_);
-    if (!file_) throw Error(ErrorCode::OutputFailed, name_ + ": cannot be written");
-  }
-  note({{"kaboum_journal", 1}, {"driver", options.command}});
+  if (name_.empty()) return;
+  file_.open(name_);
+  if (!file_) throw Error(ErrorCode::OutputFailed, name_ + ": cannot be written");
 }
 
 void Journal::note(const json& entry) {

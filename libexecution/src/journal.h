@@ -17,7 +17,7 @@ std::string dump(const nlohmann::json& value);
 /// The journal of a run: each line is there at once, whatever happens next.
 class Journal {
  public:
-  /// Its first line. @throws Error{OutputFailed} for a file that cannot be written
+  /// Without a line. @throws Error{OutputFailed} for a file that cannot be opened
   explicit Journal(const DriverOptions& options);
   /// Whether anybody reads it.
   [[nodiscard]] bool is_kept() const { return file_.is_open() || noted_; }

@@ -76,36 +76,44 @@ class Program final : public Side {
       case LineSocket::ReadOutcome::Line:
         // A journal could not have it as it was.
         if (utf8(out.line) == out.line) return out;
-        channel_.end();
+        finish();
         return {"", Kind::Nonsense, "it answered what is no UTF-8: " + excerpt(out.line)};
       case LineSocket::ReadOutcome::End:
-        return {"", Kind::Ended, channel_.end() + " without an answer"};
+        return {"", Kind::Ended, finish() + " without an answer"};
       case LineSocket::ReadOutcome::Late:
-        channel_.end();
+        finish();
         return {"", Kind::Late, "no answer within " + dump(most) + " s; it was ended"};
       case LineSocket::ReadOutcome::TooLong:
         break;
     }
-    channel_.end();
+    finish();
     return {"", Kind::Nonsense, "it answered with a line of more than 16 MiB"};
   }
 
   std::optional<Heard> tell(const std::string& line) override {
     double seconds = 10;
     if (channel_.lines().write_line(line, seconds)) return std::nullopt;
-    return Heard{"", Kind::Ended, channel_.end() + ", or reads nothing"};
+    return Heard{"", Kind::Ended, finish() + ", or reads nothing"};
   }
 
   std::optional<std::string> unasked() override { return channel_.lines().take_what_is_there(); }
 
   void end(bool finished) override {
+    if (ended_) return;
     double seconds = kLastWords;
     if (!finished) channel_.lines().write_line(R"({"do":"stop"})", seconds);
-    channel_.end();
+    finish();
   }
 
  private:
+  /// Ends it. @return in words how it ended
+  std::string finish() {
+    ended_ = true;
+    return channel_.end();
+  }
+
   external::LineChannel channel_;
+  bool ended_ = false;
 };
 
 /// What a journal says.
@@ -191,16 +199,20 @@ const char* name_of(DriverStop::Kind kind) {
     case Kind::Elsewhere:
       return "elsewhere";
     case Kind::Uncertified:
+      return "uncertified";
+    case Kind::Journal:
       break;
   }
-  return "uncertified";
+  return "journal";
 }
 
 struct RobotDriver::Data {
   using Clock = std::chrono::steady_clock;
 
   Data(const world::World& w, const DriverOptions& o)
-      : world(w), options(o), side(side_of(o)), journal(o) {}
+      : world(w), options(o), side(side_of(o)), journal(o) {
+    note({{"kaboum_journal", 1}, {"driver", o.command}});
+  }
 
   static std::unique_ptr<Side> side_of(const DriverOptions& o) {
     if (!(o.most_seconds > 0) || !(o.rate > 0) || !(o.tracking > 0))
@@ -209,10 +221,26 @@ struct RobotDriver::Data {
     return std::make_unique<Replayed>(o.replayed);
   }
 
+  /// Adds to the journal. @throws DriverStop where that fails, unless all is over
+  template <class Add>
+  void note_by(Add add) {
+    try {
+      add();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::OutputFailed) throw;
+      not_noted = error.what();
+      if (over) return;
+      end(name_of(Kind::Journal), not_noted);
+      throw DriverStop(Kind::Journal, not_noted);
+    }
+  }
+  void note(const json& entry) {
+    note_by([&] { journal.note(entry); });
+  }
+
   /// The last thing that is said of the driver, once.
   void end(const char* kind, const std::string& why) {
-    if (!over) journal.note({{"stopped", kind}, {"why", why}});
-    over = true;
+    if (!std::exchange(over, true)) note({{"stopped", kind}, {"why", why}});
   }
 
   [[noreturn]] void stop(Kind kind, const std::string& why) {
@@ -227,10 +255,10 @@ struct RobotDriver::Data {
     answered = Clock::now();
     waited += std::chrono::duration<double>(*answered - before).count();
     if (heard.none) {
-      journal.note({{"none", name_of(*heard.none)}, {"why", heard.why}});
+      note({{"none", name_of(*heard.none)}, {"why", heard.why}});
       stop(*heard.none, heard.why);
     }
-    journal.note({{"heard", heard.line}});
+    note({{"heard", heard.line}});
     if (is_nested_too_deep(heard.line))
       stop(Kind::Nonsense,
            "it answered " + excerpt(heard.line) + ", with " + describe_json_depth());
@@ -245,7 +273,7 @@ struct RobotDriver::Data {
   void require_silence() {
     const auto more = side->unasked();
     if (!more) return;
-    journal.note({{"unasked", *more}});
+    note({{"unasked", *more}});
     stop(Kind::Nonsense, "it said what nobody asked: " + excerpt(*more));
   }
 
@@ -260,11 +288,11 @@ struct RobotDriver::Data {
       text.pop_back();
       text += R"(,"trajectory":)" + trajectory + '}';
     }
-    if (journal.is_kept()) journal.note_text("told", text);
+    if (journal.is_kept()) note_by([&] { journal.note_text("told", text); });
     if (answered && messages > 1)
       between += std::chrono::duration<double>(Clock::now() - *answered).count();
     if (const auto refused = side->tell(text)) {
-      journal.note({{"none", name_of(*refused->none)}, {"why", refused->why}});
+      note({{"none", name_of(*refused->none)}, {"why", refused->why}});
       stop(*refused->none, refused->why);
     }
     json answer = hear(seconds);
@@ -387,7 +415,7 @@ struct RobotDriver::Data {
   std::unique_ptr<Side> side;
   Journal journal;
   std::optional<Clock::time_point> answered;
-  std::string doing = "when it was started", line;
+  std::string doing = "when it was started", line, not_noted;
   std::uint64_t messages = 0;
   double waited = 0, between = 0, most_tracking = 0;
   /// How far joints of grippers that hold something may be off, by robot and variable.
@@ -404,10 +432,19 @@ RobotDriver::RobotDriver(const world::World& world, const DriverOptions& options
 }
 
 bool RobotDriver::is_noted() const { return data_->journal.is_kept(); }
-void RobotDriver::note(std::string entry) { data_->journal.add(std::move(entry)); }
+void RobotDriver::note(std::string entry) {
+  data_->note_by([&] { data_->journal.add(std::move(entry)); });
+}
 void RobotDriver::end(const std::string& kind, const std::string& why) {
   data_->end(kind.c_str(), why);
 }
+
+void RobotDriver::stop() {
+  if (data_->finished) return;
+  data_->over = true;
+  data_->side->end(false);
+}
+const std::string& RobotDriver::not_noted() const { return data_->not_noted; }
 
 RobotDriver::~RobotDriver() { data_->side->end(data_->finished); }
 
@@ -553,7 +590,7 @@ void RobotDriver::finish(const judge::CellState* end) {
   data_->ask_again(told, data_->options.most_seconds, "done");
   data_->require_silence();
   data_->finished = data_->over = true;
-  data_->journal.note({{"finished", true}});
+  data_->note({{"finished", true}});
 }
 
 std::uint64_t RobotDriver::messages() const { return data_->messages; }

@@ -16,6 +16,9 @@ constexpr double kLeast = 1e-6;                   ///< share of a segment
 /// Of a longer segment a blend takes at most so many times what it takes of the shorter one: where
 /// these differ much more, the curve is bent sharply next to one end.
 constexpr double kLonger = 1.5;
+/// Scales of the parameter along a path. Beyond, blends have legs of equal length: numbers of paths
+/// with thousands of corners stay in range.
+constexpr double kMostScale = 0x1p30;
 constexpr double kSame = 1e-14;  // between waypoints that are the same [rad or length]
 
 /// A velocity's limit as a unit of the parameter: limits that nothing reaches are one.
@@ -59,6 +62,21 @@ struct Segment {
   double length = 0;
   Values direction;
 };
+
+/// What the blend of a corner takes of the segments before and behind it.
+struct Legs {
+  double before = 0, behind = 0;
+};
+
+/// @param scale  of the segment before it: length by the length of its parameter
+Legs legs_of(double share, double before, double behind, double scale) {
+  const Legs wished{share * std::min(before, kLonger * behind),
+                    share * std::min(behind, kLonger * before)};
+  const double next = scale * (wished.behind / wished.before), most = std::max(next, 1 / next);
+  if (most <= kMostScale || most <= std::max(scale, 1 / scale)) return wished;
+  const double equal = share * std::min(before, behind);
+  return {equal, equal};
+}
 
 std::vector<Segment> segments_of(const robot::Path& path, const Values& velocity) {
   std::vector<Segment> out;
@@ -115,9 +133,9 @@ BlendedPath::BlendedPath(const robot::Path& path, const Values& shares, const Va
     const bool last = i + 1 == segments.size(),
                stops = last || shares[here.end] < kLeast ||
                        turns_back(a, b, path[segments[i + 1].end], velocity);
-    const double next = last ? 0 : segments[i + 1].length, share = stops ? 0 : shares[here.end],
-                 size = share * std::min(here.length, kLonger * next);
-    const double straight = here.length - taken - size;
+    const Legs legs =
+        stops ? Legs{} : legs_of(shares[here.end], here.length, segments[i + 1].length, scale);
+    const double straight = here.length - taken - legs.before;
     const Values direction = stretched(here.direction, scale);
     PathPiece line{here.begin,
                    false,
@@ -130,14 +148,17 @@ BlendedPath::BlendedPath(const robot::Path& path, const Values& shares, const Va
     widen(line, b);
     // What is shorter than roundings of its ends is none.
     if (straight > 1e-14 * here.length) pieces_.push_back(line);
-    taken = 0;
-    if (share > 0) {
-      taken = share * std::min(next, kLonger * here.length);
-      const double next_scale = scale * (taken / size);
-      PathPiece blend{here.end,         true,
-                      2 * size / scale, point_between(b, a, size / here.length),
-                      direction,        stretched(segments[i + 1].direction, next_scale),
-                      line.low,         line.high};
+    taken = legs.behind;
+    if (!stops) {
+      const double next_scale = scale * (taken / legs.before);
+      PathPiece blend{here.end,
+                      true,
+                      2 * legs.before / scale,
+                      point_between(b, a, legs.before / here.length),
+                      direction,
+                      stretched(segments[i + 1].direction, next_scale),
+                      line.low,
+                      line.high};
       widen(blend, path[segments[i + 1].end]);
       pieces_.push_back(std::move(blend));
       scale = next_scale;

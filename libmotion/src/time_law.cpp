@@ -98,6 +98,9 @@ class Search {
           usual_ = std::max(usual_, limits.acceleration[j] / limits.jerk[j]);
   }
 
+  /// The piece that no speed was small enough for; nullopt: none was found.
+  [[nodiscard]] std::optional<std::size_t> stuck() const { return stuck_; }
+
   Candidate run() {
     constexpr int kMostTurns = 8;
     for (int turn = 0; turn < kMostTurns && !std::isfinite(best_.duration); ++turn) {
@@ -187,6 +190,7 @@ class Search {
   const SpeedLimits& limits_;
   double usual_ = 0;   ///< span in which all accelerations may change by all of them
   double needed_ = 0;  ///< span that one tried should have had
+  std::optional<std::size_t> stuck_;
   Candidate best_;
 };
 
@@ -212,7 +216,12 @@ void Search::even_out(const SpeedProfile& profile, const std::vector<double>& ch
 void Search::run_bent(double span) {
   const Values most = accelerations(span);
   const SpeedProfile rough = fastest_profile(graded_cells(pieces_), limits_.velocity, most, {});
-  if (!std::isfinite(rough.times.back())) return;
+  if (!std::isfinite(rough.times.back())) {
+    const auto never =
+        std::ranges::find_if_not(rough.times, [](double t) { return std::isfinite(t); });
+    stuck_ = rough.cells[static_cast<std::size_t>(never - rough.times.begin()) - 1].piece;
+    return;
+  }
   const double wished = std::clamp(4 * rough.times.back() / span, 64.0, 320.0);
   std::vector<PathCell> cells =
       even_cells(pieces_, rough, static_cast<std::size_t>(wished) + 4 * pieces_.size());
@@ -231,10 +240,14 @@ void Search::run_bent(double span) {
 
 TimeLaw::TimeLaw(std::span<const PathPiece> pieces, const SpeedLimits& limits)
     : pieces_(pieces.begin(), pieces.end()) {
-  const Candidate best = Search(pieces, limits).run();
-  if (!std::isfinite(best.duration))
-    throw Error(ErrorCode::LimitReached,
-                "no speed is small enough for a corner of the path: leave out «blend»");
+  Search search(pieces, limits);
+  const Candidate best = search.run();
+  if (!std::isfinite(best.duration)) {
+    const std::size_t at = pieces[search.stuck().value_or(0)].waypoint;
+    throw Error(ErrorCode::LimitReached, "no speed is small enough at waypoint " +
+                                             std::to_string(at + 1) +
+                                             " of the path: leave out «blend», or that waypoint");
+  }
   span_ = best.span;
   slower_ = best.slower;
   set(best.profile);

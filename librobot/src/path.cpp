@@ -336,7 +336,6 @@ class TrajectoryReader {
     if (points.empty()) refuse(member(at, "points"), "no points: the trajectory is empty");
     const bool timed = points.front().is_object() && points.front().contains("time_from_start");
     if (timed) out.joints.emplace_back("time_from_start");
-    bool moves = false;
     std::size_t number = 0;
     for (const Json& point : points) {
       const std::string place = member(at, "points") + ": point " + std::to_string(++number);
@@ -350,16 +349,23 @@ class TrajectoryReader {
       if (point.contains("time_from_start") != timed)
         refuse(place, "some points have a \"time_from_start\", others have none");
       if (timed) row.push_back(seconds(point["time_from_start"], place + ", time_from_start"));
-      for (const char* key : {"velocities", "accelerations"})
-        if (point.contains(key) && point[key].is_array())
-          for (const Json& x : point[key]) moves = moves || (x.is_number() && x != 0);
+      const std::size_t joints = row.size() - (timed ? 1 : 0);
+      out.velocities.push_back(derivatives(point, "velocities", joints));
+      out.accelerations.push_back(derivatives(point, "accelerations", joints));
       append(out, std::move(row), name_, place);
     }
     out.notes = std::move(notes_);
-    if (moves)
-      out.notes.push_back(name_ +
-                          ": velocities and accelerations are passed over: between points, joints "
-                          "move straight; a controller that makes splines of them leaves that");
+    return out;
+  }
+
+  /// Of a point that has as many of them as joints, all of which are numbers; else none.
+  static std::vector<double> derivatives(const Json& point, const char* key, std::size_t joints) {
+    std::vector<double> out;
+    if (!point.contains(key) || !point[key].is_array() || point[key].size() != joints) return out;
+    for (const Json& x : point[key]) {
+      if (!x.is_number() || !std::isfinite(x.get<double>())) return {};
+      out.push_back(x.get<double>());
+    }
     return out;
   }
 

@@ -197,6 +197,27 @@ std::vector<double> finger_room_along(const World& world, std::size_t robot,
   return out;
 }
 
+bool holds_by_fingers(const WorldState& state) {
+  return std::ranges::any_of(state.attachments,
+                             [](const auto& held) { return held && !held->fingers.empty(); });
+}
+
+std::vector<RobotPath> paths_with_fingers(const World& world, const WorldState& state,
+                                          std::size_t robot, const robot::Path& path,
+                                          const std::string& what) {
+  std::vector<RobotPath> out{{robot, path}};
+  for (std::size_t r = 0; r < state.q.size(); ++r)
+    if (r != robot && !holding_joints(r, state.attachments).empty())
+      out.push_back({r, robot::Path(path.size(), state.q[r])});
+  bool any = false;
+  for (RobotPath& one : out) {
+    one.around = finger_room_along(world, one.robot, state.attachments, one.path, what);
+    any = any || !one.around.empty();
+  }
+  if (!any) out.clear();
+  return out;
+}
+
 namespace {
 
 /// "a, b and c"

@@ -282,6 +282,10 @@ py::object check(const WorldValue& in, const py::object& q, const std::optional<
   bool one = false;
   const robot::Path rows =
       rows_of(q, in.world().robots[index].kinematics.variables.size(), "q", one);
+  const world::WorldState start = initial_state(in.world());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    static_cast<void>(finger_room_along(in.world(), index, start.attachments, {&rows[i], 1},
+                                        "row " + std::to_string(i + 1)));
   Watch watch(running.progress);
   std::vector<ContactList> made = contacts_at(in, index, rows, options, watch);
   if (one) return py::cast(std::move(made.front()));
@@ -321,6 +325,26 @@ py::object contact_pairs(const WorldValue& in, const py::object& q,
     made.append(pairs);
   }
   return made;
+}
+
+/// What is free with fingers as they are given is so wherever they stop within what the grasps of
+/// what is held allow, or counts as contact.
+/// @param path_of  what is asked of each
+void look_at_fingers(const WorldValue& in, std::size_t robot, world::MotionOptions options,
+                     const std::function<robot::Path(std::size_t)>& path_of,
+                     std::vector<std::uint8_t>& free) {
+  const world::WorldState state = initial_state(in.world());
+  if (!holds_by_fingers(state)) return;
+  options.where = false;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const robot::Path path = path_of(i);
+    const std::string what = path.size() == 1 ? "row " + std::to_string(i + 1)
+                                              : "motion " + std::to_string(i + 1) + ", row";
+    const auto paths = paths_with_fingers(in.world(), state, robot, path, what);
+    if (paths.empty() || free[i] == 0) continue;
+    const world::MotionAnswer answer = check_motions(*in.checker, state, paths, options);
+    free[i] = answer.outcome == world::MotionAnswer::Outcome::Free ? 1 : 0;
+  }
 }
 
 /// Below so many rows, making a batch checker takes longer than it saves.
@@ -370,6 +394,24 @@ std::shared_ptr<const filter::BatchChecker> batch_checker(const WorldValue& in, 
   return made;
 }
 
+/// Whether each configuration is free with fingers as they are given.
+void look_at_all(const WorldValue& in, std::size_t index, const robot::Path& rows, Watch& watch,
+                 std::vector<std::uint8_t>& free) {
+  const auto batch = batch_checker(in, index, rows.size(), kFewRows);
+  if (!batch) {
+    world::Scratch scratch;
+    std::size_t i = 0;
+    for_rows(rows, watch, [&](const std::vector<double>& row) {
+      free[i++] = in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0;
+    });
+    return;
+  }
+  for_parts(rows.size(), kFewRowsAtOnce, [&](std::size_t first, std::size_t count) {
+    watch(std::to_string(first) + " of " + std::to_string(rows.size()) + " configurations");
+    batch->decide(joined(rows, first, count), {free.data() + first, count});
+  });
+}
+
 py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
                            const std::optional<std::string>& robot, const py::object& progress) {
   const std::size_t index = robot_index(in.world(), robot);
@@ -379,19 +421,9 @@ py::array_t<bool> are_free(const WorldValue& in, const py::object& q,
   Watch watch(progress);
   std::vector<std::uint8_t> free(rows.size());
   run(0, [&] {
-    const auto batch = batch_checker(in, index, rows.size(), kFewRows);
-    if (!batch) {
-      world::Scratch scratch;
-      std::size_t i = 0;
-      for_rows(rows, watch, [&](const std::vector<double>& row) {
-        free[i++] = in.checker->is_free(state_at(in, index, row), scratch) ? 1 : 0;
-      });
-      return;
-    }
-    for_parts(rows.size(), kFewRowsAtOnce, [&](std::size_t first, std::size_t count) {
-      watch(std::to_string(first) + " of " + std::to_string(rows.size()) + " configurations");
-      batch->decide(joined(rows, first, count), {free.data() + first, count});
-    });
+    look_at_all(in, index, rows, watch, free);
+    look_at_fingers(
+        in, index, {}, [&](std::size_t i) { return robot::Path{rows[i]}; }, free);
   });
   return bools_of(free);
 }
@@ -418,31 +450,36 @@ py::array_t<bool> motions_are_free(const WorldValue& in, const py::object& start
   const std::size_t count = one_start ? to.size() : from.size();
   Watch watch(running.progress);
   std::vector<std::uint8_t> free(count);
+  const auto path_of = [&](std::size_t i) {
+    return robot::Path{from[one_start ? 0 : i], to[one_goal ? 0 : i]};
+  };
   run(0, [&] {
     const auto tell = [&](std::size_t done) {
       watch(std::to_string(done) + " of " + std::to_string(count) + " motions");
     };
     const auto batch = batch_checker(in, index, count, kFewMotions);
-    if (!batch) {
+    if (batch) {
+      for_parts(count, kFewMotionsAtOnce, [&](std::size_t first, std::size_t some) {
+        tell(first);
+        batch->decide_motions(joined(from, first, some), joined(to, first, some),
+                              {free.data() + first, some}, options);
+      });
+    } else {
       world::Scratch scratch;
       options.where = false;
       options.scratch = &scratch;
       options.progress = watch.hook();
       for (std::size_t i = 0; i < count; ++i) {
         if (i % 16 == 0) tell(i);
-        const robot::Path path{from[one_start ? 0 : i], to[one_goal ? 0 : i]};
-        free[i] = world::check_motion(*in.checker, initial_state(in.world()), index, path, options)
-                              .outcome == world::MotionAnswer::Outcome::Free
-                      ? 1
-                      : 0;
+        free[i] =
+            world::check_motion(*in.checker, initial_state(in.world()), index, path_of(i), options)
+                        .outcome == world::MotionAnswer::Outcome::Free
+                ? 1
+                : 0;
       }
-      return;
+      options.scratch = nullptr;
     }
-    for_parts(count, kFewMotionsAtOnce, [&](std::size_t first, std::size_t some) {
-      tell(first);
-      batch->decide_motions(joined(from, first, some), joined(to, first, some),
-                            {free.data() + first, some}, options);
-    });
+    look_at_fingers(in, index, options, path_of, free);
   });
   return bools_of(free);
 }
@@ -1153,6 +1190,8 @@ constexpr const char* kCheckDoc =
     R"(All contacts of the world with a robot at a configuration, the other robots at home.
 
 Limits of joints are not looked at: a configuration beyond them may be free. `find_path` keeps them.
+Fingers that hold something are taken as `q` has them, which has to be within what the grasp allows:
+else 'invalid_argument' is raised. Whether all is free wherever they stop is what `are_free` says.
 
 Parameters
 ----------
@@ -1180,7 +1219,8 @@ robot : str, optional
 constexpr const char* kMotionsDoc =
     R"(Of n straight motions in joint space, n bools: whether each is free at every instant, for certain.
 
-The answers are those of `check_motion`. Limits of joints are not looked at.
+The answers are those of `check_motion`, also wherever fingers that hold something stop. Limits of
+joints are not looked at.
 
 Parameters
 ----------
@@ -1418,9 +1458,12 @@ void bind_questions_with_options(WorldClass& world) {
 
 void bind_questions(WorldClass& world) {
   world
-      .def("are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
-           py::arg("progress") = py::none(),
-           "Of n x k values, n bools: whether each configuration is free, for certain.")
+      .def(
+          "are_free", &are_free, py::arg("q"), py::kw_only(), py::arg("robot") = py::none(),
+          py::arg("progress") = py::none(),
+          "Of n x k values, n bools: whether each configuration is free, for certain; with fingers "
+          "that hold something wherever they stop within what the grasp allows. 'invalid_argument' "
+          "where a row has them elsewhere.")
       .def("with_cloud", &with_cloud, py::arg("points"), py::arg("radius"), py::kw_only(),
            py::arg("name") = "cloud", py::arg("pose") = py::none(),
            py::arg("allow") = std::vector<std::string>(), py::arg("drop_invalid") = false,

@@ -276,6 +276,63 @@ def judge(folder, finished):
         fail("the end of the plan is said though it was not reached" if finish else "the end of the plan is not said")
 
 
+def journals_that_fail(folder):
+    """A journal that nobody reads from a line on: the robot is stopped, unless it has come to its end, and the report is there."""
+    os.mkfifo(folder / "pipe.jsonl")
+    for last, end in (("finished", "goal"), ("heard", "journal"), ("step_done", "journal"), ("kaboum_journal", "journal"), ("stopped", "failed")):
+        lines = []
+
+        def read_until_last(last=last, lines=lines):
+            with open(folder / "pipe.jsonl", encoding="utf-8") as pipe:
+                for line in pipe:
+                    lines.append(json.loads(line))
+                    if last in lines[-1] and (last != "heard" or "done" in lines[-1]["heard"]):
+                        return
+
+        reader = threading.Thread(target=read_until_last, daemon=True)
+        reader.start()
+        robot = DRIVER if end != "failed" else lie(folder, 'reply = {"id": message["id"], "failed": "for a test"}')
+        done, report = run(folder, robot, "--journal", "pipe.jsonl")
+        reader.join()
+        if done.returncode != 4 or "pipe.jsonl: cannot be written: the journal lacks the end of the run" not in done.stderr:
+            fail(f"a journal that nobody reads after '{last}': exit code {done.returncode}: {done.stderr}")
+        if report is None or report["driver"]["end"] != end or "pipe.jsonl" not in report["driver"]["not_noted"] or (report["verdict"] == "good") != (end == "goal"):
+            fail(f"a journal that nobody reads after '{last}': {report and report['driver']}")
+        if last == "step_done" and report["samples"] < 100:
+            fail(f"a journal that nobody reads after a step: {report['samples']} samples are judged")
+    if pathlib.Path("/dev/full").exists():
+        done, report = run(folder, DRIVER, "--journal", "/dev/full")
+        if done.returncode != 4 or report is None or report["driver"]["messages"] != 0 or report["driver"]["end"] != "journal":
+            fail(f"a full disk: exit code {done.returncode}: {report and report['driver']}: {done.stderr}")
+
+
+def stopped_before_it_is_judged(folder):
+    """The driver is told to stop before the exact meshes are looked at: its last word is older than the verdict."""
+    driver = """from driver import Driver, Failure
+
+
+class Stopping(Driver):
+    moved = 0
+
+    def move(self, robot, motion):
+        self.moved += 1
+        if self.moved == 4:
+            raise Failure("for a test")
+
+    def stop(self):
+        open("stopped", "w").close()
+
+
+Stopping().run()
+"""
+    (folder / "stopping.py").write_text(driver)
+    done, report = run(folder, f"{sys.executable} stopping.py", "--robot-retries", "0")
+    if done.returncode != 1 or report["driver"]["end"] != "failed" or report["motions"] < 3 or "verdict" not in journal(folder)[-1]:
+        fail(f"a driver that fails: exit code {done.returncode}: {report and report['driver']}: {done.stderr}")
+    if not (folder / "stopped").stat().st_mtime_ns < (folder / "journal.jsonl").stat().st_mtime_ns:
+        fail("the driver is told to stop after the run was judged")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -418,24 +475,8 @@ def main():
             if done.returncode != code or "damaged.jsonl" not in done.stderr and code == 3:
                 fail(f"damaged journal: exit code {done.returncode}: {done.stderr}")
 
-        # Nobody reads the journal any more when the verdict is to be written: the driver has come to its end, and the report says so.
-        os.mkfifo(scenario / "pipe.jsonl")
-        lines = []
-
-        def read_until_finished():
-            with open(scenario / "pipe.jsonl", encoding="utf-8") as pipe:
-                for line in pipe:
-                    lines.append(json.loads(line))
-                    if "finished" in lines[-1]:
-                        return
-
-        reader = threading.Thread(target=read_until_finished, daemon=True)
-        reader.start()
-        done, report = run(scenario, DRIVER, "--journal", "pipe.jsonl")
-        if done.returncode != 4 or "pipe.jsonl: cannot be written: the journal has all of the run but its verdict" not in done.stderr:
-            fail(f"a journal that nobody reads: exit code {done.returncode}: {done.stderr}")
-        if report is None or report["driver"]["end"] != "goal" or "pipe.jsonl" not in report["driver"]["not_noted"] or not lines[-1]["finished"]:
-            fail(f"a journal that nobody reads: {report and report['driver']}")
+        journals_that_fail(scenario)
+        stopped_before_it_is_judged(scenario)
 
         # Drivers that do not behave, one by one.
         ready = 'echo \'{"kaboum_driver": 1}\''

@@ -193,6 +193,13 @@ def configurations_are_free_wherever_fingers_stop(folder):
                 fail(f"{name} {way}: {done.returncode} {done.stdout} {done.stderr}")
             if code and way[:1] != ["--batch"] and "not free for certain wherever fingers stop" not in done.stdout:
                 fail(f"{name} {way}: {done.stdout}")
+            # One that stands has no waypoints, and nothing of the way.
+            said = [line for line in done.stdout.splitlines() if "wherever fingers stop" in line]
+            if "waypoint" in "".join(said) or any(" and " not in line.split(": ", 1 + ("configuration" in line))[-1] for line in said):
+                fail(f"{name} {way}: words of what stands: {said}")
+            for one in report.get("configurations", []):
+                if "fingers" in one and ("waypoint" in json.dumps(one["fingers"]) or "pair" not in one["fingers"]["contact"]):
+                    fail(f"{name} {way}: {one['fingers']}")
         done = tool(folder, "kaboum-check", f"{name}-two.json", "--path", "arm=few.csv", "--path", "other=few.csv")
         if done.returncode != code:
             fail(f"{name}, two robots: {done.returncode} {done.stdout} {done.stderr}")

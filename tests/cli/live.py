@@ -56,10 +56,10 @@ class Run:
              "--robot-timeout", "60", "--journal", "journal.jsonl", "--report", "report.json", *live, *more],
             cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.process.stderr.readline()
-        found = re.fullmatch(r"kaboum-plan: the run is shown at http://127\.0\.0\.1:(\d+)/\n", line)
+        found = re.fullmatch(r"kaboum-plan: the run is shown at http://127\.0\.0\.1:(\d+)(/[0-9a-f]{32}/)\n", line)
         if not found:
             fail(f"no address: {line}{self.process.stderr.read()}")
-        self.port = int(found[1])
+        self.port, self.secret = int(found[1]), found[2]
 
     def allow(self, name):
         (self.folder / name).touch()
@@ -74,9 +74,9 @@ class Run:
 class Follower:
     """A client of the events, as a browser is one."""
 
-    def __init__(self, port, after=None):
-        self.connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-        self.connection.request("GET", "/events", headers={} if after is None else {"Last-Event-ID": str(after)})
+    def __init__(self, run, after=None):
+        self.connection = http.client.HTTPConnection("127.0.0.1", run.port, timeout=60)
+        self.connection.request("GET", run.secret + "events", headers={} if after is None else {"Last-Event-ID": str(after)})
         self.answer = self.connection.getresponse()
         if self.answer.status != 200 or self.answer.headers["Content-Type"] != "text/event-stream":
             fail(f"events: {self.answer.status}")
@@ -108,9 +108,9 @@ class Follower:
         fail("the events ended before")
 
 
-def get(port, path="/", method="GET", **headers):
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
-    connection.request(method, path, headers=headers)
+def get(run):
+    connection = http.client.HTTPConnection("127.0.0.1", run.port, timeout=20)
+    connection.request("GET", run.secret)
     answer = connection.getresponse()
     return answer, answer.read()
 
@@ -233,35 +233,42 @@ def keeps_schema(folder):
             fail(f"{line[:200]} may have anything")
 
 
-def refuses(port):
+def refuses(run):
     """Requests that are none of a browser on this page."""
+    port, secret = run.port, run.secret.encode()
+    page, events = b"GET " + secret + b" HTTP/1.1\r\n", b"GET " + secret + b"events HTTP/1.1\r\n"
+    other = secret[:-2] + (b"0" if secret[-2:-1] != b"0" else b"1") + b"/"
     host = f"Host: 127.0.0.1:{port}\r\n".encode()
     for text, status in (
-            (b"GET / HTTP/1.1\r\n" + host + b"\r\n", 200), (b"GET / HTTP/1.1\r\nhOsT:   localhost:%d \r\n\r\n" % port, 200),
-            (b"HEAD /events HTTP/1.1\r\n" + host + b"\r\n", 200),
-            (b"GET / HTTP/1.1\r\n\r\n", 400), (b"GET / HTTP/1.1\r\n" + 2 * host + b"\r\n", 400),
-            (b"GET / HTTP/1.1\r\nHost: evil.example:%d\r\n\r\n" % port, 421), (b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", 421),
-            (b"GET /events HTTP/1.1\r\nHost: evil.example\r\n\r\n", 421), (b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d.evil.example\r\n\r\n" % port, 421),
-            (b"GET /events HTTP/1.1\r\n" + host + b"Origin: http://evil.example\r\n\r\n", 403), (b"GET / HTTP/1.1\r\n" + host + b"Origin: null\r\n\r\n", 403),
-            (b"POST / HTTP/1.1\r\n" + host + b"\r\n", 405), (b"OPTIONS /events HTTP/1.1\r\n" + host + b"\r\n", 405),
-            (b"POST / HTTP/1.1\r\n" + host + b"Content-Length: 3\r\n\r\nabc", 400), (b"GET / HTTP/1.1\r\n" + host + b"Transfer-Encoding: chunked\r\n\r\n", 400),
-            (b"GET /../../etc/passwd HTTP/1.1\r\n" + host + b"\r\n", 404), (b"GET /events? HTTP/1.1\r\n" + host + b"\r\n", 404),
+            (page + host + b"\r\n", 200), (page + b"hOsT:   localhost:%d \r\n\r\n" % port, 200),
+            (b"HEAD " + secret + b"events HTTP/1.1\r\n" + host + b"\r\n", 200),
+            (page + b"\r\n", 400), (page + 2 * host + b"\r\n", 400),
+            (page + b"Host: evil.example:%d\r\n\r\n" % port, 421), (page + b"Host: 127.0.0.1\r\n\r\n", 421),
+            (events + b"Host: evil.example\r\n\r\n", 421), (page + b"Host: 127.0.0.1:%d.evil.example\r\n\r\n" % port, 421),
+            (events + host + b"Origin: http://evil.example\r\n\r\n", 403), (page + host + b"Origin: null\r\n\r\n", 403),
+            (b"POST " + secret + b" HTTP/1.1\r\n" + host + b"\r\n", 405), (b"OPTIONS " + secret + b"events HTTP/1.1\r\n" + host + b"\r\n", 405),
+            (b"POST " + secret + b" HTTP/1.1\r\n" + host + b"Content-Length: 3\r\n\r\nabc", 400), (page + host + b"Transfer-Encoding: chunked\r\n\r\n", 400),
+            (b"GET /../../etc/passwd HTTP/1.1\r\n" + host + b"\r\n", 404), (b"GET " + secret + b"events? HTTP/1.1\r\n" + host + b"\r\n", 404),
             (b"GET http://127.0.0.1/ HTTP/1.1\r\n" + host + b"\r\n", 400), (b"GET * HTTP/1.1\r\n" + host + b"\r\n", 400),
             (b"GET / HTTP/1.0\r\n" + host + b"\r\n", 505), (b"GET / HTTP/2.0\r\n" + host + b"\r\n", 505), (b"GET /\r\n" + host + b"\r\n", 400),
-            (b"GET / HTTP/1.1\r\n folded: x\r\n" + host + b"\r\n", 400), (b"GET / HTTP/1.1\r\nno colon\r\n" + host + b"\r\n", 400),
-            (b"GET / HTTP/1.1\r\nX : y\r\n" + host + b"\r\n", 400), (b"GET / HTTP/1.1\r\nX: \x00\r\n" + host + b"\r\n", 400),
-            (b"GET /events HTTP/1.1\r\n" + host + b"Last-Event-ID: -1\r\n\r\n", 400),
-            (b"GET /events HTTP/1.1\r\n" + host + b"Last-Event-ID: another-2\r\n\r\n", 204),
-            (b"GET /events HTTP/1.1\r\n" + host + b"Sec-Fetch-Site: cross-site\r\n\r\n", 403), (b"GET /\xff HTTP/1.1\r\n" + host + b"\r\n", 400),
+            (page + b" folded: x\r\n" + host + b"\r\n", 400), (page + b"no colon\r\n" + host + b"\r\n", 400),
+            (page + b"X : y\r\n" + host + b"\r\n", 400), (page + b"X: \x00\r\n" + host + b"\r\n", 400),
+            (events + host + b"Last-Event-ID: -1\r\n\r\n", 400),
+            (events + host + b"Last-Event-ID: another-2\r\n\r\n", 204),
+            (events + host + b"Sec-Fetch-Site: cross-site\r\n\r\n", 403), (b"GET /\xff HTTP/1.1\r\n" + host + b"\r\n", 400),
+            # Who does not know the address gets nothing, and is not told what is wrong with it.
+            *((b"GET " + path + b" HTTP/1.1\r\n" + host + b"\r\n", 404) for path in (
+                b"/", b"/events", secret[:-1], secret[:-2] + b"/", other, other + b"events", secret.upper(), b"/" + secret, secret + b"/", b"/" + secret + b"events")
+              if path != secret),
             (b"\r\n\r\n", 400), (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", 400), (b"GET / HTTP/1.1\n" + host + b"\n\r\n\r\n", 400),
-            (b"GET / HTTP/1.1\r\n" + host + b"X: " + 8192 * b"a" + b"\r\n\r\n", 431), (70000 * b"a", 431),
-            (b"GET / HTTP/1.1\r\n" + host + 4000 * b"a: b\r\n" + b"\r\n", 431)):
+            (page + host + b"X: " + 8192 * b"a" + b"\r\n\r\n", 431), (70000 * b"a", 431),
+            (page + host + 4000 * b"a: b\r\n" + b"\r\n", 431)):
         answer = raw(port, text)
         if answer != b"reset" and not answer.startswith(f"HTTP/1.1 {status} ".encode()):
             fail(f"{text[:200]}: {answer[:200]}, not {status}")
         if answer == b"reset" and len(text) < 8192:
             fail(f"{text[:200]}: reset")
-    if b"\r\n\r\n" not in raw(port, b"HEAD / HTTP/1.1\r\n" + host + b"\r\n") or raw(port, b"HEAD / HTTP/1.1\r\n" + host + b"\r\n").split(b"\r\n\r\n", 1)[1]:
+    if b"\r\n\r\n" not in raw(port, b"HEAD " + secret + b" HTTP/1.1\r\n" + host + b"\r\n") or raw(port, b"HEAD " + secret + b" HTTP/1.1\r\n" + host + b"\r\n").split(b"\r\n\r\n", 1)[1]:
         fail("HEAD has a body")
 
 
@@ -284,21 +291,22 @@ def main():
         addresses = [line.split()[1] for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:] if line.split()[3] == "0A"]
         if [a for a in addresses if int(a.split(":")[1], 16) == run.port] != [f"0100007F:{run.port:04X}"]:
             fail(f"port {run.port} is heard at {addresses}")
-        answer, page = get(run.port)
+        answer, page = get(run)
         if answer.status != 200 or "text/html" not in answer.headers["Content-Type"] or len(page) != int(answer.headers["Content-Length"]):
             fail(f"the page: {answer.status}")
         if "default-src 'none'" not in answer.headers["Content-Security-Policy"] or "connect-src 'self'" not in answer.headers["Content-Security-Policy"]:
             fail("the page may ask others")
         if b'"events"' in page.split(b'id="data"')[1].split(b"</script>")[0]:
             fail("the live page has events")
-        follower = Follower(run.port)
+        follower = Follower(run)
+        secrets = {run.secret}
         run.allow("go")
         follower.read_until(lambda e: "told" in e and e["told"]["do"] == "sense")
         if run.process.poll() is not None or (folder / "report.json").exists():
             fail("what is sensed is seen when the run is over")
-        refuses(run.port)
-        late = Follower(run.port)  # who comes later gets all as well
-        middle = Follower(run.port, after=f"{follower.run}-{len(follower.events) - 2}")
+        refuses(run)
+        late = Follower(run)  # who comes later gets all as well
+        middle = Follower(run, after=f"{follower.run}-{len(follower.events) - 2}")
         run.allow("sense")
         for client in (follower, late):
             client.read_until(lambda e: "verdict" in e)
@@ -359,7 +367,7 @@ def main():
             s = socket.socket()
             s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
             s.connect(("127.0.0.1", run.port))
-            s.sendall(b"GET /events HTTP/1.1\r\n" + hosts)
+            s.sendall(f"GET {run.secret}events HTTP/1.1\r\n".encode() + hosts)
             hanging.append(s)
         for k in range(100):  # half a request, or nothing at all
             s = socket.create_connection(("127.0.0.1", run.port))
@@ -377,14 +385,17 @@ def main():
             fail(f"hanging clients: {report['driver']}")
         for s in hanging:
             s.close()
+        secrets.add(run.secret)
         run = Run(folder)
+        if len(secrets | {run.secret}) != 3:
+            fail(f"an address is that of another run: {run.secret}")
         crowd = [socket.create_connection(("127.0.0.1", run.port)) for _ in range(64)]
         crowd[0].sendall(b"GET / HTT")
         time.sleep(0.2)
         if not raw(run.port, b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % run.port).startswith((b"HTTP/1.1 503 ", b"reset")):
             fail("more connections than there may be")
         time.sleep(6)  # until they are cut off
-        if get(run.port)[0].status != 200 or not crowd[0].recv(100).startswith(b"HTTP/1.1 408 "):
+        if get(run)[0].status != 200 or not crowd[0].recv(100).startswith(b"HTTP/1.1 408 "):
             fail("half a request is waited for")
 
         # A port that is in use: nothing is moved. What is no port, or no robot to be followed.
@@ -413,7 +424,7 @@ def main():
         run.allow("sense")
         while not (folder / "report.json").exists():
             time.sleep(0.02)
-        follower = Follower(run.port)
+        follower = Follower(run)
         follower.read_until(lambda e: "verdict" in e)
         if not any("stopped" in e and e["why"] for e in follower.events):
             fail(f"nothing says why it stopped: {follower.events[-3:]}")

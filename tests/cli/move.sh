@@ -162,6 +162,53 @@ if yaml:
     assert read == message
     assert all(isinstance(x, float) for p in read["points"] for key in ("positions", "velocities", "accelerations") for x in p[key])
 END
+# The command that is named decides the file anew, what controllers make of it as well.
+for extension in csv json yaml; do
+  check=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["trajectory"]["check"])' b-$extension.json)
+  # shellcheck disable=SC2086
+  expect 0 "b-samples.$extension: [0-9]* samples in [0-9.]* s; what decides it anew: kaboum-check cell.json --path=b-samples.$extension" "$M" cell.json $GO --blend 0.5 --max-jerk 60 --max-jerk j2=40 --trajectory b-samples.$extension
+  grep -qF "$check" err.txt || fail "the command of the report is not named: $check"
+  of=''
+  [ $extension = csv ] || of=' of the quintic polynomials'
+  shows 0 "free at every instant$of\$" sh -c "'$BIN'/$check"
+done
+shows 0 'free at every instant of the cubic polynomials$' "$BIN/kaboum-check" cell.json --path b-samples.json --between cubic --resolution 1e-8 --max-intervals 100000000
+expect 0 'names with blanks.*--robot=arm .*--margin=.arm/tip,box=0.001. --keep=upright' "$M" cell.json --robot arm --from=0.5,0 --to 1,1 -o p.csv --trajectory 'names with blanks.json' --margin arm/tip,box=0.001 --margin 0 --keep upright
+shows 0 'of the quintic polynomials, with margins kept' sh -c "'$BIN'/$(sed -n 's/.*anew: //p' err.txt)"
+# What joints do between waypoints is another motion by polynomials: through the box where the straight line is free of it, and round it.
+message() { # file, then of each of two points: time, positions, velocities
+  echo "{\"joint_names\": [\"j1\", \"j2\"], \"points\": [{\"time_from_start\": $2, \"positions\": $3, \"velocities\": $4}, {\"time_from_start\": $5, \"positions\": $6, \"velocities\": $7}]}" >"$1"
+}
+message into.json 0 '[0.5, 0]' '[-3, 0]' 1 '[0.5, 0]' '[3, 0]'
+shows 0 'free at every instant$' "$BIN/kaboum-check" cell.json --path into.json
+grep -q 'makes splines.*(--between decides these)' err.txt || fail "velocities are passed over silently: $(cat err.txt)"
+shows 1 'colliding' "$BIN/kaboum-check" cell.json --path into.json --between cubic --report into-report.json
+message round.json 1 '[-1.2, 0]' '[0, 12]' 2 '[1.2, 0]' '[0, -12]'
+shows 1 'colliding' "$BIN/kaboum-check" cell.json --path round.json
+shows 0 'free at every instant of the cubic polynomials$' "$BIN/kaboum-check" cell.json --path round.json --between cubic --keep upright --report round-report.json
+python3 - <<'END' || fail "reports of polynomials"
+import json
+into, round = (json.load(open(f"{name}-report.json")) for name in ("into", "round"))
+assert into["waypoints"] == round["waypoints"] == 2 and round["kept"]["answer"] == "kept"
+assert round["curve"]["between"] == "cubic" and round["curve"]["lines"] > 100 and all(0 < x < 1e-5 for x in round["curve"]["room"]["arm"])
+# Until then the joint goes from 0.5 by -3 t + 3 t^2 to where the arm meets the box.
+t = into["motion"]["contact"]["time"]
+assert into["motion"]["contact"]["waypoint"] == 1 and 0.1 < t < 0.3 and into["motion"]["contact"]["share"] == t, into["motion"]
+assert 0.05 < 0.5 - 3 * t + 3 * t * t < 0.2, t
+END
+message beyond.json 0 '[2.9, 0]' '[2, 0]' 1 '[2.9, 0]' '[-2, 0]'
+expect 3 "behind waypoint 1 the polynomial takes joint 'j1' to 3" "$BIN/kaboum-check" cell.json --path beyond.json --between cubic
+expect 3 'needs the accelerations of all points' "$BIN/kaboum-check" cell.json --path into.json --between quintic
+expect 3 'needs the velocities' "$BIN/kaboum-check" cell.json --path b-samples.csv --between cubic
+expect 3 'needs the times' "$BIN/kaboum-check" cell.json --path path.csv --between cubic
+message still.json 1 '[0.5, 0]' '[-3, 0]' 1 '[0.5, 0]' '[3, 0]'
+expect 3 '' "$BIN/kaboum-check" cell.json --path still.json --between cubic
+sed 's/, "velocities": \[3, 0\]//' into.json >some.json
+expect 3 'point 2 has no velocities' "$BIN/kaboum-check" cell.json --path some.json --between cubic
+expect 7 'larger --resolution' "$BIN/kaboum-check" cell.json --path into.json --between cubic --resolution 1e-14
+expect 2 'leave out --between' "$BIN/kaboum-check" cell.json --path into.json --between cubic --inside arm/tip=box
+expect 2 '' "$BIN/kaboum-check" cell.json --between cubic
+expect 2 'quartic' "$BIN/kaboum-check" cell.json --path into.json --between quartic
 # A motion that is straight has no corners; those from rest to rest are messages as well.
 expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --blend 0.25 --trajectory b-straight.csv --report b-straight.json
 grep -A3 '"blends"' b-straight.json | tr -d ' \n' | grep -q '\[0.0,0.0\]' || fail "blends of a straight path: $(cat b-straight.json)"

@@ -227,6 +227,67 @@ TEST(BlendedTrajectory, InstantsAreThoseOfTheValuesAndContinuous) {
   }
 }
 
+/// Segments that grow by less than a half each, and begin short again: the scale of the parameter
+/// would grow with each of them.
+Corners sawtooth(std::uint32_t seed, std::size_t waypoints) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> turn(-1, 1), growth(1.1, 1.6);
+  Corners out;
+  const bool falls = seed % 2 == 0;
+  Values q(2, 0);
+  double length = 1e-3, direction = 0;
+  for (std::size_t i = 0; i < waypoints; ++i) {
+    out.path.push_back(q);
+    q[0] += length * std::cos(direction);
+    q[1] += length * std::sin(direction);
+    direction += turn(random);
+    length *= growth(random);
+    if (length > 0.5) length = 1e-3;
+  }
+  if (falls) std::ranges::reverse(out.path);
+  out.shares.assign(waypoints, 0.5);
+  out.limits = {Values(2, 2), Values(2, 5), Values(2, 100)};
+  return out;
+}
+
+TEST(BlendedTrajectory, ThousandsOfCornersKeepTheParameterInRange) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const Corners c = sawtooth(seed, 6000);
+    const BlendedPath curve(c.path, c.shares, c.limits.velocity);
+    EXPECT_EQ(curve.stops().size(), 2U);
+    double least = 1e300, most = 0;
+    for (std::size_t k = 0; k < curve.pieces().size(); ++k) {
+      const PathPiece& piece = curve.pieces()[k];
+      for (const Values* derivative : {&piece.in, &piece.out}) {
+        const double size = std::hypot((*derivative)[0], (*derivative)[1]);
+        least = std::min(least, size);
+        most = std::max(most, size);
+      }
+      // Still C¹, and of ends that join.
+      if (k == 0) continue;
+      const CurvePoint end = curve.pieces()[k - 1].at(curve.pieces()[k - 1].length);
+      for (std::size_t j = 0; j < 2; ++j) {
+        EXPECT_NEAR(end.first[j], piece.in[j], 1e-9 * std::abs(end.first[j]) + 1e-12 * most);
+        EXPECT_NEAR(end.q[j], piece.from[j], 1e-9);
+      }
+    }
+    EXPECT_GT(least, 1e-10);
+    EXPECT_LT(most, 1e10);
+  }
+  const Corners c = sawtooth(1, 2500);
+  const Trajectory t(c.path, c.shares, c.limits, 100);
+  EXPECT_EQ(t.bends().size(), 1U);
+  Instant before = t.instant(0);
+  for (std::size_t k = 1; k < t.samples(); ++k) {
+    const Instant now = t.instant(k);
+    for (std::size_t j = 0; j < 2; ++j) {
+      EXPECT_LE(std::abs(now.q[j] - before.q[j]), 2 / t.rate() * (1 + 1e-6));
+      EXPECT_LE(std::abs(now.velocity[j] - before.velocity[j]), 5 / t.rate() * (1 + 1e-6));
+    }
+    before = now;
+  }
+}
+
 TEST(BlendedTrajectory, StopsWhereItHasToAndOnlyThere) {
   const SpeedLimits two{{1, 2}, {5, 5}, {100, 100}};
   const auto speed_at = [](const Trajectory& t, std::size_t waypoint) {

@@ -584,6 +584,19 @@ def test_fingers_that_hold_something_stay(tmp_path):
     for ask in (lambda: world.check_motion([home + [0.0115], there + [0.018]]), lambda: world.find_path(None, [there + [0.018]])):
         with pytest.raises(kaboum.Error, match="'finger' of 'arm' is at 0.018, but its gripper holds 'o1' by a grasp with 0.0115"):
             ask()
+    # Many at once: refused, and not free, where paths are.
+    rows = [home + [0.0115], there + [0.0121]]
+    assert world.check(rows[0]) and world.are_free(rows).all() and world.motions_are_free(rows[0], rows).all()
+    beyond = [home + [0.0115], there + [0.018]]
+    for ask, words in ((lambda: world.check(beyond), "row 2"), (lambda: world.are_free(beyond), "row 2"), (lambda: world.motions_are_free(beyond[0], beyond), "motion 2, row 2")):
+        with pytest.raises(kaboum.Error, match=f"{words}: the joint 'finger' of 'arm' is at 0.018"):
+            ask()
+    for grasp in (grasp for thing in scene["objects"] for grasp in thing["grasps"]):  # wherever they stop: in the neck as well
+        grasp["within"] = 0.008
+    (tmp_path / "loose.json").write_text(json.dumps(scene))
+    loose = kaboum.World(tmp_path / "loose.json")
+    assert loose.check(rows[0])  # as it is
+    assert not loose.are_free(rows).any() and not loose.motions_are_free(rows[0], rows).any()
     finder = world.path_finder()
     assert finder.find_path(None, [there + [0.0115]]).outcome == "found"
     finder.make_roadmap(nodes=10)

@@ -105,11 +105,15 @@ TEST(Path, TrajectoriesOfRosMoveItAndCuRobo) {
   EXPECT_EQ(parse_path_json(R"({"positions": [[1, 2], [3, 4]]})", "p").waypoints,
             (Path{{1, 2}, {3, 4}}));
   EXPECT_EQ(parse_path_json(R"({"name": ["x"], "position": [1]})", "p").waypoints, (Path{{1}}));
-  // A spline is not what is looked at: that is said.
+  // Derivatives, as many as there are joints, are those of their point.
   const NamedPath spline = parse_path_json(
-      R"({"joint_names": ["a"], "points": [{"positions": [1], "velocities": [0.5]}]})", "p");
-  ASSERT_EQ(spline.notes.size(), 1);
-  EXPECT_NE(spline.notes[0].find("splines"), std::string::npos);
+      R"({"joint_names": ["a", "b"], "points": [
+        {"positions": [1, 2], "velocities": [0.5, 1], "accelerations": [3, 4], "time_from_start": 0},
+        {"positions": [1, 2], "velocities": [0.5], "accelerations": [3, "x"], "time_from_start": 1},
+        {"positions": [1, 2], "time_from_start": 2}]})",
+      "p");
+  EXPECT_EQ(spline.velocities, (Path{{0.5, 1}, {}, {}}));
+  EXPECT_EQ(spline.accelerations, (Path{{3, 4}, {}, {}}));
   // Times that are all the same are none.
   EXPECT_TRUE(times_of(parse_path_json(R"({"joint_names": ["a"], "points": [
       {"positions": [1], "time_from_start": 0}, {"positions": [2], "time_from_start": 0}]})",

@@ -78,28 +78,17 @@ struct Verdicts {
 void look_at_fingers(const CheckOptions& o, const world::Checker& checker, std::size_t robot,
                      const std::function<robot::Path(std::size_t)>& path_of, Verdicts& out) {
   const world::WorldState state = initial_state(checker.world());
-  std::vector<std::size_t> holding;
-  for (std::size_t r = 0; r < state.q.size(); ++r)
-    if (!world::holding_joints(r, state.attachments).empty()) holding.push_back(r);
-  if (holding.empty()) return;
+  if (!world::holds_by_fingers(state)) return;
   for (std::size_t i = 0; i < out.free.size(); ++i) {
-    const robot::Path path = path_of(i);
     const std::string what = o.motions.empty() ? "row " + std::to_string(i + 1)
                                                : "motion " + std::to_string(i + 1) + ", row";
-    std::vector<world::RobotPath> paths{{robot, path}};
-    for (const std::size_t r : holding)
-      if (r != robot) paths.push_back({r, robot::Path(path.size(), state.q[r])});
-    bool any = false;
-    for (world::RobotPath& one : paths) {
-      try {
-        one.around =
-            world::finger_room_along(checker.world(), one.robot, state.attachments, one.path, what);
-      } catch (const Error& error) {
-        throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
-      }
-      any = any || !one.around.empty();
+    std::vector<world::RobotPath> paths;
+    try {
+      paths = world::paths_with_fingers(checker.world(), state, robot, path_of(i), what);
+    } catch (const Error& error) {
+      throw Error(ErrorCode::InvalidInput, o.batch + ": " + error.what());
     }
-    if (!any || out.free[i] == 0) continue;
+    if (paths.empty() || out.free[i] == 0) continue;
     world::MotionOptions options = o.motion;
     options.where = false;
     if (check_motions(checker, state, paths, options).outcome == world::MotionAnswer::Outcome::Free)

@@ -20,6 +20,7 @@
 #include "common/check_report.h"
 #include "engine.h"
 #include "inside.h"
+#include "motions.h"
 #include "options.h"
 
 namespace {
@@ -58,6 +59,11 @@ std::string kept_apart(const tools::CheckOptions& o) {
   return margins.empty() ? "" : ", with margins kept: " + margins;
 }
 
+/// End of what is said of a motion that is free.
+std::string between_words(const tools::CheckOptions& o) {
+  return o.between == tools::kStraight ? "" : " of the " + o.between + " polynomials";
+}
+
 /// What of stated margins "free" of a configuration leaves open; empty: nothing.
 std::string not_looked_at(const tools::CheckOptions& o, const world::World& world) {
   const bool all =
@@ -77,15 +83,18 @@ std::vector<double> configuration_at(const robot::Path& path, std::size_t segmen
 using Constraints = std::vector<motion::PathConstraint>;
 
 /// Whether a robot's motion keeps what is asked for, and what it carries upright: an exit code.
+/// @param which  of the motions
 int check_kept(const tools::CheckOptions& o, const world::World& world,
-               const world::RobotPath& motion, const Constraints& constraints,
-               tools::Json& report) {
+               const tools::StatedMotions& motions, std::size_t which,
+               const Constraints& constraints, tools::Json& report) {
+  const world::RobotPath& motion = motions.paths[which];
   const world::RobotModel& robot = world.robots[motion.robot];
   const robot::Path& path = motion.path;
   if (constraints.empty()) return tools::kDone;
-  const motion::ConstraintAnswer answer = [&] {
+  motion::ConstraintAnswer answer = [&] {
     tools::Progress progress(o.common.quiet);
     world::MotionOptions told = o.motion;
+    if (motions.curve) told.around = motion.around;
     told.progress = [&](const std::string& stage) { progress.show(stage); };
     return check_constraints(robot, path, constraints, told);
   }();
@@ -101,6 +110,7 @@ int check_kept(const tools::CheckOptions& o, const world::World& world,
     say(o, "kept at every instant: " + words_of(constraints, answer.parts));
     return tools::kDone;
   }
+  motions.place(answer.segment, answer.share);
   report["segment"] = answer.segment;
   report["share"] = answer.share;
   report["deviation"] = answer.deviation;
@@ -123,13 +133,14 @@ int worse(int a, int b) {
 /// What is asked of one robot that moves alone: where it stays, and what it keeps; of several, what
 /// each carries upright.
 int check_wishes(const tools::CheckOptions& o, const world::Checker& checker,
-                 const std::vector<world::RobotPath>& paths,
-                 const std::vector<Constraints>& constraints, tools::Json& report) {
+                 const tools::StatedMotions& motions, const std::vector<Constraints>& constraints,
+                 tools::Json& report) {
   const world::World& world = checker.world();
+  const std::vector<world::RobotPath>& paths = motions.paths;
   int code = tools::kDone;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     tools::Json kept;
-    code = worse(code, check_kept(o, world, paths[i], constraints[i], kept));
+    code = worse(code, check_kept(o, world, motions, i, constraints[i], kept));
     if (kept.is_null()) continue;
     if (paths.size() == 1)
       report["kept"] = std::move(kept);
@@ -163,10 +174,20 @@ std::string words_of_times(const world::MotionAnswer& answer, const std::vector<
   return out.str() + ")";
 }
 
-/// @param times  of the waypoints; empty: none are known
+/// What joints do between waypoints, where they do not go straight.
+void say_curve(const tools::CheckOptions& o, const world::World& world,
+               const tools::StatedMotions& motions, tools::Json& report) {
+  if (!motions.curve) return;
+  tools::Json& curve =
+      report["curve"] = {{"between", o.between}, {"lines", motions.curve->points.size() - 1}};
+  for (const world::RobotPath& p : motions.paths)
+    curve["room"][world.robots[p.robot].name] = p.around;
+}
+
 int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
-                const std::vector<world::RobotPath>& paths, const std::vector<double>& times,
-                tools::Json& report) {
+                const tools::StatedMotions& motions, tools::Json& report) {
+  const std::vector<world::RobotPath>& paths = motions.paths;
+  const std::vector<double>& times = motions.times;
   const world::Checker checker(scene.world);
   // Errors come first.
   static_cast<void>(tools::parse_inside(scene.world, o.inside));
@@ -184,7 +205,8 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
     told.around = paths[0].around;
     return check_motion(checker, state, paths[0].robot, paths[0].path, told);
   }();
-  report["waypoints"] = paths.front().path.size();
+  report["waypoints"] = motions.waypoints;
+  say_curve(o, scene.world, motions, report);
   report["resolution"] = o.motion.resolution;
   world::WorldState at = initial_state(scene.world);
   for (const world::RobotPath& p : paths) at.q[p.robot] = p.path.back();
@@ -198,16 +220,20 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
     }
     contacts.push_back(*answer.contact);
   }
+  motions.place(answer.segment, answer.share);
+  motions.place(answer.contact_segment, answer.contact_share);
   report["motion"] = tools::to_json(scene.world, answer);
   if (!times.empty() && report["motion"].contains("free_until"))
     report["motion"]["free_until"]["time"] = time_at(times, answer.segment, answer.share);
   if (!times.empty() && report["motion"].contains("contact"))
     report["motion"]["contact"]["time"] =
         time_at(times, answer.contact_segment, answer.contact_share);
-  say(o, tools::describe(scene.world, answer) + words_of_times(answer, times) +
-             (answer.outcome == world::MotionAnswer::Outcome::Free ? kept_apart(o) : ""));
+  say(o,
+      tools::describe(scene.world, answer) + words_of_times(answer, times) +
+          (answer.outcome == world::MotionAnswer::Outcome::Free ? between_words(o) + kept_apart(o)
+                                                                : ""));
   if (!o.preview.empty()) io::write_file(o.preview, page::picture_of(checker, at, contacts));
-  const int wishes = check_wishes(o, checker, paths, constraints, report);
+  const int wishes = check_wishes(o, checker, motions, constraints, report);
   using Outcome = world::MotionAnswer::Outcome;
   report["answer"] = answer.outcome == Outcome::Free                             ? "free"
                      : answer.outcome == Outcome::Undecided                      ? "undecided"
@@ -216,36 +242,6 @@ int check_paths(const tools::CheckOptions& o, const world::SceneFile& scene,
   return worse(wishes, answer.outcome == Outcome::Free        ? tools::kDone
                        : answer.outcome == Outcome::Undecided ? tools::kLimit
                                                               : tools::kNo);
-}
-
-/// A path's file, and the robot whose it is where that is stated: "left=path.csv".
-struct StatedPath {
-  std::optional<std::size_t> robot;
-  std::string file;
-};
-
-std::vector<StatedPath> stated_paths(const tools::CheckOptions& o, const world::World& world) {
-  std::vector<StatedPath> out;
-  for (const std::string& text : o.paths) {
-    const std::size_t equals = text.find('=');
-    const auto robot =
-        equals == std::string::npos ? std::nullopt : world.find_robot(text.substr(0, equals));
-    out.push_back(robot ? StatedPath{robot, text.substr(equals + 1)} : StatedPath{{}, text});
-    if (o.paths.size() == 1) continue;
-    if (!robot)
-      throw Error(ErrorCode::InvalidArgument,
-                  "--path " + text +
-                      ": of several paths each names its robot, as in --path left=left.csv --path "
-                      "right=right.csv");
-    for (std::size_t i = 0; i + 1 < out.size(); ++i)
-      if (out[i].robot == robot)
-        throw Error(ErrorCode::InvalidArgument,
-                    "--path: robot '" + text.substr(0, equals) + "' has two paths");
-  }
-  if (out.size() > 1 && (!o.robot.empty() || !o.inside.empty() || !o.keep.keep.empty()))
-    throw Error(ErrorCode::InvalidArgument,
-                "--robot, --inside and --keep are for one robot that moves, not for several");
-  return out;
 }
 
 /// Whether robots that hold something are free wherever their fingers stop within what the grasps
@@ -268,6 +264,22 @@ std::optional<world::MotionAnswer> check_fingers(const tools::CheckOptions& o,
   }
   if (at.empty()) return std::nullopt;
   return check_motions(checker, state, at, o.motion);
+}
+
+/// What is not free for certain where fingers may stop, of robots that stand: a motion without a
+/// way.
+void say_fingers(const tools::CheckOptions& o, const world::World& world, const std::string& before,
+                 const world::MotionAnswer& answer, tools::Json& report) {
+  std::string line = before + "not free for certain wherever fingers stop: ";
+  if (answer.contact)
+    line += (answer.meets ? "" : "nearly: ") + tools::describe(world, *answer.contact);
+  else
+    line += "undecided after " + std::to_string(answer.intervals) + " intervals";
+  say(o, line);
+  tools::Json& fingers = report["fingers"] = tools::to_json(world, answer);
+  fingers.erase("free_until");
+  for (const char* place : {"waypoint", "share"})
+    if (answer.contact) fingers["contact"].erase(place);
 }
 
 int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
@@ -293,9 +305,7 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
                                  : o.configurations + ": configuration " + std::to_string(i + 1));
     if (fingers && fingers->outcome != world::MotionAnswer::Outcome::Free && contacts.empty()) {
       free = one["free"] = false;
-      one["fingers"] = tools::to_json(scene.world, *fingers);
-      say(o, before + "not free for certain wherever fingers stop: " +
-                 tools::describe(scene.world, *fingers));
+      say_fingers(o, scene.world, before, *fingers, one);
     } else if (contacts.empty()) {
       say(o, before + "free" + kept_apart(o) + not_looked_at(o, scene.world));
     }
@@ -337,38 +347,32 @@ int check_states(const tools::CheckOptions& o, const world::SceneFile& scene,
   return inside == Inclusion::Included ? tools::kDone : tools::kLimit;
 }
 
-/// Robots that move at once are at their waypoints at the same instants: files that say otherwise
-/// mean another motion.
-/// @param before  of the path before this one; empty: it has none, or this is the first
-void require_same_times(const std::vector<double>& before, const std::vector<double>& times,
-                        const std::string& first, const std::string& file) {
-  if (before.empty() || times.empty()) return;
-  for (std::size_t i = 0; i < std::min(before.size(), times.size()); ++i)
-    if (before[i] != times[i]) {
-      std::string what = file + ": waypoint " + std::to_string(i + 1) + " is at ";
-      what.append(std::to_string(times[i])).append(" s, that of ").append(first);
-      what.append(" at ").append(std::to_string(before[i]));
-      what.append(
-          " s; robots that move at once go from waypoint to waypoint together: give both paths "
-          "waypoints at the same times");
-      throw Error(ErrorCode::InvalidInput, what);
-    }
+/// Polynomials between waypoints are decided by own predicates, and regions on straight lines.
+void require_curve_meaning(const tools::CheckOptions& o) {
+  if (o.between == tools::kStraight) return;
+  if (!o.inside.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--inside is decided on straight lines between waypoints: leave out --between");
+  if (o.engine.library != engines::Library::Own)
+    throw Error(ErrorCode::InvalidArgument,
+                "--engine is asked at samples of straight lines: leave out --between");
 }
 
 int check(const tools::CheckOptions& o) {
   if (!o.paths.empty() && (o.state.resting || o.distance))
     throw Error(ErrorCode::InvalidArgument, "--resting and --distance are for configurations");
+  require_curve_meaning(o);
   world::SceneFile scene = world::read_scene(o.scene);
   std::vector<std::string> notes = scene.notes;
   tools::Json report = {{"scene", {{"file", o.scene}, {"sha256", scene.sha256}}}};
   tools::add_clouds(o, scene.world, notes, report);
   scene.world.margins = world::margins_of(scene.world, o.margin);
-  const std::vector<StatedPath> stated = stated_paths(o, scene.world);
+  const std::vector<tools::StatedPath> stated = tools::stated_paths(o, scene.world);
   std::vector<std::string> inputs = scene.inputs;
   inputs.push_back(o.configurations);
   inputs.push_back(o.batch);
   inputs.insert(inputs.end(), o.clouds.begin(), o.clouds.end());
-  for (const StatedPath& path : stated) inputs.push_back(path.file);
+  for (const tools::StatedPath& path : stated) inputs.push_back(path.file);
   tools::require_apart(
       {{"--report", o.common.report}, {"--preview", o.preview}, {"--verdicts", o.verdicts}},
       inputs);
@@ -382,24 +386,11 @@ int check(const tools::CheckOptions& o) {
       throw Error(ErrorCode::InvalidArgument, "--path names another robot than --robot");
     report["robot"] = scene.world.robots[*robot].name;
   }
-  std::vector<world::RobotPath> paths;
-  std::vector<double> times;
-  for (const StatedPath& path : stated) {
-    const std::size_t index = robot ? *robot : *path.robot;
-    if (!robot) report["robots"].push_back(scene.world.robots[index].name);
-    robot::TimedPath read =
-        robot::read_timed_path(path.file, scene.world.robots[index].kinematics, o.reading, notes);
-    require_same_times(times, read.times, stated.front().file, path.file);
-    if (!read.times.empty()) times = std::move(read.times);
-    std::vector<double> around;  // fingers that hold something stop where they touch
-    try {
-      around = world::finger_room_along(scene.world, index, scene.world.attachments, read.waypoints,
-                                        "waypoint");
-    } catch (const Error& error) {
-      throw Error(ErrorCode::InvalidInput, path.file + ": " + error.what());
-    }
-    paths.push_back({index, std::move(read.waypoints), std::move(around)});
-  }
+  if (!robot)
+    for (const tools::StatedPath& path : stated)
+      report["robots"].push_back(scene.world.robots[*path.robot].name);
+  const tools::StatedMotions motions = tools::read_motions(o, scene.world, stated, robot, notes);
+  const std::vector<world::RobotPath>& paths = motions.paths;
   robot::Path values{{}};
   if (robot && paths.empty()) {
     const world::RobotModel& model = scene.world.robots[*robot];
@@ -416,7 +407,7 @@ int check(const tools::CheckOptions& o) {
   const int code =
       !o.batch.empty() ? tools::check_batch(o, scene, *robot, values, kept_apart(o), tell, report)
       : own            ? paths.empty() ? check_states(o, scene, robot, values, report)
-                                       : check_paths(o, scene, paths, times, report)
+                                       : check_paths(o, scene, motions, report)
                  : paths.empty() ? tools::check_states_by_engine(o, scene, robot, values, tell, report)
                        : tools::check_paths_by_engine(o, scene, paths, tell, report);
   if (!notes.empty()) report["notes"] = notes;

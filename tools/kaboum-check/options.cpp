@@ -53,6 +53,15 @@ void describe(CLI::App& app, CheckOptions& o) {
                    ->expected(1)
                    ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
                    ->type_name("[ROBOT=]FILE");
+  app.add_option(
+         "--between", o.between,
+         "Of a motion: what joints do between waypoints: go straight; or follow the polynomials "
+         "that controllers make of the file's positions and velocities (cubic), or of these and "
+         "accelerations (quintic)")
+      ->check(CLI::IsMember({kStraight, kCubic, kQuintic}).description(""))
+      ->capture_default_str()
+      ->type_name(std::string(kStraight) + "|" + kCubic + "|" + kQuintic)
+      ->needs(path);
   auto* one = app.add_option("--configuration", o.configuration,
                              "Decide the robot at these joint values, separated by commas [home]")
                   ->type_name("Q1,Q2,…")

@@ -20,11 +20,14 @@ class App;
 /// What kaboum-check is asked for.
 namespace kaboum::tools {
 
+/// What joints do between waypoints.
+inline constexpr const char *kStraight = "straight", *kCubic = "cubic", *kQuintic = "quintic";
+
 struct CheckOptions {
   std::string scene, robot, configuration, configurations, batch, motions, verdicts, preview;
   std::vector<std::string> paths, inside, clouds, cloud_allow;
   std::optional<Length> cloud_radius;
-  std::string cloud_pose;
+  std::string cloud_pose, between = kStraight;
   bool cloud_drop_invalid = false;
   robot::PathOptions reading;
   world::Checker::Options state;

@@ -3,13 +3,38 @@
 #include "files.h"
 
 #include <kaboum/base/error.h>
+#include <kaboum/base/number_text.h>
 #include <kaboum/motion/sampled_path.h>
+
+#include <sstream>
+
+#include "common/shell_word.h"
 
 namespace kaboum::tools {
 namespace {
 
 motion::AngleUnit unit_of(const MoveOptions& o) {
   return o.degrees ? motion::AngleUnit::Degrees : motion::AngleUnit::Radians;
+}
+
+/// The command that decides the samples' file anew, as it was decided before it was written: with a
+/// finer resolution than the path.
+std::string check_command(const MoveOptions& o) {
+  std::string out = "kaboum-check " + shell_file(o.scene);
+  const auto add = [&out](const char* option, const std::string& value) {
+    out += std::string(" --") + option + "=" + shell_word(value);
+  };
+  if (!o.robot.empty()) add("robot", o.robot);
+  add("path", o.trajectory);
+  if (motion::message_format(o.trajectory)) add("between", "quintic");
+  if (o.degrees) out += " --degrees";
+  for (const auto& [names, margin] : o.margin.margins)
+    add("margin", (names.empty() ? "" : names + "=") + margin.text());
+  for (const std::string& keep : o.keep.keep) add("keep", keep);
+  if (!o.keep.tool.empty()) add("tool", o.keep.tool);
+  add("resolution", number_text(1e-3 * o.search.check.resolution));
+  add("max-intervals", "1000000000");
+  return out;
 }
 
 }  // namespace
@@ -44,10 +69,15 @@ Execution execute(const MoveRequest& r, const robot::Path& path, const MoveOptio
     report["blends"] = made.blends;
     report["between_samples"] = made.between_samples;
   }
+  const std::string check = check_command(o);
+  report["check"] = check;
   const auto format = motion::message_format(o.trajectory);
+  std::ostringstream summary;
+  summary << o.trajectory << ": " << made.trajectory.samples() << " samples in "
+          << made.trajectory.duration() << " s; what decides it anew: " << check;
   return {
       format ? to_joint_trajectory(made.trajectory, r.kinematics(), *format) : std::move(made.csv),
-      std::move(report)};
+      summary.str(), std::move(report)};
 }
 
 }  // namespace kaboum::tools

@@ -19,7 +19,8 @@ WrittenPath write_path(const MoveRequest& r, const robot::Path& path, const Move
                        const world::Checker& checker);
 
 struct Execution {
-  std::string text;  ///< of the file
+  std::string text;     ///< of the file
+  std::string summary;  ///< one line: how long it takes, and what decides the file anew
   Json report;
 };
 

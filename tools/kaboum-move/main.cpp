@@ -99,6 +99,7 @@ int move(const MoveOptions& o) {
           (o.margin.margins.empty() ? "" : ", with margins kept: " + words_of(o.margin)) +
           (r.goals.size() > 1 ? "; to goal " + std::to_string(r.numbers[answer.goal]) : "") +
           (r.constraints.empty() ? "" : "; kept: " + words_of(r.constraints, answer.deviations)));
+  if (execution) tools::log(o.common.quiet, execution->summary);
   return tools::kDone;
 }
 

@@ -319,8 +319,7 @@ int run_plan(const PlanOptions& o) {
               << " of the trajectories, and points within " << e.margin << '\n';
   const int missing = say_missing(replans);
   if (!drive.not_noted.empty())
-    std::cerr << "kaboum-plan: " << drive.not_noted
-              << ": the journal has all of the run but its verdict\n";
+    std::cerr << "kaboum-plan: " << drive.not_noted << ": the journal lacks the end of the run\n";
   std::cout.flush();
   seen.end();
   if (!drive.not_noted.empty()) return kOutputFailed;

@@ -124,9 +124,32 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// A secret of 128 bits, in 32 digits.
+std::string random_secret() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::random_device device;
+  std::string out;
+  for (int word = 0; word < 4; ++word) {
+    const auto bits = static_cast<std::uint32_t>(device());
+    for (unsigned shift = 0; shift < 32; shift += 4) out += kDigits[(bits >> shift) & 15U];
+  }
+  return out;
+}
+
+/// Whether a text begins with a secret, in a time that does not tell where the two differ.
+bool begins_with(std::string_view text, std::string_view secret) {
+  if (text.size() < secret.size()) return false;
+  unsigned differ = 0;
+  for (std::size_t i = 0; i < secret.size(); ++i)
+    differ |= static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(secret[i]);
+  return differ == 0;
+}
+
 /// @param text  a request to the end of its headers, both ends of a line included
 /// @param hosts  names that this server has, "127.0.0.1:8765"
-Request read_request(std::string_view text, const std::array<std::string, 2>& hosts) {
+/// @param folder  of the page, which only those know who were told the address: "/4f…e/"
+Request read_request(std::string_view text, const std::array<std::string, 2>& hosts,
+                     std::string_view folder) {
   const auto refuse = [](int status) { return Request{.refused = status}; };
   const auto line = [&] {
     const std::size_t end = text.find("\r\n");
@@ -177,9 +200,11 @@ Request read_request(std::string_view text, const std::array<std::string, 2>& ho
   }
   if (!has_host) return refuse(400);
   if (method != "GET" && method != "HEAD") return refuse(405);
-  if (target != "/" && target != "/events") return refuse(404);
+  if (!begins_with(target, folder)) return refuse(404);
+  const std::string_view name = target.substr(folder.size());
+  if (!name.empty() && name != "events") return refuse(404);
   out.head = method == "HEAD";
-  out.events = target == "/events";
+  out.events = name == "events";
   if (out.events && crosses) return refuse(403);
   return out;
 }
@@ -247,7 +272,8 @@ struct EventServer::Data {
       fail(std::strerror(errno));
     // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
     const std::string port = std::to_string(ntohs(name.sin_port));
-    address = "http://127.0.0.1:" + port + "/";
+    folder = "/" + random_secret() + "/";
+    address = "http://127.0.0.1:" + port + folder;
     // Of port 80 browsers do not say the number.
     const std::string end = port == "80" ? "" : ":" + port;
     hosts = {"127.0.0.1" + end, "localhost" + end};
@@ -436,7 +462,7 @@ struct EventServer::Data {
       if (c.request.size() > kMostRequest) answer(c, refusal(431), {}, now);
       return;
     }
-    const Request request = read_request(std::string_view(c.request).substr(0, end + 4), hosts);
+    const Request request = read_request(std::string_view(c.request).substr(0, end + 4), hosts, folder);
     if (request.refused != 0) {
       answer(c, refusal(request.refused), {}, now);
       return;
@@ -521,7 +547,7 @@ struct EventServer::Data {
   Descriptor listener, wake;
   std::array<std::string, 2> hosts;
   std::string run;  ///< told by ids of events: another server at the port has another one
-  std::string address;
+  std::string folder, address;
 
   // Of the thread.
   std::list<Connection> connections;

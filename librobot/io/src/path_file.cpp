@@ -262,9 +262,35 @@ NamedPath parse_path(const std::vector<char>& bytes, const std::string& file, co
 
 namespace {
 
+/// Derivatives of the waypoints in the robot's order; those of fixed joints are 0. Empty: none are
+/// stated.
+/// @param rows  NamedPath::velocities or accelerations
+Path arranged_derivatives(const NamedPath& path, Path rows, const char* what, const Robot& robot,
+                          const PathOptions& options, const std::string& name) {
+  const auto none = std::ranges::find_if(rows, [](const auto& row) { return row.empty(); });
+  if (std::ranges::all_of(rows, [](const auto& row) { return row.empty(); })) return {};
+  if (none != rows.end())
+    throw Error(ErrorCode::InvalidInput, name + ": point " +
+                                             std::to_string(none - rows.begin() + 1) + " has no " +
+                                             what + ", a number for each joint, as others have");
+  NamedPath named{path.joints, std::move(rows)};
+  if (named.joints.size() > named.waypoints.front().size()) named.joints.pop_back();  // times
+  FixedJoints still;
+  for (const auto& [joint, value] : options.fixed) still[joint] = 0;
+  Path out = robot::arrange(named, robot, name, false, still);
+  return options.degrees ? robot::from_degrees(std::move(out), robot) : out;
+}
+
+bool is_any_not_zero(const Path& rows) {
+  return std::ranges::any_of(rows, [](const std::vector<double>& row) {
+    return std::ranges::any_of(row, [](double x) { return x != 0; });
+  });
+}
+
 /// @param uses_times  else a note says that they are passed over
+/// @param derivatives  as of read_timed_path
 TimedPath read_arranged(const std::string& file, const Robot& robot, const PathOptions& options,
-                        bool uses_times, std::vector<std::string>& notes) {
+                        bool uses_times, bool derivatives, std::vector<std::string>& notes) {
   const std::string name = file == "-" ? "standard input" : file;
   const NamedPath path = parse_path(io::read_file(file), file, robot, options, name);
   if (!uses_times)
@@ -273,6 +299,17 @@ TimedPath read_arranged(const std::string& file, const Robot& robot, const PathO
                       "' is passed over: what is swept does not depend on times");
   notes.insert(notes.end(), path.notes.begin(), path.notes.end());
   TimedPath out;
+  if (derivatives) {
+    out.velocities =
+        arranged_derivatives(path, path.velocities, "velocities", robot, options, name);
+    out.accelerations =
+        arranged_derivatives(path, path.accelerations, "accelerations", robot, options, name);
+  } else if (is_any_not_zero(path.velocities) || is_any_not_zero(path.accelerations)) {
+    notes.push_back(name +
+                    ": velocities and accelerations are passed over: between points, joints move "
+                    "straight; a controller that makes splines of them leaves that" +
+                    (uses_times ? " («between» decides these)" : ""));
+  }
   Path& result = out.waypoints;
   result = robot::arrange(path, robot, name, false, options.fixed);
   out.times = robot::times_of(path, robot);
@@ -296,13 +333,13 @@ TimedPath read_arranged(const std::string& file, const Robot& robot, const PathO
 }  // namespace
 
 TimedPath read_timed_path(const std::string& file, const Robot& robot, const PathOptions& options,
-                          std::vector<std::string>& notes) {
-  return read_arranged(file, robot, options, true, notes);
+                          std::vector<std::string>& notes, bool derivatives) {
+  return read_arranged(file, robot, options, true, derivatives, notes);
 }
 
 Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
                std::vector<std::string>& notes) {
-  return read_arranged(file, robot, options, false, notes).waypoints;
+  return read_arranged(file, robot, options, false, false, notes).waypoints;
 }
 
 std::string largest_move(const Path& path, const Robot& robot) {

@@ -16,7 +16,8 @@ struct DriveReport {
   PlanRunReport run;
   std::optional<DriverStop::Kind> stopped;  ///< none: the driver has come to an end of a plan
   std::string reason;                       ///< of the stop
-  /// Why the verdict, the last line, is not in the journal; empty: it is there, or there is none.
+  /// Why the journal does not end with the verdict; empty: it does, or there is none. A driver that
+  /// was not at the end of the plan then was stopped.
   std::string not_noted = {};
   std::uint64_t actions = 0;  ///< begun
   std::uint64_t messages = 0;

@@ -37,12 +37,13 @@ struct DriverOptions {
 class DriverStop : public std::runtime_error {
  public:
   enum class Kind : std::uint8_t {
-    Failed,      ///< it says that it could not do something
-    Ended,       ///< its program ended
-    Late,        ///< it did not answer in time; its program was ended
-    Nonsense,    ///< it answered what is no answer, or what nobody asked
-    Elsewhere,   ///< a robot is not where it was told to go
-    Uncertified  ///< what it would be told next is not certified
+    Failed,       ///< it says that it could not do something
+    Ended,        ///< its program ended
+    Late,         ///< it did not answer in time; its program was ended
+    Nonsense,     ///< it answered what is no answer, or what nobody asked
+    Elsewhere,    ///< a robot is not where it was told to go
+    Uncertified,  ///< what it would be told next is not certified
+    Journal       ///< what it is told cannot be written into the journal
   };
   DriverStop(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
   [[nodiscard]] Kind kind() const { return kind_; }
@@ -71,13 +72,13 @@ struct FingerMotion {
 /// told one thing at a time by a line of JSON, and answers by one (docs/planning/drivers.md).
 ///
 /// All functions throw DriverStop; nothing is told any more after that. A driver that is not told
-/// that the plan has ended is told to stop.
+/// that the plan has ended is told to stop, at the latest when this ends.
 class RobotDriver {
  public:
   /// Starts it, and reads its first line. @param world  outlives it
   /// @throws Error{InvalidInput} for a command that cannot be started, a journal that cannot be
-  ///   read; Error{OutputFailed} for the journal; Error{InvalidArgument} for options that are not
-  ///   above 0
+  ///   read; Error{OutputFailed} for a journal that cannot be opened; Error{InvalidArgument} for
+  ///   options that are not above 0
   RobotDriver(const world::World& world, const DriverOptions& options);
   ~RobotDriver();
   RobotDriver(const RobotDriver&) = delete;
@@ -117,6 +118,10 @@ class RobotDriver {
   void note(std::string entry);
   /// Notes that nothing is told any more, and why, unless that was noted.
   void end(const std::string& kind, const std::string& why);
+  /// Tells it to stand still and ends its program, at once, unless the plan has come to its end.
+  void stop();
+  /// Why the journal is not complete; empty: it is, as far as the run has come.
+  [[nodiscard]] const std::string& not_noted() const;
 
   [[nodiscard]] std::uint64_t messages() const;
   [[nodiscard]] double waited() const;         ///< for answers [s]

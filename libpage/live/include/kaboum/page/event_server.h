@@ -10,7 +10,7 @@ namespace kaboum::page {
 /// Options of what serves a page.
 struct EventServerOptions {
   std::uint16_t port = 0;  ///< of 127.0.0.1; 0: a free one
-  std::string page = {};   ///< HTML, served as "/"
+  std::string page = {};   ///< HTML
   /// Makes an event of what was published; called by the server's thread. Empty: as it is.
   std::function<std::string(const std::string&)> event = {};
   /// Bytes of what is published and of events that are kept. Later ones are dropped, and the last
@@ -21,8 +21,9 @@ struct EventServerOptions {
 /// A web server for one page and the events that it follows, for browsers on this machine.
 ///
 /// One thread, which is behind all others where there is more to do than cores for it. It listens
-/// on 127.0.0.1 alone, and answers GET and HEAD of "/" and "/events" (server-sent events, from the
-/// first one on or after the header Last-Event-ID). It reads requests only, and nothing of them but
+/// on 127.0.0.1 alone, and answers GET and HEAD of its address, and of "events" below it
+/// (server-sent events, from the first one on or after the header Last-Event-ID). The address has a
+/// secret of 128 bits: other users of the machine do not know it. It reads requests only, and nothing of them but
 /// the first line and the headers Host, Origin, Sec-Fetch-Site and Last-Event-ID. Who has events of
 /// an earlier server at the port is told that there are none (204). A request to another host's
 /// name is refused: pages of others cannot read this one by having their name lead here. At most 64
@@ -38,7 +39,7 @@ class EventServer {
   EventServer(const EventServer&) = delete;
   EventServer& operator=(const EventServer&) = delete;
 
-  /// "http://127.0.0.1:8765/".
+  /// "http://127.0.0.1:8765/4f…e/".
   [[nodiscard]] const std::string& address() const;
   /// Adds an event: one line. It waits for nobody.
   void publish(std::string line);

@@ -18,6 +18,8 @@ struct PathOptions {
 struct TimedPath {
   Path waypoints;
   std::vector<double> times = {};  ///< of the waypoints, not falling; empty: none are stated [s]
+  /// Derivatives by time at the waypoints; empty: none are stated, or they are not asked for.
+  Path velocities = {}, accelerations = {};
 };
 
 /// Reads a path for a robot: CSV, JSON, YAML or an array of NumPy, also such as MoveIt, VAMP and
@@ -26,10 +28,13 @@ struct TimedPath {
 /// in another order than the robot's.
 /// @param file  `-` for standard input
 /// @param notes  gets what a user should know; one sentence each
-/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as arrange;
-///   Error{NotBuilt} for YAML in a build without yaml-cpp.
+/// @param derivatives  whether velocities and accelerations are used; else a note says that those
+///   that are not 0 are passed over
+/// @throws Error{InvalidInput} naming the line, the joint or the waypoint; as arrange; for
+///   derivatives that only some waypoints have; Error{NotBuilt} for YAML in a build without
+///   yaml-cpp.
 TimedPath read_timed_path(const std::string& file, const Robot& robot, const PathOptions& options,
-                          std::vector<std::string>& notes);
+                          std::vector<std::string>& notes, bool derivatives = false);
 
 /// The same without times, which a note says where there are some.
 /// @throws as read_timed_path
