@@ -5,6 +5,7 @@
 #include <kaboum/base/similar_name.h>
 #include <kaboum/robot/kinematics.h>
 #include <kaboum/robot/path.h>
+#include <kaboum/robot/path_derivatives.h>
 
 #include <algorithm>
 #include <cctype>
@@ -215,7 +216,8 @@ namespace {
 /// where joints are, and when.
 class TrajectoryReader {
  public:
-  explicit TrajectoryReader(const std::string& name) : name_(name) {}
+  TrajectoryReader(const std::string& name, PathDerivatives& derivatives)
+      : name_(name), derivatives_(derivatives) {}
 
   /// @param at  where the value is, for messages; empty: all of the file
   NamedPath read(const Json& value, const std::string& at) {
@@ -350,8 +352,8 @@ class TrajectoryReader {
         refuse(place, "some points have a \"time_from_start\", others have none");
       if (timed) row.push_back(seconds(point["time_from_start"], place + ", time_from_start"));
       const std::size_t joints = row.size() - (timed ? 1 : 0);
-      out.velocities.push_back(derivatives(point, "velocities", joints));
-      out.accelerations.push_back(derivatives(point, "accelerations", joints));
+      derivatives_.velocities.push_back(derivatives(point, "velocities", joints));
+      derivatives_.accelerations.push_back(derivatives(point, "accelerations", joints));
       append(out, std::move(row), name_, place);
     }
     out.notes = std::move(notes_);
@@ -427,13 +429,22 @@ class TrajectoryReader {
   }
 
   const std::string& name_;
+  PathDerivatives& derivatives_;
   std::vector<std::string> notes_;
 };
 
 }  // namespace
 
+NamedPath parse_path_json(std::string_view text, const std::string& name,
+                          PathDerivatives& derivatives) {
+  derivatives = {};
+  return TrajectoryReader(name, derivatives)
+      .read(read_json<Json>(text, name, "mend the path there"), "");
+}
+
 NamedPath parse_path_json(std::string_view text, const std::string& name) {
-  return TrajectoryReader(name).read(read_json<Json>(text, name, "mend the path there"), "");
+  PathDerivatives derivatives;
+  return parse_path_json(text, name, derivatives);
 }
 
 std::string csv_field(const std::string& joint) {

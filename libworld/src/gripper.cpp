@@ -3,6 +3,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/base/number_text.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/world/finger_paths.h>
 #include <kaboum/world/gripper.h>
 
 #include <algorithm>

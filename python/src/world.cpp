@@ -12,6 +12,7 @@
 #include <kaboum/page/world_picture.h>
 #include <kaboum/world/check_options.h>
 #include <kaboum/world/cloud.h>
+#include <kaboum/world/finger_paths.h>
 #include <kaboum/world/gripper.h>
 #include <kaboum/world/margins.h>
 #include <kaboum/world/regions.h>

@@ -129,6 +129,7 @@ for kind in boxes capsules mixed spheres; do
   expect 0 '' "$B" arm.urdf -o plain.$file --bodies $kind --links hand,finger --epsilon 6mm --effort fast
   shows 0 '^verified' "$V" robot arm.urdf $judge plain.$file --links hand,finger --epsilon 6mm
   shows 1 'hand.: refuted: .*in the region .notch. they reach' "$V" robot arm.urdf $judge plain.$file --links hand,finger --epsilon 6mm --epsilon-map $map
+  grep -q "^refuted: .*; farther than asked in the region 'notch' of 'hand'" out.txt || fail "the summary does not name the region: $(grep ^refuted out.txt)"
 done
 
 # The command that is printed decides it as it is, whatever the lengths are stated in.

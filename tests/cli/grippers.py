@@ -253,6 +253,54 @@ def fingers_that_are_there_already_close(folder):
         fail(f"still, off: {done.returncode} {done.stderr}")
 
 
+def what_is_held_without_a_motion_is_taken(folder):
+    """A function of a user's own says that a thing is in the hand, and no motion goes there: fingers that are there are told to close all the same, and
+    held to it."""
+    calls = [call for node in json.loads((folder / "still-plan.json").read_text())["nodes"] for call in node.get("calls", [])]
+    word = next(call["value"] for call in calls if call["external"] == "grasp" and "o1" in call["arguments"])
+    (folder / "own.kpl").write_text("""domain own
+types: object, container, robot, conf handle, pose handle
+constants: robot arm; container o1; conf home; pose start
+predicates: isHeld(container)
+functions: conf(robot) : conf; pose(container) : pose
+externals: hold(container) : pose
+action hold(?o : container)
+  preconds: K(!isHeld(?o)) & let ?p = extern(hold(?o))
+  effects: add(Kf, isHeld(?o)), add(Kf, pose(?o) = ?p)
+init: K(!isHeld(o1)), K(conf(arm) = home), K(pose(o1) = start)
+goal: K(isHeld(o1))
+""")
+    (folder / "own.py").write_text(f"""import json, sys
+print(json.dumps({{"kaboum_externals": 1, "functions": ["hold"]}}), flush=True)
+for line in sys.stdin:
+    if "function" in json.loads(line):
+        print(json.dumps({{"value": {word!r}}}), flush=True)
+""")
+    task = ["own.kpl", "--scene", "still.json", "--process", f"{sys.executable} own.py"]
+    done = tool(folder, "kaboum-plan", "solve", *task, "-o", "own-plan.json", "--no-cache")
+    if done.returncode != 0:
+        fail(f"own: {done.returncode} {done.stderr}")
+    for robot, end in ((DRIVER, "goal"), (f"{sys.executable} liar.py", "elsewhere")):
+        done = subprocess.run([TOOLS / "kaboum-plan", "run", *task, "--plan", "own-plan.json", "--robot", robot, "--journal", "own.jsonl", "--report", "own.json"], cwd=folder,
+                              capture_output=True, text=True, timeout=300, env=dict(os.environ, PYTHONPATH=str(ROOT / "python/kaboum")))
+        # That the thing is in the hand at once is seen by the judge.
+        report = json.loads((folder / "own.json").read_text())
+        if done.returncode != 1 or report["driver"]["end"] != end or (end == "goal" and not report["jumps"]):
+            fail(f"own, {end}: {done.returncode} {report['driver']} {done.stderr}")
+        told = [json.loads(line["told"]) for line in map(json.loads, (folder / "own.jsonl").read_text().splitlines()) if "told" in line]
+        (take,) = [m for m in told if m["do"] == "take"]
+        if any(m["do"] == "move" for m in told) or take["object"] != "o1" or take["gripper"]["from"] != [0.0135] or take["gripper"]["to"] != [0.0135]:
+            fail(f"own, {end}: {take}")
+    # With fingers elsewhere at home no motion closes them: that is no plan for a robot.
+    still = json.loads((folder / "still.json").read_text())
+    still["robots"][0]["home"]["finger"] = 0.016
+    (folder / "open.json").write_text(json.dumps(still))
+    task[2] = "open.json"
+    done = tool(folder, "kaboum-plan", "run", *task, "--plan", "own-plan.json", "--robot", DRIVER, "--report", "own.json")
+    if done.returncode != 1 or "no motion of the plan closes or opens it" not in done.stderr:
+        fail(f"own, open: {done.returncode} {done.stdout} {done.stderr}")
+
+
 def motions_of_fingers_are_such(folder):
     """Plans of others: fingers close and open by motions of their own, or the plan is not carried out."""
     def run(change):
@@ -333,6 +381,7 @@ def main():
         paths_keep_fingers_where_they_hold(folder)
         configurations_are_free_wherever_fingers_stop(folder)
         fingers_that_are_there_already_close(folder)
+        what_is_held_without_a_motion_is_taken(folder)
         motions_of_fingers_are_such(folder)
         engines_claim_nothing(folder)
 

@@ -35,6 +35,9 @@ shows 0 'surface claim: verified: every point of the union' "$V" mesh --inner ba
 json judged.json "r['verdict'] == 'verified' and r['claims']['depth']['bound'] == 0.2"
 shows 1 'depth: refuted: .* is in no ball' "$V" mesh --inner bar.off in.glb --epsilon 0.1
 expect 1 'note: the set was made to lie inside: bound-verify mesh --inner bar.off in.glb decides that' "$V" cover bar.off in.glb
+# With the options that it was asked with.
+sed 's/^\([0-9.]*\) \([0-9.]*\) \([0-9.]*\)$/\10 \20 \30/' bar.off >'ten times.off'
+expect 1 "bound-verify mesh --inner 'ten times.off' in.glb --scale 0.1 --claims solid --epsilon 0.2 --prepare decides that" "$V" cover 'ten times.off' in.glb --scale 0.1 --claims solid --epsilon 0.2 --prepare
 # What is printed decides it as it is: of sets inside and outside, by epsilon and by number, scaled, in parts, of other formats.
 cp bar.off bar
 sed 's/^3 0 2 1$/3 0 1 2/' bar.off >turned.off
@@ -122,6 +125,7 @@ a, b = json.load(open("judged.json")), json.load(open("one.json"))
 assert a["count"] == b["count"] and [l["spheres"] for l in a["links"]] == [l["spheres"] for l in b["links"]]
 P
 done
+grep -q -- '-\\-epsilon' arm.srdf || fail "the comment has other options: $(head -5 arm.srdf)"
 expect 2 'link_sphere_approximation' "$B" arm.urdf -o arm.txt --bodies spheres --epsilon 0.4
 # So many for all links: no link is farther than it has to be.
 expect 0 '' "$B" arm.urdf -o twelve.yaml --bodies spheres --robot-bodies 12 --effort fast --no-cache --report twelve.json
@@ -200,6 +204,11 @@ sed '/hand:/,$d' one.yaml >base.yaml
 shows 1 "^refuted: 1 sphere holds 0 of 2 links; .* 0 links none is farther than 0.1; uncovered, without a sphere: 'hand'" "$V" robot arm.urdf --spheres base.yaml --epsilon 0.1 --report base.json
 json base.json "r['uncovered'] == ['hand'] and 'distance' not in r['links'][1]['claims']"
 shows 1 "^link 'hand': refuted: uncovered: it has no spheres$" "$V" robot arm.urdf --spheres base.yaml --epsilon 0.1
+# A link that has no shape but a point is none that could be covered, and that is said.
+sed '/<joint/i <link name="dot"><collision><geometry><sphere radius="0"/></geometry></collision></link>' arm.urdf |
+  sed '/<joint/a <joint name="k" type="fixed"><parent link="base"/><child link="dot"/></joint>' >dot.urdf
+expect 0 "link 'dot' has no shape but points: nothing of it is judged" "$V" robot dot.urdf arm.yaml --report dot.json
+json dot.json "r['verdict'] == 'verified' and r['uncovered'] == [] and len(r['links']) == 2"
 sed '/<joint/i <link name="drawn"><visual><geometry><box size="1 1 1"/></geometry></visual></link>' arm.urdf |
   sed '/<joint/a <joint name="k" type="fixed"><parent link="base"/><child link="drawn"/></joint>' >drawn.urdf
 expect 0 "link 'drawn' has no collision shape, only visual ones: nothing of this is judged" "$V" robot drawn.urdf arm.yaml
@@ -227,6 +236,7 @@ expect 1 "collision_link_names names 'hand', without a sphere here: is the file 
 # Spherised URDF; and shapes of it that are no spheres.
 sed 's|<mesh filename="bar.off"/>|<sphere radius="9"/>|; s|<box size="0.1 0.1 1"/>|<sphere radius="0.6"/>|' arm.urdf >spheres.urdf
 shows 0 '^verified' "$V" robot arm.urdf --spheres spheres.urdf
+expect 0 "link 'dot' has no shape but points: nothing of it is judged" "$V" robot dot.urdf --bodies spheres.urdf
 expect 3 'are to be spheres' "$V" robot arm.urdf --spheres arm.urdf
 # Frames elsewhere: at other values of the joints than 0, and under a root of another name.
 cat >turning.urdf <<'U'

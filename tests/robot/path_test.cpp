@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/robot/path.h>
+#include <kaboum/robot/path_derivatives.h>
 
 #include <cmath>
 #include <random>
@@ -106,12 +107,13 @@ TEST(Path, TrajectoriesOfRosMoveItAndCuRobo) {
             (Path{{1, 2}, {3, 4}}));
   EXPECT_EQ(parse_path_json(R"({"name": ["x"], "position": [1]})", "p").waypoints, (Path{{1}}));
   // Derivatives, as many as there are joints, are those of their point.
-  const NamedPath spline = parse_path_json(
+  PathDerivatives spline;
+  parse_path_json(
       R"({"joint_names": ["a", "b"], "points": [
         {"positions": [1, 2], "velocities": [0.5, 1], "accelerations": [3, 4], "time_from_start": 0},
         {"positions": [1, 2], "velocities": [0.5], "accelerations": [3, "x"], "time_from_start": 1},
         {"positions": [1, 2], "time_from_start": 2}]})",
-      "p");
+      "p", spline);
   EXPECT_EQ(spline.velocities, (Path{{0.5, 1}, {}, {}}));
   EXPECT_EQ(spline.accelerations, (Path{{3, 4}, {}, {}}));
   // Times that are all the same are none.

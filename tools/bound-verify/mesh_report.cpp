@@ -99,12 +99,31 @@ std::string line_of_points(const verify::PointClaim& claim, const MeshCase& run)
          (claim.faces == 1 ? " face" : " faces") + " in all)";
 }
 
+/// The options that say how files are read and judged, as the other command takes them as well.
+std::string option_words(const VerifyMeshOptions& o) {
+  std::string out;
+  if (!o.original_format.name.empty())
+    out += " --input-format " + shell_word(o.original_format.name);
+  if (!o.original_format.importer.empty())
+    out += " --importer " + shell_word(o.original_format.importer);
+  if (!o.approximation_format.empty())
+    out += " --approximation-format " + shell_word(o.approximation_format);
+  if (!o.unit.unit.empty()) out += " --unit " + shell_word(o.unit.unit);
+  out += o.unit.words();
+  if (o.how.claims != verify::Claims::All)
+    out += std::string(" --claims ") + verify::name_of(o.how.claims);
+  if (o.how.epsilon) out += " --epsilon " + shell_word(o.how.epsilon->text());
+  if (o.how.prepare) out += " --prepare";
+  if (o.how.drop_sheets) out += " --drop-sheets";
+  return out;
+}
+
 /// The command that a set is judged with, where its record says that it is of the other direction.
 std::string other_command(const MeshCase& run) {
   const bool cover = run.asked.relation == Relation::Cover;
   const std::string& direction = run.approximation.set.provenance.direction;
-  const std::string files =
-      " " + shell_word(run.asked.original) + " " + shell_word(run.asked.approximation);
+  const std::string files = " " + shell_file(run.asked.original) + " " +
+                            shell_file(run.asked.approximation) + option_words(run.asked);
   if (cover && direction == "inner")
     return "the set was made to lie inside: bound-verify mesh --inner" + files + " decides that";
   if (!cover && direction == "outer")

@@ -395,6 +395,7 @@ struct AllLinks {
   Answer answer = Answer::Verified;
   std::size_t held = 0, within = 0, judged = 0, count = 0;
   std::vector<std::string> uncovered;  ///< links without a shape in the file
+  std::vector<std::string> farther;    ///< regions in which bodies are farther than these allow
   Json links = Json::array();
 
   void take(const LinkAnswer& link) {
@@ -404,6 +405,7 @@ struct AllLinks {
     within += link.reach.all && link.reach.all->answer == Answer::Verified ? 1 : 0;
     count += link.shapes;
     if (link.shapes == 0) uncovered.push_back(link.name);
+    verify::add_farther(link.name, link.reach, farther);
     links.push_back(json_of(link));
   }
 
@@ -413,6 +415,7 @@ struct AllLinks {
     if (epsilon)
       out +=
           "; of " + counted(within, "link", "links") + " none is farther than " + number(*epsilon);
+    out += verify::text_of_farther(farther);
     if (!uncovered.empty()) out += "; uncovered, without a shape: " + robot::names_of(uncovered);
     return out;
   }
@@ -421,7 +424,8 @@ struct AllLinks {
 /// Judges the links that have shapes.
 AllLinks judge_links(const VerifyRobotOptions& o, const robot::RobotFile& robot,
                      const robot::RobotFile& bodies,
-                     const std::function<void(const std::string&)>& say) {
+                     const std::function<void(const std::string&)>& say,
+                     const std::function<void(const std::string&)>& note) {
   const std::optional<double> epsilon = length_of_reach(o.how.epsilon);
   const robot::LinkBounds of_links = bounds_of(o, robot);
   AllLinks out;
@@ -430,13 +434,15 @@ AllLinks judge_links(const VerifyRobotOptions& o, const robot::RobotFile& robot,
     if (!o.how.shapes.has(link)) continue;
     std::vector<Geometry> flat, round;
     for (const Geometry& g : o.how.shapes.shapes_of(link))
-      (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
-          .push_back(g);
+      if (!robot::is_point(g))
+        (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
+            .push_back(g);
     const geom::Mesh mesh = robot::exact_shapes(flat, files);
     const auto index = bodies.robot.find_link(link.name);
     const robot::Link none{link.name, {}, {}};
     const robot::Link& own = index ? bodies.robot.links[*index] : none;
     if (mesh.triangles.empty() && round.empty()) {
+      if (!o.how.shapes.shapes_of(link).empty()) note(verify::text_of_points(link.name));
       if (own.collision.empty() || !verify::asks_how_far(link.name, epsilon, of_links)) continue;
       out.answer = verify::worse(out.answer, Answer::Undecided);
       out.links.push_back(json_of_bare(own));
@@ -475,7 +481,9 @@ int verify_bodies(const VerifyRobotOptions& o, const CommonOptions& common) {
   const auto say = [&](const std::string& line) {
     if (!common.quiet) (common.report == "-" ? std::cerr : std::cout) << line << std::endl;
   };
-  AllLinks all = judge_links(o, robot, bodies, say);
+  AllLinks all = judge_links(o, robot, bodies, say, [&](const std::string& line) {
+    log(common.quiet, "note: " + o.original + ": " + line);
+  });
   const robot::ShapeChoice& shapes = o.how.shapes;
   for (const std::string& note :
        robot::notes_on({{}, robot::bare_links(robot.robot, shapes.visual, shapes.links).other},

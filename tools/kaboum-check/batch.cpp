@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/filter/batch_checker.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/world/finger_paths.h>
 #include <kaboum/world/gripper.h>
 #include <kaboum/world/motion_check.h>
 

@@ -55,10 +55,13 @@ std::string origin_of(const std::string& what, const robot::RobotFile& robot,
          std::string(KABOUM_VERSION) + " " + parameters + "\nsha256 " + robot.sha256;
 }
 
-std::string comment_of_xml(std::string text) {
-  for (std::size_t i = 1; i < text.size(); ++i)
-    if (text[i] == '-' && text[i - 1] == '-') text[i] = '_';
-  return " " + text + " ";
+std::string comment_of_xml(const std::string& text) {
+  std::string out = " ";
+  for (const char c : text) {
+    if (c == '-' && out.back() == '-') out += '\\';
+    out += c;
+  }
+  return out + " ";
 }
 
 std::string text_of(const tinyxml2::XMLDocument& document) {

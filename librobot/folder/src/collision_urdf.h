@@ -19,8 +19,10 @@ std::string decimals(const geom::Vec3& p, const char* between = " ");
 std::string origin_of(const std::string& what, const robot::RobotFile& robot,
                       const std::string& parameters);
 
-/// A text as a comment of XML, which two hyphens would end.
-std::string comment_of_xml(std::string text);
+/// A text as a comment of XML, in which there are no two hyphens: "-\-epsilon", which shells read
+/// as
+/// "--epsilon".
+std::string comment_of_xml(const std::string& text);
 
 std::string text_of(const tinyxml2::XMLDocument& document);
 

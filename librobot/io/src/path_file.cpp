@@ -5,6 +5,7 @@
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 #include <kaboum/io/number_array.h>
+#include <kaboum/robot/path_derivatives.h>
 
 #include <algorithm>
 #include <cctype>
@@ -171,7 +172,8 @@ Json to_json(const YAML::Node& node, const std::string& name, std::size_t& left,
 
 /// A path in YAML, by the JSON that says the same. Documents without anything in them, as
 /// `ros2 topic echo` ends messages with, are passed over.
-NamedPath parse_path_yaml(std::string_view text, const std::string& name) {
+NamedPath parse_path_yaml(std::string_view text, const std::string& name,
+                          PathDerivatives& derivatives) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::InvalidInput, name + ": " + what);
   };
@@ -195,12 +197,13 @@ NamedPath parse_path_yaml(std::string_view text, const std::string& name) {
   } catch (const Json::exception&) {
     refuse("text that is not UTF-8");
   }
-  return parse_path_json(json, name);
+  return parse_path_json(json, name, derivatives);
 }
 
 #else
 
-NamedPath parse_path_yaml(std::string_view /*text*/, const std::string& /*name*/) {
+NamedPath parse_path_yaml(std::string_view /*text*/, const std::string& /*name*/,
+                          PathDerivatives& /*derivatives*/) {
   throw Error(ErrorCode::NotBuilt, "paths in YAML need a build with yaml-cpp");
 }
 
@@ -242,7 +245,8 @@ NamedPath path_of_array(const std::vector<char>& bytes, const Robot& robot,
 }
 
 NamedPath parse_path(const std::vector<char>& bytes, const std::string& file, const Robot& robot,
-                     const PathOptions& options, const std::string& name) {
+                     const PathOptions& options, const std::string& name,
+                     PathDerivatives& derivatives) {
   if (file.ends_with(".npz"))
     throw Error(ErrorCode::InvalidInput,
                 name + ": an archive of arrays; save one array as .npy, with numpy.save");
@@ -251,8 +255,8 @@ NamedPath parse_path(const std::vector<char>& bytes, const std::string& file, co
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start != std::string_view::npos && (text[start] == '{' || text[start] == '['))
-    return parse_path_json(text, name);
-  if (is_yaml(text, file)) return parse_path_yaml(text, name);
+    return parse_path_json(text, name, derivatives);
+  if (is_yaml(text, file)) return parse_path_yaml(text, name, derivatives);
   NamedPath out = parse_path_csv(text, name);
   require_one_reading(text, out, robot, name);
   return out;
@@ -264,7 +268,7 @@ namespace {
 
 /// Derivatives of the waypoints in the robot's order; those of fixed joints are 0. Empty: none are
 /// stated.
-/// @param rows  NamedPath::velocities or accelerations
+/// @param rows  of PathDerivatives
 Path arranged_derivatives(const NamedPath& path, Path rows, const char* what, const Robot& robot,
                           const PathOptions& options, const std::string& name) {
   const auto none = std::ranges::find_if(rows, [](const auto& row) { return row.empty(); });
@@ -292,7 +296,8 @@ bool is_any_not_zero(const Path& rows) {
 TimedPath read_arranged(const std::string& file, const Robot& robot, const PathOptions& options,
                         bool uses_times, bool derivatives, std::vector<std::string>& notes) {
   const std::string name = file == "-" ? "standard input" : file;
-  const NamedPath path = parse_path(io::read_file(file), file, robot, options, name);
+  PathDerivatives stated;
+  const NamedPath path = parse_path(io::read_file(file), file, robot, options, name, stated);
   if (!uses_times)
     for (const std::size_t column : robot::time_columns(path, robot))
       notes.push_back(name + ": the column '" + path.joints[column] +
@@ -301,10 +306,10 @@ TimedPath read_arranged(const std::string& file, const Robot& robot, const PathO
   TimedPath out;
   if (derivatives) {
     out.velocities =
-        arranged_derivatives(path, path.velocities, "velocities", robot, options, name);
+        arranged_derivatives(path, stated.velocities, "velocities", robot, options, name);
     out.accelerations =
-        arranged_derivatives(path, path.accelerations, "accelerations", robot, options, name);
-  } else if (is_any_not_zero(path.velocities) || is_any_not_zero(path.accelerations)) {
+        arranged_derivatives(path, stated.accelerations, "accelerations", robot, options, name);
+  } else if (is_any_not_zero(stated.velocities) || is_any_not_zero(stated.accelerations)) {
     notes.push_back(name +
                     ": velocities and accelerations are passed over: between points, joints move "
                     "straight; a controller that makes splines of them leaves that" +

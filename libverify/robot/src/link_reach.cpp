@@ -190,6 +190,25 @@ std::string text_of_bare_link(const std::string& link) {
          "': undecided: it has no shape that bodies could be near to, and has bodies";
 }
 
+void add_farther(const std::string& link, const LinkReach& reach, std::vector<std::string>& out) {
+  for (const LinkReach::InRegion& one : reach.regions)
+    if (one.claim.answer == Answer::Refuted) out.push_back(one.name + " of '" + link + "'");
+}
+
+std::string text_of_farther(const std::vector<std::string>& regions) {
+  constexpr std::size_t kNamed = 5;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(regions.size(), kNamed); ++i)
+    out += (i == 0 ? "; farther than asked in the region " : ", ") + regions[i];
+  if (regions.size() > kNamed)
+    out += " and " + std::to_string(regions.size() - kNamed) + " more";
+  return out;
+}
+
+std::string text_of_points(const std::string& link) {
+  return "link '" + link + "' has no shape but points: nothing of it is judged";
+}
+
 LinkReach decide_link_reach(const geom::ConvexSet& inside, const geom::ConvexSet& round,
                             const std::string& link, const std::vector<Geometry>& shapes,
                             robot::MeshFiles& files, std::optional<double> epsilon,

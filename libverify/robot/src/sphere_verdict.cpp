@@ -235,7 +235,9 @@ void note_far_spheres(SpheresVerdict& out) {
 
 void sum_up(SpheresVerdict& out) {
   double area = 0, lower = 0, upper = 0;
+  std::vector<std::string> farther;
   for (const LinkSpheresVerdict& link : out.links) {
+    add_farther(link.link, link.reach, farther);
     out.answer = worse(out.answer, link.answer);
     out.spheres += link.spheres;
     if (link.spheres == 0) out.uncovered.push_back(link.link);
@@ -257,6 +259,7 @@ void sum_up(SpheresVerdict& out) {
   if (out.epsilon)
     out.sentence += "; of " + counted(out.within, "link", "links") + " none is farther than " +
                     number_text(*out.epsilon);
+  out.sentence += text_of_farther(farther);
   if (!out.uncovered.empty())
     out.sentence += "; uncovered, without a sphere: " + robot::names_of(out.uncovered);
 }
@@ -282,8 +285,9 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     if (!shapes.has(link)) continue;
     std::vector<Geometry> flat, round;
     for (const Geometry& g : shapes.shapes_of(link))
-      (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
-          .push_back(g);
+      if (!robot::is_point(g))
+        (g.shape == Geometry::Shape::Mesh || g.shape == Geometry::Shape::Box ? flat : round)
+            .push_back(g);
     LinkSpheresVerdict one;
     one.link = link.name;
     one.index = index;
@@ -291,6 +295,7 @@ SpheresVerdict decide_spheres(const robot::RobotFile& robot, const robot::Sphere
     for (const robot::LinkSpheres& given : spheres.links)
       if (given.link == link.name) one.balls = given.balls;
     if (one.mesh.triangles.empty() && round.empty()) {
+      if (!shapes.shapes_of(link).empty()) out.notes.push_back(text_of_points(link.name));
       if (one.balls.bodies.empty() || !asks_how_far(link.name, epsilon, bounds)) continue;
       out.answer = worse(out.answer, Answer::Undecided);
       out.notes.push_back(text_of_bare_link(link.name));

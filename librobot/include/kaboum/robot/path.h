@@ -20,9 +20,6 @@ struct NamedPath {
   Path waypoints;
   std::vector<std::size_t> lines = {};  ///< of the waypoints, in a file that has lines; else empty
   std::string joints_at = {};           ///< where the joints are named: "line 1"; empty: not known
-  /// Derivatives by time of the joints, as a JointTrajectory has them: a row for each waypoint,
-  /// without columns of times; rows without numbers where it has none, empty: it is none.
-  Path velocities = {}, accelerations = {};
   std::vector<std::string> notes = {};  ///< things a user should know; one sentence each
 };
 
@@ -40,7 +37,7 @@ std::string csv_field(const std::string& joint);
 /// {"joints": ["a", …], "waypoints": [[0, …], …]}, "joints" optional; or the waypoints alone. Or a
 /// trajectory as others have it, times and all: ROS's JointTrajectory, alone or in MoveIt's
 /// RobotTrajectory, DisplayTrajectory and goals; a JointState with a row for each instant, as
-/// cuRobo's. Its times are a column "time_from_start", the last one. docs/formats.md.
+/// cuRobo's. Its times are a column "time_from_start". docs/formats.md.
 /// @throws Error{InvalidInput} naming the member; for several trajectories, and for joints of
 ///   several degrees of freedom that move.
 NamedPath parse_path_json(std::string_view text, const std::string& name);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <kaboum/world/motion_check.h>
 #include <kaboum/world/world.h>
 
 #include <optional>
@@ -70,22 +69,9 @@ std::vector<double> finger_room_along(const World& world, std::size_t robot,
                                       std::span<const std::vector<double>> path,
                                       const std::string& what);
 
-/// Paths of a robot that moves, and of those that stand beside it and hold something, with room for
-/// their fingers: what check_motions finds free is so wherever these stop. Empty: no finger may be
-/// elsewhere than it is.
-/// @param state  of the others
-/// @param what  of the path, in messages: "waypoint"
-/// @throws as finger_room_along
-std::vector<RobotPath> paths_with_fingers(const World& world, const WorldState& state,
-                                          std::size_t robot, const robot::Path& path,
-                                          const std::string& what);
-
 /// The joints of a robot's grippers that hold something, by their variables.
 std::vector<std::uint32_t> holding_joints(
     std::size_t robot, const std::vector<std::optional<Attachment>>& attachments);
-
-/// Whether any robot holds something by a gripper with joints.
-bool holds_by_fingers(const WorldState& state);
 
 /// "arm/left and arm/right": the links that may touch what is held.
 std::string name_pads(const World& world, const Attachment& held);

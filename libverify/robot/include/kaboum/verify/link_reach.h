@@ -62,6 +62,16 @@ bool asks_how_far(const std::string& link, std::optional<double> epsilon,
 /// What is said of bodies of a link without shapes, where it is asked how far they are from them.
 std::string text_of_bare_link(const std::string& link);
 
+/// Adds the regions of a link in which its bodies are farther from it than these allow: "'notch' of
+/// 'hand'".
+void add_farther(const std::string& link, const LinkReach& reach, std::vector<std::string>& out);
+/// The end of a summary that names them: "; farther than asked in the region 'notch' of 'hand'";
+/// empty: there are none.
+std::string text_of_farther(const std::vector<std::string>& regions);
+
+/// Of a link whose shapes are points: nothing of it can be held, or missed.
+std::string text_of_points(const std::string& link);
+
 /// Decides how far a link's bodies reach beyond its shapes. Regions are known up to rounding: one
 /// that holds what is meant verifies, one that lies in it refutes.
 /// @param inside, round  as of verify_link_reach
