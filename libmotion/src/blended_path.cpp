@@ -68,13 +68,13 @@ struct Legs {
   double before = 0, behind = 0;
 };
 
+/// @param before, behind  of the segments, what it may take at most
 /// @param scale  of the segment before it: length by the length of its parameter
-Legs legs_of(double share, double before, double behind, double scale) {
-  const Legs wished{share * std::min(before, kLonger * behind),
-                    share * std::min(behind, kLonger * before)};
+Legs legs_of(double before, double behind, double scale) {
+  const Legs wished{std::min(before, kLonger * behind), std::min(behind, kLonger * before)};
   const double next = scale * (wished.behind / wished.before), most = std::max(next, 1 / next);
   if (most <= kMostScale || most <= std::max(scale, 1 / scale)) return wished;
-  const double equal = share * std::min(before, behind);
+  const double equal = std::min(before, behind);
   return {equal, equal};
 }
 
@@ -121,20 +121,29 @@ bool turns_back(const Values& before, const Values& corner, const Values& after,
 
 BlendedPath::BlendedPath(const robot::Path& path, const Values& shares, const Values& velocity)
     : stops_{0}, at_{0} {
-  if (shares.size() != path.size() ||
-      !std::all_of(shares.begin(), shares.end(), [](double x) { return x >= 0 && x <= 0.5; }))
-    throw Error(ErrorCode::InvalidArgument, "a blend takes a share from 0 to 1/2 of a segment");
+  if (shares.size() != path.size() || !std::all_of(shares.begin(), shares.end(), [](double x) {
+        return x >= 0 && x <= kMostBlend;
+      }))
+    throw Error(ErrorCode::InvalidArgument, "a blend takes a share from 0 to 0.95 of a segment");
   const std::vector<Segment> segments = segments_of(path, velocity);
+  std::vector<bool> stops_behind(segments.size(), true);
+  for (std::size_t i = 0; i + 1 < segments.size(); ++i)
+    stops_behind[i] = shares[segments[i].end] < kLeast ||
+                      turns_back(path[segments[i].begin], path[segments[i].end],
+                                 path[segments[i + 1].end], velocity);
+  // Two blends of one segment share it.
+  const auto most_of = [&](std::size_t i, double share) {
+    const bool alone = i == 0 || stops_behind[i - 1] || stops_behind[i];
+    return segments[i].length * (alone ? share : std::min(share, 0.5));
+  };
   double taken = 0;  // of the segment, by the blend at its beginning
   double scale = 1;  // length of a segment by the length of its parameter
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& here = segments[i];
     const Values &a = path[here.begin], &b = path[here.end];
-    const bool last = i + 1 == segments.size(),
-               stops = last || shares[here.end] < kLeast ||
-                       turns_back(a, b, path[segments[i + 1].end], velocity);
-    const Legs legs =
-        stops ? Legs{} : legs_of(shares[here.end], here.length, segments[i + 1].length, scale);
+    const bool last = i + 1 == segments.size(), stops = stops_behind[i];
+    const double share = shares[here.end];
+    const Legs legs = stops ? Legs{} : legs_of(most_of(i, share), most_of(i + 1, share), scale);
     const double straight = here.length - taken - legs.before;
     const Values direction = stretched(here.direction, scale);
     PathPiece line{here.begin,

@@ -167,9 +167,11 @@ void require_few(const Trajectory& trajectory) {
 /// The largest blends of which all is certified, and the fault of the trajectory where none are.
 /// @param read  the samples of a trajectory, as they are sent or written
 std::optional<Fault> settle_blends(Decider& decider, const robot::Path& path,
-                                   const SpeedLimits& limits, const std::vector<double>& asked,
+                                   const SpeedLimits& limits, std::vector<double> asked,
                                    double rate, std::vector<double>& blends,
                                    const std::function<robot::Path(const Trajectory&)>& read) {
+  // Those between others get no more than a half of their segments.
+  for (std::size_t i = 2; i + 2 < asked.size(); ++i) asked[i] = std::min(asked[i], 0.5);
   blends = likely_blends(decider, path, limits, asked);
   const std::vector<double> room = room_between_samples(limits, rate);
   while (true) {

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/base/similar_name.h>
+#include <kaboum/motion/blended_path.h>
 #include <kaboum/motion/trajectory_options.h>
 
 #include <algorithm>
@@ -61,11 +62,11 @@ const std::vector<Option<TrajectoryOptions>>& trajectory_options() {
           {.name = "blend",
            .text =
                "Goes through corners without a stop, on a curve that takes at most this share of "
-               "each of the two segments; less, or a stop, where that is not certified free. "
-               "0: it stops at each corner",
+               "each of the two segments, and a half of one between two such corners; less, or a "
+               "stop, where that is not certified free. 0: it stops at each corner",
            .values = "SHARE",
            .low = 0,
-           .high = 0.5},
+           .high = kMostBlend},
           [](auto& r) -> auto& { return r.blend; }),
       option<R>(
           {.name = "max-velocity",
@@ -96,8 +97,8 @@ const std::vector<Option<TrajectoryOptions>>& trajectory_options() {
 }
 
 SpeedLimits speed_limits(const TrajectoryOptions& o, const robot::Robot& robot) {
-  if (!(o.blend >= 0 && o.blend <= 0.5))
-    throw Error(ErrorCode::InvalidArgument, "«blend» must be from 0 to 0.5");
+  if (!(o.blend >= 0 && o.blend <= kMostBlend))
+    throw Error(ErrorCode::InvalidArgument, "«blend» must be from 0 to 0.95");
   if (o.blend > 0 && o.time_optimal)
     throw Error(ErrorCode::InvalidArgument,
                 "«time-optimal» is of motions that stop at each corner; leave it out with «blend»");

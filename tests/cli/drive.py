@@ -404,7 +404,7 @@ def main():
         done, _ = run(scenario, None, "--replay-journal", "blended.jsonl")
         if done.returncode != 3 or "something else" not in done.stderr:
             fail(f"repeated from rest to rest: exit code {done.returncode}: {done.stderr}")
-        for wrong, word in ((("--blend", "0.6"), "blend"), (("--max-jerk", "5"), "max-jerk"), (("--blend", "0.5", "--time-optimal"), "time-optimal"),
+        for wrong, word in ((("--blend", "0.96"), "blend"), (("--max-jerk", "5"), "max-jerk"), (("--blend", "0.5", "--time-optimal"), "time-optimal"),
                             (("--max-velocity", "j99=1"), "no robot of the scene has a joint")):
             done, _ = run(scenario, DRIVER, *wrong)
             if done.returncode != 2 or word not in done.stderr:

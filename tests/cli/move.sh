@@ -216,7 +216,7 @@ expect 0 '' "$M" cell.json --from=0.5,0 --to 1,1 -o p.csv --trajectory rests.yml
 shows 0 'free at every instant' "$BIN/kaboum-check" cell.json --path rests.yml
 expect 2 'time-optimal.*leave it out with' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --blend 0.5 --time-optimal
 expect 2 'max-jerk.*blend' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --max-jerk 5
-expect 2 'blend' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --blend 0.6
+expect 2 'blend' "$M" cell.json --from=0.5,0 --to 1,1 -o none.csv --trajectory none2.csv --blend 0.96
 expect 2 'radians' "$M" cell.json --from=30,0 --to 60,0 --degrees -o none.csv --trajectory none2.yaml
 # Reasons.
 expect 1 'the start is not free: arm/tip and box' "$M" cell.json --from=0,0 --to 1,1 -o none.csv --report none.json

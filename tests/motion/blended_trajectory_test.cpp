@@ -34,7 +34,7 @@ constexpr std::array kTiny{1e-300, 1e-16, 1e-13, 1e-9, 1e-4};
 
 Corners random_corners(std::uint32_t seed) {
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> value(-2, 2), limit(0.3, 6), share(0, 0.5);
+  std::uniform_real_distribution<double> value(-2, 2), limit(0.3, 6), share(0, kMostBlend);
   Corners out;
   const std::size_t joints = 1 + random() % 6, waypoints = 2 + random() % 6;
   for (std::size_t i = 0; i < waypoints; ++i) {
@@ -98,7 +98,7 @@ double distance_to_segment(const Values& q, const Values& a, const Values& b) {
 }
 
 TEST(BlendedPath, BlendsAreInTheTrianglesOfTheirCorners) {
-  std::size_t blends = 0;
+  std::size_t blends = 0, larger = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     const Corners c = random_corners(seed);
     const BlendedPath curve(c.path, c.shares, c.limits.velocity);
@@ -110,9 +110,12 @@ TEST(BlendedPath, BlendsAreInTheTrianglesOfTheirCorners) {
       std::size_t before = piece.waypoint - 1, after = piece.waypoint + 1;
       while (farthest(c.path[before], corner) <= 1e-14) --before;
       while (farthest(c.path[after], corner) <= 1e-14) ++after;
-      // Of the segments it takes no more than a half.
-      EXPECT_LE(farthest(begin, corner), 0.5 * farthest(c.path[before], corner) + 1e-14);
-      EXPECT_LE(farthest(end, corner), 0.5 * farthest(c.path[after], corner) + 1e-14);
+      // Of the segments it takes no more than it may. (Two of one segment do not overlap: else
+      // their pieces would not join.)
+      const double share = c.shares[piece.waypoint];
+      EXPECT_LE(farthest(begin, corner), share * farthest(c.path[before], corner) + 1e-14);
+      EXPECT_LE(farthest(end, corner), share * farthest(c.path[after], corner) + 1e-14);
+      larger += farthest(begin, corner) > 0.6 * farthest(c.path[before], corner) ? 1 : 0;
       EXPECT_LE(distance_to_segment(begin, c.path[before], corner), 1e-12);
       EXPECT_LE(distance_to_segment(end, c.path[after], corner), 1e-12);
       for (int k = 0; k <= 20; ++k) {
@@ -125,6 +128,7 @@ TEST(BlendedPath, BlendsAreInTheTrianglesOfTheirCorners) {
     }
   }
   EXPECT_GT(blends, 200U);
+  EXPECT_GT(larger, 10U);
 }
 
 TEST(BlendedPath, IsContinuouslyDifferentiableBetweenStops) {
@@ -274,9 +278,9 @@ TEST(BlendedTrajectory, ThousandsOfCornersKeepTheParameterInRange) {
     EXPECT_GT(least, 1e-10);
     EXPECT_LT(most, 1e10);
   }
-  const Corners c = sawtooth(1, 2500);
+  const Corners c = sawtooth(1, 1000);
   const Trajectory t(c.path, c.shares, c.limits, 100);
-  EXPECT_EQ(t.bends().size(), 1U);
+  EXPECT_EQ(t.time_at(999), t.duration());
   Instant before = t.instant(0);
   for (std::size_t k = 1; k < t.samples(); ++k) {
     const Instant now = t.instant(k);
@@ -380,13 +384,16 @@ TEST(BlendedTrajectory, TakesThreeFifthsOfRestToRest) {
     for (double& x : q) x = value(random);
     return q;
   };
-  std::vector<double> shares;
+  std::vector<double> shares, larger;
   for (int k = 0; k < 40; ++k) {
     const robot::Path path{point(), point(), point()};
-    shares.push_back(Trajectory(path, {0, 0.5, 0}, limits, 1000).duration() /
-                     Trajectory(path, limits, 1000).duration());
+    const double rest = Trajectory(path, limits, 1000).duration();
+    shares.push_back(Trajectory(path, {0, 0.5, 0}, limits, 1000).duration() / rest);
+    larger.push_back(Trajectory(path, {0, kMostBlend, 0}, limits, 1000).duration() / rest);
   }
   std::ranges::sort(shares);
+  std::ranges::sort(larger);
+  EXPECT_LE(larger[20], 0.54);
   EXPECT_LE(shares[20], 0.6);
   EXPECT_LE(shares.back(), 0.7);
   // 0.5989 if speeds were not evened out where accelerations change too much.
@@ -410,7 +417,7 @@ TEST(BlendedTrajectory, WhatIsWrongIsRefused) {
   const SpeedLimits one{{1}, {1}, {1}};
   EXPECT_THROW(Trajectory({}, Values{}, one, 1000), Error);
   EXPECT_THROW(Trajectory({{0}, {1}}, {0}, one, 1000), Error);
-  EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, 0.51, 0}, one, 1000), Error);
+  EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, 0.96, 0}, one, 1000), Error);
   EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, -0.1, 0}, one, 1000), Error);
   EXPECT_THROW(Trajectory({{0}, {1}, {2}}, {0, std::nan(""), 0}, one, 1000), Error);
   EXPECT_THROW(Trajectory({{0}, {1}}, {0, 0}, {{1}, {1}, {}}, 1000), Error);
@@ -686,7 +693,7 @@ TEST_F(RoundAPlate, OptionsThatContradictAreRefused) {
   const world::Checker checker(world_);
   const world::WorldState state = initial_state(world_);
   for (const TrajectoryOptions& wrong :
-       {TrajectoryOptions{.time_optimal = true, .blend = 0.5}, TrajectoryOptions{.blend = 0.6},
+       {TrajectoryOptions{.time_optimal = true, .blend = 0.5}, TrajectoryOptions{.blend = 0.96},
         TrajectoryOptions{.jerks = {{"", 5.0}}},
         TrajectoryOptions{.blend = 0.5, .jerks = {{"", 0}}}})
     EXPECT_THROW(sample_path({checker, state, 0}, path_, wrong, 1e-5), Error);

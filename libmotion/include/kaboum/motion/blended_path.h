@@ -27,6 +27,9 @@ struct PathPiece {
   [[nodiscard]] CurvePoint at(double s) const;
 };
 
+/// The largest share of a segment that a blend may take.
+inline constexpr double kMostBlend = 0.95;
+
 /// A polyline of which corners are replaced by parabolas: continuously differentiable between its
 /// stops. Each blend is inside the triangle of its ends and the corner
 /// (docs/algorithms/motion-planning.md#blended-corners).
@@ -36,11 +39,13 @@ struct PathPiece {
 /// as that here. Behind a blend it is another one, so that derivatives are continuous.
 class BlendedPath {
  public:
-  /// @param shares  for each waypoint, 0 to 1/2: the blend takes this share of the shorter one of
-  ///   the two segments, and of the longer one this share as well or, if that is less, half as
-  ///   much more than of the shorter one. Below 1e-6 the path stops there. Those of first and last
-  ///   waypoint, and of waypoints that are the same as the one before, to 1e-14, are not looked at.
-  ///   Where a path turns back, by more than 179° in the velocities' units, it stops as well.
+  /// @param shares  for each waypoint, 0 to kMostBlend: the blend takes at most this share of each
+  /// of
+  ///   the two segments, and at most a half of one at the other end of which there is a blend as
+  ///   well; of one of them no more than half as much again as of the other. Below 1e-6 the path
+  ///   stops there. Those of first and last waypoint, and of waypoints that are the same as the one
+  ///   before, to 1e-14, are not looked at. Where a path turns back, by more than 179° in the
+  ///   velocities' units, it stops as well.
   /// @param velocity  > 0, of each variable
   /// @throws Error{InvalidArgument} for shares that are none, or as many as there are no waypoints.
   BlendedPath(const robot::Path& path, const std::vector<double>& shares,

@@ -58,7 +58,8 @@ void require_free(const MovingRobot& moving, const robot::Path& path, double res
 /// `between_samples` of them (docs/algorithms/motion-planning.md#blended-corners). A blend that is
 /// not is made smaller by a quarter, and below 1/32 left out; so is one, of several, that is
 /// nearest in time to where the whole is not.
-/// @param asked  0 to 1/2, of each waypoint
+/// @param asked  0 to kMostBlend, of each waypoint; of those between other corners at most 1/2
+/// counts
 /// @param resolution  as of require_free
 /// @return nullopt: without blends it is not free either, for certain
 /// @throws as Trajectory, check_motion; Error{LimitReached} for more than 5,000,000 samples
