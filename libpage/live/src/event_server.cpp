@@ -462,7 +462,8 @@ struct EventServer::Data {
       if (c.request.size() > kMostRequest) answer(c, refusal(431), {}, now);
       return;
     }
-    const Request request = read_request(std::string_view(c.request).substr(0, end + 4), hosts, folder);
+    const Request request =
+        read_request(std::string_view(c.request).substr(0, end + 4), hosts, folder);
     if (request.refused != 0) {
       answer(c, refusal(request.refused), {}, now);
       return;

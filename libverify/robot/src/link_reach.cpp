@@ -200,8 +200,7 @@ std::string text_of_farther(const std::vector<std::string>& regions) {
   std::string out;
   for (std::size_t i = 0; i < std::min(regions.size(), kNamed); ++i)
     out += (i == 0 ? "; farther than asked in the region " : ", ") + regions[i];
-  if (regions.size() > kNamed)
-    out += " and " + std::to_string(regions.size() - kNamed) + " more";
+  if (regions.size() > kNamed) out += " and " + std::to_string(regions.size() - kNamed) + " more";
   return out;
 }
 

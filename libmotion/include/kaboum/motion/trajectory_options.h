@@ -12,8 +12,8 @@ namespace kaboum::motion {
 struct TrajectoryOptions {
   bool time_optimal = false;  ///< Profile::Trapezoid, else Quintic
   double rate = 1000;         ///< samples per second
-  /// Most of a segment, 0 to kMostBlend, that a blend of a corner at its end takes, and a half where
-  /// two are on one; 0: none, it stops.
+  /// Most of a segment, 0 to kMostBlend, that a blend of a corner at its end takes, and a half
+  /// where two are on one; 0: none, it stops.
   double blend = 0;
   /// By joint; the empty name is of all joints that are not named. [rad/s or m/s; the same per s,
   /// and per s²]

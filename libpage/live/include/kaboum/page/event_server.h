@@ -23,12 +23,12 @@ struct EventServerOptions {
 /// One thread, which is behind all others where there is more to do than cores for it. It listens
 /// on 127.0.0.1 alone, and answers GET and HEAD of its address, and of "events" below it
 /// (server-sent events, from the first one on or after the header Last-Event-ID). The address has a
-/// secret of 128 bits: other users of the machine do not know it. It reads requests only, and nothing of them but
-/// the first line and the headers Host, Origin, Sec-Fetch-Site and Last-Event-ID. Who has events of
-/// an earlier server at the port is told that there are none (204). A request to another host's
-/// name is refused: pages of others cannot read this one by having their name lead here. At most 64
-/// connections are open; a request has 8 KiB and 5 s, and who takes nothing of what there is for
-/// 20 s is cut off.
+/// secret of 128 bits: other users of the machine do not know it. It reads requests only, and
+/// nothing of them but the first line and the headers Host, Origin, Sec-Fetch-Site and
+/// Last-Event-ID. Who has events of an earlier server at the port is told that there are none
+/// (204). A request to another host's name is refused: pages of others cannot read this one by
+/// having their name lead here. At most 64 connections are open; a request has 8 KiB and 5 s, and
+/// who takes nothing of what there is for 20 s is cut off.
 class EventServer {
  public:
   /// Listens from here on.
