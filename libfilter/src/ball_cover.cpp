@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 namespace kaboum::filter::detail {
@@ -34,18 +35,6 @@ double magnitude_of(const std::vector<Vec3>& points) {
   double most = 0;
   for (const Vec3& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
   return most;
-}
-
-/// Nearly the smallest ball round points (Bădoiu and Clarkson, 2003).
-Ball ball_round(const std::vector<Vec3>& points) {
-  Vec3 center = Vec3::Zero();
-  for (const Vec3& p : points) center += p / static_cast<double>(points.size());
-  const auto farthest = [&] {
-    return *std::ranges::max_element(points, {},
-                                     [&](const Vec3& p) { return (p - center).squaredNorm(); });
-  };
-  for (int i = 1; i <= 200; ++i) center += (farthest() - center) / (i + 1);
-  return {center, (farthest() - center).norm() * (1 + 0x1p-40) + kCuts * magnitude_of(points)};
 }
 
 void measure(Part& part) {
@@ -113,6 +102,18 @@ Part half_of(const Part& part, double side) {
 
 }  // namespace
 
+// Bădoiu and Clarkson, 2003.
+Ball ball_round(const std::vector<Vec3>& points) {
+  Vec3 center = Vec3::Zero();
+  for (const Vec3& p : points) center += p / static_cast<double>(points.size());
+  const auto farthest = [&] {
+    return *std::ranges::max_element(points, {},
+                                     [&](const Vec3& p) { return (p - center).squaredNorm(); });
+  };
+  for (int i = 1; i <= 200; ++i) center += (farthest() - center) / (i + 1);
+  return {center, (farthest() - center).norm() * (1 + 0x1p-40) + kCuts * magnitude_of(points)};
+}
+
 Ball inner_ball(const geom::ConvexBody& body, const Vec3& near) {
   const geom::Mesh& core = body.core;
   if (core.triangles.empty()) {
@@ -171,18 +172,25 @@ std::vector<BallCover> cover_by_balls(const std::vector<const collide::BoundingS
     }
   }
   for (; !parts.empty(); parts.pop()) done.push_back(parts.top());
+  // Of each body, the large ones first.
+  std::ranges::stable_sort(done, [](const Part& a, const Part& b) {
+    if (a.set != b.set) return a.set < b.set;
+    if (a.body != b.body) return a.body < b.body;
+    return a.ball.radius > b.ball.radius;
+  });
   std::vector<BallCover> out(sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) out[s].bodies.assign(sets[s]->size() + 1, 0);
   for (const Part& part : done) {
+    BallCover& cover = out[part.set];
     const geom::ConvexBody& body = sets[part.set]->body(part.body);
-    out[part.set].outer.push_back(
-        {part.ball.center, (part.ball.radius + body.radius) * (1 + 0x1p-40)});
+    cover.outer.push_back({part.ball.center, (part.ball.radius + body.radius) * (1 + 0x1p-40)});
+    ++cover.bodies[part.body + 1];
     Vec3 mean = Vec3::Zero();
     for (const Vec3& p : part.points) mean += p / static_cast<double>(part.points.size());
-    if (const Ball inner = inner_ball(body, mean); inner.radius > 0)
-      out[part.set].inner.push_back(inner);
+    if (const Ball inner = inner_ball(body, mean); inner.radius > 0) cover.inner.push_back(inner);
   }
   for (BallCover& cover : out) {
-    std::ranges::stable_sort(cover.outer, std::ranges::greater{}, &Ball::radius);
+    std::partial_sum(cover.bodies.begin(), cover.bodies.end(), cover.bodies.begin());
     std::ranges::stable_sort(cover.inner, std::ranges::greater{}, &Ball::radius);
   }
   return out;

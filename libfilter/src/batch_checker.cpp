@@ -11,6 +11,7 @@
 
 #include "batch_impl.h"
 #include "lanes.h"
+#include "row_order.h"
 
 namespace kaboum::filter {
 
@@ -58,7 +59,11 @@ bool BatchChecker::decides() const { return !impl_->model.unusable && impl_->mod
 std::size_t BatchChecker::balls() const { return impl_->model.outer.size(); }
 
 void BatchChecker::filter(std::span<const double> rows, std::span<Answer> answers) const {
-  const detail::Model& model = impl_->model;
+  impl_->filter(rows, answers, nullptr);
+}
+
+void BatchChecker::Impl::filter(std::span<const double> rows, std::span<Answer> answers,
+                                detail::OpenPairs* pairs) const {
   if (rows.size() != answers.size() * model.variables)
     throw Error(ErrorCode::InvalidArgument,
                 "rows of " + std::to_string(model.variables) + " values are expected");
@@ -71,8 +76,8 @@ void BatchChecker::filter(std::span<const double> rows, std::span<Answer> answer
     return;
   }
   detail::LaneMemory memory(model);
-  detail::filter_rows(model, impl_->instructions, rows.data(), nullptr, answers.size(), memory,
-                      answers.data());
+  detail::filter_rows(model, instructions, rows.data(), nullptr, answers.size(), memory,
+                      answers.data(), 0, detail::Look::All, pairs);
 }
 
 namespace {
@@ -88,7 +93,8 @@ void require_rows(std::span<const double> rows, std::size_t count, std::size_t v
 
 /// Decides `free` part by part, by threads.
 /// @param make_worker  makes what a thread works with: `filter(first, answers)` answers for as many
-///   as there is room for, `is_free(i)` decides what that leaves open
+///   as there is room for, in an order of its own: `place(k)` is the place of answer k;
+///   `is_free(k)` decides what is open
 template <class MakeWorker>
 BatchCounts decide_by_parts(std::span<std::uint8_t> free, std::size_t part_size,
                             const std::function<void()>& progress, const MakeWorker& make_worker) {
@@ -104,14 +110,14 @@ BatchCounts decide_by_parts(std::span<std::uint8_t> free, std::size_t part_size,
                       const std::size_t first = part * part_size;
                       answers.resize(std::min(part_size, free.size() - first));
                       worker.filter(first, answers);
-                      for (std::size_t i = 0; i < answers.size(); ++i) {
-                        bool is_free = answers[i] == Answer::Free;
-                        if (answers[i] == Answer::Open) {
-                          is_free = worker.is_free(first + i);
+                      for (std::size_t k = 0; k < answers.size(); ++k) {
+                        bool is_free = answers[k] == Answer::Free;
+                        if (answers[k] == Answer::Open) {
+                          is_free = worker.is_free(k);
                           ++counts.exactly;
                         }
                         ++(is_free ? counts.free : counts.contact);
-                        free[first + i] = is_free ? 1 : 0;
+                        free[worker.place(k)] = is_free ? 1 : 0;
                       }
                       if (progress) {
                         const std::scoped_lock lock(mutex);
@@ -126,30 +132,62 @@ BatchCounts decide_by_parts(std::span<std::uint8_t> free, std::size_t part_size,
 
 }  // namespace
 
+/// What a thread decides rows with.
+class BatchChecker::RowWorker {
+ public:
+  RowWorker(const Impl& impl, std::span<const double> rows)
+      : impl_(impl), all_(rows), state_(impl.state) {}
+
+  void filter(std::size_t first, std::span<Answer> answers) {
+    const std::size_t n = impl_.model.variables;
+    first_ = first;
+    rows_ = all_.subspan(first * n, answers.size() * n);
+    order_ = detail::order_of(impl_.model, rows_);
+    if (!order_.empty()) {
+      ordered_.clear();
+      for (const std::uint32_t i : order_) {
+        const auto row = rows_.subspan(i * n, n);
+        ordered_.insert(ordered_.end(), row.begin(), row.end());
+      }
+      rows_ = ordered_;
+    }
+    pairs_ = detail::OpenPairs(answers.size());
+    impl_.filter(rows_, answers, &pairs_);
+  }
+
+  [[nodiscard]] std::size_t place(std::size_t k) const {
+    return first_ + (order_.empty() ? k : order_[k]);
+  }
+
+  bool is_free(std::size_t k) {
+    const std::size_t n = impl_.model.variables;
+    const auto row = rows_.subspan(k * n, n);
+    state_.q[impl_.robot].assign(row.begin(), row.end());
+    const auto left = pairs_.of(k);
+    if (!left) return impl_.checker->is_free(state_, scratch_);
+    open_.clear();
+    for (const std::uint32_t i : *left) open_.push_back(impl_.model.items[i]);
+    return impl_.checker->are_apart(state_, open_, scratch_);
+  }
+
+ private:
+  const Impl& impl_;
+  std::span<const double> all_;
+  world::WorldState state_;
+  world::Scratch scratch_;
+  std::size_t first_ = 0;         ///< of the rows that were filtered last
+  std::span<const double> rows_;  ///< these, in their order
+  std::vector<std::uint32_t> order_;
+  std::vector<double> ordered_;
+  detail::OpenPairs pairs_{0};
+  std::vector<std::array<world::Item, 2>> open_;
+};
+
 BatchCounts BatchChecker::decide(std::span<const double> rows, std::span<std::uint8_t> free,
                                  const std::function<void()>& progress) const {
-  constexpr std::size_t kPart = 1024;
-  struct Worker {
-    const BatchChecker& checker;
-    std::span<const double> rows;
-    world::WorldState state;
-    world::Scratch scratch;
-
-    void filter(std::size_t first, std::span<Answer> answers) const {
-      const std::size_t n = checker.variables();
-      checker.filter(rows.subspan(first * n, answers.size() * n), answers);
-    }
-    bool is_free(std::size_t i) {
-      const std::size_t n = checker.variables();
-      const auto row = rows.subspan(i * n, n);
-      state.q[checker.impl_->robot].assign(row.begin(), row.end());
-      return checker.impl_->checker->is_free(state, scratch);
-    }
-  };
+  constexpr std::size_t kPart = 4096;
   require_rows(rows, free.size(), variables());
-  return decide_by_parts(free, kPart, progress, [&] {
-    return Worker{*this, rows, impl_->state, {}};
-  });
+  return decide_by_parts(free, kPart, progress, [&] { return RowWorker(*impl_, rows); });
 }
 
 namespace {
@@ -263,11 +301,13 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
     std::span<const double> from, to;
     world::MotionOptions options;
     world::Scratch scratch;
+    std::size_t begin = 0;  ///< of the motions that were filtered last
 
     [[nodiscard]] std::span<const double> row(std::span<const double> of, std::size_t i) const {
       return of.subspan(i * impl.model.variables, impl.model.variables);
     }
-    void filter(std::size_t first, std::span<Answer> answers) const {
+    void filter(std::size_t first, std::span<Answer> answers) {
+      begin = first;
       const detail::Model& model = impl.model;
       const std::size_t n = model.variables;
       bool usable = options.around.empty() && detail::decides_motions(model, options.resolution);
@@ -282,9 +322,10 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
       else
         std::ranges::fill(answers, Answer::Open);
     }
-    bool is_free(std::size_t i) {
+    [[nodiscard]] std::size_t place(std::size_t k) const { return begin + k; }
+    bool is_free(std::size_t k) {
       options.scratch = &scratch;
-      const auto a = row(from, i), b = row(to, i);
+      const auto a = row(from, begin + k), b = row(to, begin + k);
       return check_motion(*impl.checker, impl.state, impl.robot,
                           {{a.begin(), a.end()}, {b.begin(), b.end()}}, options)
                  .outcome == world::MotionAnswer::Outcome::Free;
@@ -297,9 +338,8 @@ BatchCounts BatchChecker::decide_motions(std::span<const double> from, std::span
   world::MotionOptions exact = options;
   exact.where = false;
   exact.progress = {};
-  return decide_by_parts(free, kPart, progress, [&] {
-    return Worker{*impl_, from, to, exact, {}};
-  });
+  return decide_by_parts(free, kPart, progress,
+                         [&] { return Worker{*impl_, from, to, exact, {}, 0}; });
 }
 
 }  // namespace kaboum::filter

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "lanes.h"
 #include "model.h"
 
 namespace kaboum::filter {
@@ -15,6 +16,10 @@ struct BatchChecker::Impl {
   std::size_t robot;
   Instructions instructions;
   detail::Model model;
+
+  /// @param pairs  as of detail::filter_rows
+  void filter(std::span<const double> rows, std::span<BatchChecker::Answer> answers,
+              detail::OpenPairs* pairs) const;
 };
 
 namespace detail {

@@ -18,12 +18,14 @@ using Answer = BatchChecker::Answer;
 
 /// A model by pointers.
 struct View {
-  std::size_t variables, steps, shapes, outer_count, inner_count, shape_pairs, obstacle_pairs;
+  std::size_t variables, steps, shapes, outer_count, inner_count, body_count, shape_pairs,
+      obstacle_pairs;
   const double *low, *high;
   const float* base;
   const Step* step;
   const FrameBall *outer, *inner;
   const ShapeModel* shape;
+  const BodyModel* body;
   const Corner* corner;
   const Witness* witness;
   const Obstacle* obstacle;
@@ -37,6 +39,8 @@ struct View {
   unsigned char* ready;  // of each shape: which of its balls are placed
   float slack;           // that free ones are apart by, besides margins
   Look look;
+  bool obstacles_first;
+  std::uint32_t* pairs;  // that rows are open for, as OpenPairs has them; or null
 };
 
 namespace baseline {
@@ -82,12 +86,12 @@ constexpr std::size_t kMostLanes = 16;
 }  // namespace
 
 LaneMemory::LaneMemory(const Model& model)
-    : floats_(
-          std::make_unique_for_overwrite<float[]>((14 * (model.steps.size() + 1) +
-                                                   3 * (model.shapes.size() + model.outer.size() +
-                                                        model.inner.size() + model.corners.size()) +
-                                                   1) *
-                                                  kMostLanes)),
+    : floats_(std::make_unique_for_overwrite<float[]>(
+          (14 * (model.steps.size() + 1) +
+           3 * (model.shapes.size() + model.outer.size() + model.inner.size() +
+                model.corners.size() + model.bodies.size()) +
+           1) *
+          kMostLanes)),
       ready_(model.shapes.size()) {}
 
 float* LaneMemory::floats() {
@@ -98,12 +102,14 @@ float* LaneMemory::floats() {
 
 namespace {
 
-View view_of(const Model& model, LaneMemory& memory, float slack = 0, Look look = Look::All) {
+View view_of(const Model& model, LaneMemory& memory, float slack = 0, Look look = Look::All,
+             OpenPairs* pairs = nullptr) {
   return {model.variables,
           model.steps.size(),
           model.shapes.size(),
           model.outer.size(),
           model.inner.size(),
+          model.bodies.size(),
           model.shape_pairs.size(),
           model.obstacle_pairs.size(),
           model.low.data(),
@@ -113,6 +119,7 @@ View view_of(const Model& model, LaneMemory& memory, float slack = 0, Look look 
           model.outer.data(),
           model.inner.data(),
           model.shapes.data(),
+          model.bodies.data(),
           model.corners.data(),
           model.witnesses.data(),
           model.obstacles.data(),
@@ -125,15 +132,17 @@ View view_of(const Model& model, LaneMemory& memory, float slack = 0, Look look 
           memory.floats(),
           memory.ready(),
           slack,
-          look};
+          look,
+          model.obstacles_first,
+          pairs == nullptr ? nullptr : pairs->data()};
 }
 
 }  // namespace
 
 void filter_rows(const Model& model, [[maybe_unused]] Instructions set, const double* rows,
                  const double* widths, std::size_t count, LaneMemory& memory,
-                 BatchChecker::Answer* answers, float slack, Look look) {
-  const View view = view_of(model, memory, slack, look);
+                 BatchChecker::Answer* answers, float slack, Look look, OpenPairs* pairs) {
+  const View view = view_of(model, memory, slack, look, pairs);
 #ifdef KABOUM_AVX2
   if (set == Instructions::Avx512) return avx512::filter_rows(view, rows, widths, count, answers);
   if (set == Instructions::Avx2) return avx2::filter_rows(view, rows, widths, count, answers);

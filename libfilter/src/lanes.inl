@@ -41,6 +41,21 @@ inline Floats magnitude(const Floats& x) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(x) & 0x7fffffff);
 }
 
+/// Square root, correctly rounded.
+inline Floats root(const Floats& x) {
+#if KABOUM_LANES == 16
+  return reinterpret_cast<Floats>(_mm512_maskz_sqrt_ps(0xffff, reinterpret_cast<__m512>(x)));
+#elif KABOUM_LANES == 8
+  return reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#elif defined(KABOUM_AVX2)
+  return reinterpret_cast<Floats>(_mm_sqrt_ps(reinterpret_cast<__m128>(x)));
+#else
+  Floats out{};
+  for (unsigned lane = 0; lane < KABOUM_LANES; ++lane) out[lane] = __builtin_sqrtf(x[lane]);
+  return out;
+#endif
+}
+
 /// Errs by less than kSineError (model.cpp). @pre angles of at most 1000 in magnitude
 inline void sine_and_cosine(const Doubles& angle, Floats& sine, Floats& cosine) {
   // The nearest integer: what is added leaves no bits below 1.
@@ -134,11 +149,54 @@ inline void bound_motions(const View& m, const double* widths, unsigned count, M
   }
 }
 
+inline Point place(const Frame& frame, const Point& c) {
+  const Floats* r = frame.r;
+  return {r[0] * c.x + r[1] * c.y + r[2] * c.z + frame.t[0],
+          r[3] * c.x + r[4] * c.y + r[5] * c.z + frame.t[1],
+          r[6] * c.x + r[7] * c.y + r[8] * c.z + frame.t[2]};
+}
+
 inline Point place(const Frame& frame, const float* c) {
   const Floats* r = frame.r;
   return {r[0] * c[0] + r[1] * c[1] + r[2] * c[2] + frame.t[0],
           r[3] * c[0] + r[4] * c[1] + r[5] * c[2] + frame.t[1],
           r[6] * c[0] + r[7] * c[1] + r[8] * c[2] + frame.t[2]};
+}
+
+inline Floats dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// A direction of the world, in a frame.
+inline Point turned_back(const Frame& frame, const Point& d) {
+  const Floats* r = frame.r;
+  return {r[0] * d.x + r[3] * d.y + r[6] * d.z, r[1] * d.x + r[4] * d.y + r[7] * d.z,
+          r[2] * d.x + r[5] * d.y + r[8] * d.z};
+}
+
+/// How far the farthest corner of a body is along a direction of its own frame, and its number.
+inline Floats farthest(const View& m, const BodyModel& body, const Point& d, Ints& best) {
+  const float* first = m.corner[body.corners.begin].at;
+  Floats most = d.x * first[0] + d.y * first[1] + d.z * first[2];
+  best = Ints{} + static_cast<std::int32_t>(body.corners.begin);
+  for (std::uint32_t i = body.corners.begin + 1; i < body.corners.end; ++i) {
+    const float* p = m.corner[i].at;
+    const Floats along = d.x * p[0] + d.y * p[1] + d.z * p[2];
+    const Ints more = along > most;
+    most = more ? along : most;
+    best = more ? Ints{} + static_cast<std::int32_t>(i) : best;
+  }
+  return most;
+}
+
+/// Corners by their numbers.
+inline Point corners_at(const View& m, const Ints& numbers) {
+  Point out;
+  for (unsigned lane = 0; lane < KABOUM_LANES; ++lane) {
+    const float* p = m.corner[numbers[lane]].at;
+    out.x[lane] = p[0];
+    out.y[lane] = p[1];
+    out.z[lane] = p[2];
+  }
+  return out;
 }
 
 /// Lanes in which two points may be no farther apart than `reach`.
@@ -175,6 +233,15 @@ inline Floats distance_of_box(const Point& p, const float* axes, const float* ce
     sum += positive * positive;
   }
   return sum;
+}
+
+/// Lanes in which a ball may meet a box along the world's axes.
+template <typename Reach>
+inline unsigned may_meet(const Point& p, const Reach& radius, const ObstacleGroup& box) {
+  const Ints apart = (magnitude(p.x - box.center[0]) > (radius + box.half[0]) * kAbove) |
+                     (magnitude(p.y - box.center[1]) > (radius + box.half[1]) * kAbove) |
+                     (magnitude(p.z - box.center[2]) > (radius + box.half[2]) * kAbove);
+  return bits_of(~apart);
 }
 
 /// Lanes in which a ball may meet an obstacle.
@@ -238,13 +305,17 @@ inline unsigned any_point(const View& m, const CloudModel& cloud, const Point& p
 template <bool Moving>
 class Pack {
  public:
-  Pack(const View& m, const double* rows, const double* widths, unsigned count) : m_(m) {
+  /// @param pairs  of the first row, as View has them; or null
+  Pack(const View& m, const double* rows, const double* widths, unsigned count,
+       std::uint32_t* pairs)
+      : m_(m), pairs_(pairs) {
     frames_ = reinterpret_cast<Frame*>(m.memory);
     motions_ = reinterpret_cast<Motion*>(frames_ + m.steps + 1);
     whole_ = reinterpret_cast<Point*>(motions_ + m.steps + 1);
     outer_ = whole_ + m.shapes;
     inner_ = outer_ + m.outer_count;
-    corners_ = inner_ + m.inner_count;
+    bodies_ = inner_ + m.inner_count;
+    corners_ = bodies_ + m.body_count;
     all_ = count == 32 ? ~0U : (1U << count) - 1;
     open_ = place_frames(m, rows, count, frames_) & all_;
     if constexpr (Moving) bound_motions(m, widths, count, motions_);
@@ -256,9 +327,13 @@ class Pack {
   }
 
   void decide() {
+    if (m_.obstacles_first) look_at_obstacles();
     if (m_.look != Look::Contacts)
-      for (std::size_t i = 0; i < m_.shape_pairs && !ends(); ++i) look_at(m_.shape_pair[i]);
-    for (std::size_t i = 0; i < m_.obstacle_pairs && !ends(); ++i) look_at(m_.obstacle_pair[i]);
+      for (std::size_t i = 0; i < m_.shape_pairs && !ends(); ++i) {
+        number_ = static_cast<std::uint32_t>(i);
+        look_at(m_.shape_pair[i]);
+      }
+    if (!m_.obstacles_first) look_at_obstacles();
     if (m_.look == Look::Contacts || (stops() && contact_ != 0)) open_ |= all_;
   }
 
@@ -274,17 +349,25 @@ class Pack {
     return contact_ == all_ || (stops() && contact_ != 0);
   }
 
+  void look_at_obstacles() {
+    for (std::size_t i = 0; i < m_.obstacle_pairs && !ends(); ++i) {
+      number_ = static_cast<std::uint32_t>(m_.shape_pairs + i);
+      look_at(m_.obstacle_pair[i]);
+    }
+  }
+
   void look_at(const ObstaclePair& pair) {
     const ShapeModel& shape = m_.shape[pair.shape];
     const Point& whole = whole_[pair.shape];
     const ObstacleGroup& group = m_.group[pair.group];
     const auto motion = whole_motion(shape.frame, 0);
     const auto radius = radius_of(motion, shape.whole, pair.margin + m_.slack);
-    const unsigned near = may_meet(whole, group.center, radius + group.radius);
+    const unsigned near = may_meet(whole, radius, group) & all_ & ~contact_;
+    if (near == 0) return;
     if (group.cloud.nodes.begin != group.cloud.nodes.end)
-      return look_at(pair, shape, group.cloud, near & all_ & ~contact_);
+      return look_at(pair, shape, group.cloud, near);
     for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
-      const unsigned left = near & all_ & ~contact_;
+      const unsigned left = near & ~contact_;
       if (left == 0) return;
       look_at(pair, shape, m_.obstacle[i], left & may_meet(m_, whole, radius, m_.obstacle[i]));
     }
@@ -296,12 +379,7 @@ class Pack {
     const auto motion = whole_motion(shape.frame, 0);
     unsigned doubt = near;
     if (m_.look != Look::Contacts) {
-      place_outer(pair.shape);
-      const float more = pair.margin + m_.slack;
-      doubt = 0;
-      for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
-        doubt |= near & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], more), o);
-      if (doubt != 0) doubt &= not_beyond_face(pair, shape, motion, o, doubt);
+      doubt = not_apart(pair, shape, motion, o, near);
       if (doubt == 0) return;
       if (m_.look == Look::Apart) return note(doubt, 0);
     }
@@ -310,6 +388,82 @@ class Pack {
     for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k)
       meet |= doubt & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
     note(doubt, meet);
+  }
+
+  /// Lanes in which nothing shows that a shape is apart from an obstacle.
+  template <typename Any>
+  unsigned not_apart(const ObstaclePair& pair, const ShapeModel& shape, const Any& motion,
+                     const Obstacle& o, unsigned near) {
+    place_outer(pair.shape);
+    const float more = pair.margin + m_.slack;
+    unsigned doubt = 0, facing = 0;
+    bool has_faces = false;
+    for (std::uint32_t i = shape.bodies.begin; i < shape.bodies.end && doubt != near; ++i) {
+      const BodyModel& body = m_.body[i];
+      const unsigned left =
+          near & ~doubt & may_meet(m_, bodies_[i], radius_of(motion, body.ball, more), o);
+      unsigned found = 0;
+      for (std::uint32_t k = body.balls.begin; k < body.balls.end && found != left; ++k)
+        found |= left & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], more), o);
+      if (found == 0) continue;
+      if (!has_faces) facing = not_beyond_face(pair, shape, motion, o, near);
+      has_faces = true;
+      found &= facing;
+      if (found != 0)
+        found =
+            without_direction({body, bodies_[i], &frames_[shape.frame]},
+                              {m_.body[o.body], world_point(m_.body[o.body].ball.center), nullptr},
+                              offset_of(motion, body) + (m_.body[o.body].offset + more), found);
+      doubt |= found;
+    }
+    return doubt;
+  }
+
+  /// A body and where it is.
+  struct PlacedBody {
+    const BodyModel& body;
+    const Point& middle;
+    const Frame* frame;  ///< null: the world
+  };
+
+  /// Lanes of which no direction is found along which two bodies are apart by more than `reach`.
+  /// The search: mirrored at the vector between the farthest corners ([chung1996]).
+  template <typename Reach>
+  [[nodiscard]] unsigned without_direction(const PlacedBody& a, const PlacedBody& b,
+                                           const Reach& reach, unsigned lanes) const {
+    constexpr int kSteps = 8;
+    constexpr float kShort = 1 - 0x1p-9F;
+    if (a.body.corners.begin == a.body.corners.end || b.body.corners.begin == b.body.corners.end)
+      return lanes;
+    Point d{b.middle.x - a.middle.x, b.middle.y - a.middle.y, b.middle.z - a.middle.z};
+    for (int step = 0;; ++step) {
+      const Floats scale = kShort / root(dot(d, d));
+      d = {d.x * scale, d.y * scale, d.z * scale};
+      const Point back{-d.x, -d.y, -d.z};
+      Ints of_a, of_b;
+      const Floats top =
+          farthest(m_, a.body, a.frame == nullptr ? d : turned_back(*a.frame, d), of_a);
+      const Floats bottom =
+          farthest(m_, b.body, b.frame == nullptr ? back : turned_back(*b.frame, back), of_b);
+      const Point from = origin_of(a.frame), to = origin_of(b.frame);
+      const Floats gap = dot({to.x - from.x, to.y - from.y, to.z - from.z}, d) - (top + bottom);
+      lanes &= bits_of(~(gap > reach));
+      if (lanes == 0 || step == kSteps) return lanes;
+      Point p = corners_at(m_, of_a), q = corners_at(m_, of_b);
+      if (a.frame != nullptr) p = place(*a.frame, p);
+      if (b.frame != nullptr) q = place(*b.frame, q);
+      const Point v{q.x - p.x, q.y - p.y, q.z - p.z};
+      const Floats mirror = 2 * gap / dot(v, v);
+      d = {d.x - mirror * v.x, d.y - mirror * v.y, d.z - mirror * v.z};
+    }
+  }
+
+  static Point origin_of(const Frame* frame) {
+    if (frame == nullptr) return {Floats{}, Floats{}, Floats{}};
+    return {frame->t[0], frame->t[1], frame->t[2]};
+  }
+  static Point world_point(const float* p) {
+    return {Floats{} + p[0], Floats{} + p[1], Floats{} + p[2]};
   }
 
   /// Lanes in which no face of an obstacle's box, of those that the shape's ball is in front of,
@@ -360,7 +514,8 @@ class Pack {
     if (near == 0) return;
     place_outer(pair.shape);
     unsigned doubt = 0;
-    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end && doubt != near; ++k)
+    const Range outer = outer_of(shape);
+    for (std::uint32_t k = outer.begin; k < outer.end && doubt != near; ++k)
       doubt |= may_touch(outer_[k], m_.outer[k], near & ~doubt);
     if (doubt == 0) return;
     if (m_.look == Look::Apart) return note(doubt, 0);
@@ -395,15 +550,13 @@ class Pack {
     place_outer(pair.a);
     place_outer(pair.b);
     unsigned doubt = 0;
-    for (std::uint32_t i = a.outer.begin; i < a.outer.end && doubt != near; ++i) {
-      const auto reach = radius_of(motion_a, m_.outer[i], pair.margin + m_.slack);
+    for (std::uint32_t i = a.bodies.begin; i < a.bodies.end && doubt != near; ++i) {
+      const BodyModel& body = m_.body[i];
+      const auto reach = radius_of(motion_a, body.ball, pair.margin + m_.slack);
       const unsigned left =
-          near & ~doubt & may_meet(outer_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
-      if (left == 0) continue;
-      unsigned found = 0;
-      for (std::uint32_t k = b.outer.begin; k < b.outer.end && found != left; ++k)
-        found |= left & may_meet(outer_[i], outer_[k], reach + radius_of(motion_b, m_.outer[k], 0));
-      doubt |= found;
+          near & ~doubt & may_meet(bodies_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
+      for (std::uint32_t k = b.bodies.begin; k < b.bodies.end && (left & ~doubt) != 0; ++k)
+        doubt |= not_apart(pair, i, motion_a, k, motion_b, left & ~doubt);
     }
     if (doubt == 0) return;
     if (m_.look == Look::Apart) return note(doubt, 0);
@@ -415,6 +568,32 @@ class Pack {
         meet |= doubt & must_meet(inner_[i], inner_[k],
                                   m_.inner[i].radius + m_.inner[k].radius + pair.least_margin);
     note(doubt, meet);
+  }
+
+  /// Lanes in which nothing shows that two bodies of links are apart.
+  template <typename Any>
+  unsigned not_apart(const ShapePair& pair, std::uint32_t i, const Any& motion_a, std::uint32_t k,
+                     const Any& motion_b, unsigned lanes) const {
+    const BodyModel &a = m_.body[i], &b = m_.body[k];
+    const float more = pair.margin + m_.slack;
+    lanes &= may_meet(bodies_[i], bodies_[k],
+                      radius_of(motion_a, a.ball, more) + radius_of(motion_b, b.ball, 0));
+    if (lanes == 0) return 0;
+    unsigned doubt = 0;
+    for (std::uint32_t x = a.balls.begin; x < a.balls.end && doubt != lanes; ++x) {
+      const auto reach = radius_of(motion_a, m_.outer[x], more);
+      const unsigned left =
+          lanes & ~doubt & may_meet(outer_[x], bodies_[k], reach + radius_of(motion_b, b.ball, 0));
+      if (left == 0) continue;
+      unsigned found = 0;
+      for (std::uint32_t y = b.balls.begin; y < b.balls.end && found != left; ++y)
+        found |= left & may_meet(outer_[x], outer_[y], reach + radius_of(motion_b, m_.outer[y], 0));
+      doubt |= found;
+    }
+    if (doubt == 0) return 0;
+    return without_direction({a, bodies_[i], &frames_[m_.shape[pair.a].frame]},
+                             {b, bodies_[k], &frames_[m_.shape[pair.b].frame]},
+                             offset_of(motion_a, a) + (offset_of(motion_b, b) + more), doubt);
   }
 
   /// Lanes in which a witness does not separate two shapes.
@@ -450,14 +629,30 @@ class Pack {
   void note(unsigned doubt, unsigned meet) {
     contact_ |= meet;
     open_ |= doubt & ~meet;
+    if (pairs_ == nullptr) return;
+    for (unsigned left = doubt & ~meet; left != 0; left &= left - 1) {
+      std::uint32_t* row =
+          pairs_ + static_cast<std::size_t>(__builtin_ctz(left)) * (OpenPairs::kMost + 1);
+      std::uint32_t& number = row[0];
+      if (number > OpenPairs::kMost || (number > 0 && row[number] == number_)) continue;
+      if (++number <= OpenPairs::kMost) row[number] = number_;
+    }
   }
 
   void place_outer(std::uint32_t s) {
     if ((m_.ready[s] & 1) != 0) return;
     m_.ready[s] |= 1;
     const ShapeModel& shape = m_.shape[s];
-    for (std::uint32_t k = shape.outer.begin; k < shape.outer.end; ++k)
+    for (std::uint32_t i = shape.bodies.begin; i < shape.bodies.end; ++i)
+      bodies_[i] = place(frames_[shape.frame], m_.body[i].ball.center);
+    const Range outer = outer_of(shape);
+    for (std::uint32_t k = outer.begin; k < outer.end; ++k)
       outer_[k] = place(frames_[shape.frame], m_.outer[k].center);
+  }
+  /// Balls of all bodies.
+  [[nodiscard]] Range outer_of(const ShapeModel& shape) const {
+    if (shape.bodies.begin == shape.bodies.end) return {};
+    return {m_.body[shape.bodies.begin].balls.begin, m_.body[shape.bodies.end - 1].balls.end};
   }
   void place_corners(std::uint32_t s) {
     if ((m_.ready[s] & 4) != 0) return;
@@ -493,6 +688,15 @@ class Pack {
       return 0;
   }
 
+  /// What is added to the extent of a body along any direction.
+  template <typename Any>
+  [[nodiscard]] auto offset_of(const Any& motion, const BodyModel& body) const {
+    if constexpr (Moving)
+      return (motion.shift + motion.turn * body.reach) * (1 + kMoves) + body.offset;
+    else
+      return body.offset;
+  }
+
   /// Radius of a ball with a motion, and what is added to it.
   template <typename Any>
   [[nodiscard]] auto radius_of(const Any& motion, const FrameBall& ball, float more) const {
@@ -503,9 +707,11 @@ class Pack {
   }
 
   const View& m_;
+  std::uint32_t* pairs_;
+  std::uint32_t number_ = 0;  ///< of the pair that is looked at
   Frame* frames_;
   Motion* motions_;
-  Point *whole_, *outer_, *inner_, *corners_;
+  Point *whole_, *outer_, *inner_, *corners_, *bodies_;
   unsigned all_ = 0, contact_ = 0, open_ = 0;
 };
 
@@ -517,7 +723,8 @@ void filter_all(const View& m, const double* rows, const double* widths, std::si
     const std::size_t left = count - first;
     const unsigned here = left < KABOUM_LANES ? static_cast<unsigned>(left) : KABOUM_LANES;
     const std::size_t at = first * m.variables;
-    Pack<Moving> pack(m, rows + at, Moving ? widths + at : nullptr, here);
+    Pack<Moving> pack(m, rows + at, Moving ? widths + at : nullptr, here,
+                      m.pairs == nullptr ? nullptr : m.pairs + first * (OpenPairs::kMost + 1));
     pack.decide();
     const unsigned contact = pack.contact(), open = pack.open();
     for (unsigned lane = 0; lane < here; ++lane)
@@ -541,13 +748,14 @@ void place_outer_balls(const View& m, const double* rows, std::size_t count, flo
   for (std::size_t row = 0; row < count; ++row) {
     place_frames(m, rows + row * m.variables, 1, frames);
     for (std::size_t s = 0; s < m.shapes; ++s)
-      for (std::uint32_t k = m.shape[s].outer.begin; k < m.shape[s].outer.end; ++k) {
-        const Point p = place(frames[m.shape[s].frame], m.outer[k].center);
-        float* out = centers + 3 * (row * m.outer_count + k);
-        out[0] = p.x[0];
-        out[1] = p.y[0];
-        out[2] = p.z[0];
-      }
+      for (std::uint32_t i = m.shape[s].bodies.begin; i < m.shape[s].bodies.end; ++i)
+        for (std::uint32_t k = m.body[i].balls.begin; k < m.body[i].balls.end; ++k) {
+          const Point p = place(frames[m.shape[s].frame], m.outer[k].center);
+          float* out = centers + 3 * (row * m.outer_count + k);
+          out[0] = p.x[0];
+          out[1] = p.y[0];
+          out[2] = p.z[0];
+        }
   }
 }
 

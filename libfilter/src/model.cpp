@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "lanes.h"
@@ -252,6 +253,27 @@ double corners_off(const Mat3& axes, const Vec3& center, const Vec3& half,
   return most;
 }
 
+/// Bodies of more corners are not looked at by directions.
+constexpr std::size_t kMostCorners = 256;
+
+/// @param points  corners in the world
+/// @param radius  with the error of the place
+/// @param size    lengths that what is rounded is of
+/// @return its number
+std::uint32_t add_body(const std::vector<Vec3>& points, double radius, double size, Model& model) {
+  BodyModel out;
+  const Ball ball = ball_round(points);
+  put(ball.center, out.ball.center);
+  if (points.size() <= kMostCorners) {
+    out.corners.begin = size_of(model.corners);
+    for (const Vec3& p : points) put(p, model.corners.emplace_back().at);
+    out.corners.end = size_of(model.corners);
+  }
+  out.offset = rounded_up((radius + (12 * kUnit + kDoubles) * size) * kSums);
+  model.bodies.push_back(out);
+  return size_of(model.bodies) - 1;
+}
+
 /// @param error  of the place, as the checker has it
 void add_obstacle(const PosedSet& at, std::size_t body, const Vec3& origin, Model& model) {
   const geom::ConvexBody& convex = at.set().body(body);
@@ -303,6 +325,7 @@ void add_obstacle(const PosedSet& at, std::size_t body, const Vec3& origin, Mode
       model.planes.push_back(plane);
     }
   out.planes.end = size_of(model.planes);
+  out.body = add_body(points, radius, size, model);
   model.unusable = model.unusable || !(size + radius < kLargest);
   model.obstacles.push_back(out);
 }
@@ -377,12 +400,20 @@ CloudModel add_cloud(const PosedSet& at, const Vec3& origin, Model& model) {
 
 void add_group(const PosedSet& at, const Vec3& origin, Model& model) {
   ObstacleGroup out;
-  const Vec3 center = at.pose() * at.set().ball().center - origin;
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  double size = at.pose().translation.norm() + origin.norm();
+  for (std::size_t i = 0; i < at.set().size(); ++i)
+    for (const Vec3& p : at.set().body(i).core.vertices) {
+      const Vec3 place = at.pose() * p - origin;
+      const double radius = at.radius_above(i) + 2.5 * at.error();
+      low = low.cwiseMin(place - Vec3::Constant(radius));
+      high = high.cwiseMax(place + Vec3::Constant(radius));
+      size = std::max(size, p.norm() + at.pose().translation.norm() + origin.norm() + radius);
+    }
+  const Vec3 center = 0.5 * (low + high), half = 0.5 * (high - low);
   put(center, out.center);
-  out.radius = rounded_up(
-      (at.set().ball().radius * (1 + 1e-8) + 2.5 * at.error() + 4 * kUnit * center.norm() +
-       kDoubles * (at.pose().translation.norm() + origin.norm() + at.set().ball().center.norm())) *
-      kSums);
+  for (int k = 0; k < 3; ++k)
+    out.half[k] = rounded_up((half[k] + 10 * kUnit * center.norm() + kDoubles * size) * kSums);
   out.obstacles.begin = size_of(model.obstacles);
   if (at.set().is_cloud())
     out.cloud = add_cloud(at, origin, model);
@@ -492,20 +523,91 @@ class WitnessSearch {
   std::vector<std::pair<std::size_t, Vec3>> normals_;
 };
 
+/// What errors of places take of the extents of a link's corners along a direction.
+double extent_error(const Chain& chain, const LinkPlace& link, double reach, double lengths,
+                    double error) {
+  const FrameBounds& frame = chain.bounds[link.frame];
+  return kDoubles * (frame.lengths + link.lengths + lengths) +
+         (2 * frame.rotation + 12 * kUnit) * reach + frame.translation + 10 * kUnit * frame.reach +
+         2.5 * error;
+}
+
+/// Looks at rows for a pair at a time.
+class PairProbe {
+ public:
+  /// Points of clouds are left out: no pair with one may be asked for.
+  PairProbe(const Model& model, std::span<const double> rows)
+      : alone_(without_clouds(model)), memory_(alone_), rows_(rows) {}
+
+  const std::vector<BatchChecker::Answer>& look_at(const ShapePair& pair) {
+    alone_.shape_pairs = {pair};
+    alone_.obstacle_pairs.clear();
+    return look();
+  }
+  std::size_t count_contacts(const auto& pair) {
+    return static_cast<std::size_t>(
+        std::ranges::count(look_at(pair), BatchChecker::Answer::Contact));
+  }
+  const std::vector<BatchChecker::Answer>& look_at(const ObstaclePair& pair) {
+    alone_.shape_pairs.clear();
+    alone_.obstacle_pairs = {pair};
+    return look();
+  }
+
+ private:
+  static Model without_clouds(const Model& model) {
+    Model out = model;
+    out.cloud_points.clear();
+    out.cloud_nodes.clear();
+    return out;
+  }
+  const std::vector<BatchChecker::Answer>& look() {
+    answers_.resize(rows_.size() / alone_.variables);
+    filter_rows(alone_, Instructions::Baseline, rows_.data(), nullptr, answers_.size(), memory_,
+                answers_.data());
+    return answers_;
+  }
+
+  Model alone_;
+  LaneMemory memory_;
+  std::span<const double> rows_;
+  std::vector<BatchChecker::Answer> answers_;
+};
+
+/// Puts pairs first that are in contact in most of some rows: one contact ends the look.
+void sort_pairs(std::span<const double> rows, Model& model) {
+  PairProbe probe(model, rows);
+  std::array<std::size_t, 2> all{};
+  const auto sort = [&](auto& pairs, std::size_t& sum, const auto& is_counted) {
+    std::vector<std::pair<std::size_t, std::size_t>> counts;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      counts.emplace_back(is_counted(pairs[i]) ? probe.count_contacts(pairs[i]) : 0, i);
+      sum += counts.back().first;
+    }
+    std::ranges::stable_sort(counts, std::ranges::greater{},
+                             &std::pair<std::size_t, std::size_t>::first);
+    auto sorted = pairs;
+    for (std::size_t i = 0; i < pairs.size(); ++i) sorted[i] = pairs[counts[i].second];
+    pairs = std::move(sorted);
+  };
+  sort(model.shape_pairs, all[0], [](const ShapePair&) { return true; });
+  sort(model.obstacle_pairs, all[1], [&](const ObstaclePair& pair) {
+    const CloudModel& cloud = model.groups[pair.group].cloud;
+    return cloud.nodes.begin == cloud.nodes.end;
+  });
+  model.obstacles_first = all[1] > all[0];
+}
+
 /// Adds planes that separate a pair of shapes, as configurations that are drawn show them.
+/// @param answers  for this pair
 void add_witnesses(const world::Checker& checker, const world::WorldState& state, std::size_t robot,
                    const Chain& chain, const std::vector<double>& errors,
-                   const std::vector<double>& rows, std::size_t number, Model& model) {
+                   const std::vector<double>& rows,
+                   const std::vector<BatchChecker::Answer>& answers, std::size_t number,
+                   Model& model) {
   constexpr std::size_t kMostOpen = 60;
   ShapePair& pair = model.shape_pairs[number];
   const world::RobotModel& arm = checker.world().robots[robot];
-  Model alone = model;
-  alone.shape_pairs = {pair};
-  alone.obstacle_pairs.clear();
-  std::vector<BatchChecker::Answer> answers(rows.size() / model.variables);
-  LaneMemory memory(alone);
-  filter_rows(alone, Instructions::Baseline, rows.data(), nullptr, answers.size(), memory,
-              answers.data());
   const auto open =
       static_cast<std::size_t>(std::ranges::count(answers, BatchChecker::Answer::Open));
   if (100 * open < answers.size()) return;
@@ -523,12 +625,9 @@ void add_witnesses(const world::Checker& checker, const world::WorldState& state
   const std::array<std::uint32_t, 2> shapes{pair.a, pair.b};
   double error = 0;
   for (const std::uint32_t s : shapes) {
-    const FrameBounds& frame = chain.bounds[model.shapes[s].frame];
     const auto& ball = arm.shapes[s].outer.ball();
-    error += kDoubles * (frame.lengths + chain.links[arm.shapes[s].link].lengths +
-                         ball.center.norm() + ball.radius);
-    error += (2 * frame.rotation + 12 * kUnit) * model.shapes[s].reach + frame.translation +
-             10 * kUnit * frame.reach + 2.5 * errors[s];
+    error += extent_error(chain, chain.links[arm.shapes[s].link], model.shapes[s].reach,
+                          ball.center.norm() + ball.radius, errors[s]);
   }
   pair.witnesses.begin = size_of(model.witnesses);
   for (const auto& [of, normal] : search.best()) {
@@ -580,6 +679,41 @@ void add_levers(const Chain& chain, Model& model) {
   }
 }
 
+/// Bodies of a link's set.
+/// @param error  of its place, as the checker has it
+void add_bodies(const collide::BoundingSet& set, const BallCover& cover, const Chain& chain,
+                const LinkPlace& link, double error, Model& model) {
+  for (std::size_t b = 0; b < set.size(); ++b) {
+    const geom::ConvexBody& body = set.body(b);
+    BodyModel out;
+    Ball round = ball_round(body.core.vertices);
+    round.radius += body.radius;
+    out.ball = outer_ball(chain, link, round, error);
+    out.balls.begin = size_of(model.outer);
+    for (std::size_t k = cover.bodies[b]; k < cover.bodies[b + 1]; ++k)
+      model.outer.push_back(outer_ball(chain, link, cover.outer[k], error));
+    out.balls.end = size_of(model.outer);
+    double reach = 0, lengths = 0;
+    out.corners.begin = size_of(model.corners);
+    for (const Vec3& p : body.core.vertices) {
+      const Vec3 at = link.pose * p;
+      put(at, model.corners.emplace_back().at);
+      lengths = std::max(lengths, p.norm());
+      reach = std::max(reach, at.norm() + kDoubles * (link.lengths + p.norm()));
+    }
+    out.corners.end = size_of(model.corners);
+    if (body.core.vertices.size() > kMostCorners) {
+      model.corners.resize(out.corners.begin);
+      out.corners = {};
+    }
+    out.reach = rounded_up(reach * (1 + 1e-6));
+    out.offset = rounded_up(
+        (body.radius * (1 + 1e-8) + 1.1 * extent_error(chain, link, out.reach, lengths, error)) *
+        kSums);
+    model.bodies.push_back(out);
+  }
+}
+
 /// The bounding sets of the robot's links.
 /// @param errors  of their places, as the checker has them
 void add_shapes(const world::RobotModel& robot, const Chain& chain,
@@ -591,12 +725,11 @@ void add_shapes(const world::RobotModel& robot, const Chain& chain,
     const LinkPlace& link = chain.links[robot.shapes[s].link];
     ShapeModel out;
     out.frame = link.frame;
+    out.bodies.begin = size_of(model.bodies);
     const auto& ball = sets[s]->ball();
     out.whole = outer_ball(chain, link, {ball.center, ball.radius}, errors[s]);
-    out.outer.begin = size_of(model.outer);
-    for (const Ball& b : covers[s].outer)
-      model.outer.push_back(outer_ball(chain, link, b, errors[s]));
-    out.outer.end = size_of(model.outer);
+    add_bodies(*sets[s], covers[s], chain, link, errors[s], model);
+    out.bodies = {out.bodies.begin, size_of(model.bodies)};
     out.inner.begin = size_of(model.inner);
     for (const Ball& b : covers[s].inner)
       if (const FrameBall inner = inner_ball(chain, link, b); inner.radius > 0)
@@ -607,6 +740,33 @@ void add_shapes(const world::RobotModel& robot, const Chain& chain,
                      !(chain.bounds[link.frame].rotation < 1e-3) || model.steps.size() > kMostSteps;
     model.shapes.push_back(out);
   }
+}
+
+/// Leaves out things that a link cannot reach.
+void leave_out_of_reach(const Chain& chain, const world::RobotModel& robot, Model& model) {
+  std::erase_if(model.obstacle_pairs, [&](const ObstaclePair& pair) {
+    const ShapeModel& shape = model.shapes[pair.shape];
+    const ObstacleGroup& group = model.groups[pair.group];
+    const LinkPlace& link = chain.links[robot.shapes[pair.shape].link];
+    const double reach = placed(chain, link, robot.shapes[pair.shape].outer.ball().center).reach;
+    Vec3 away = Vec3::Zero();  // of the base from the box
+    for (int k = 0; k < 3; ++k)
+      away[k] = std::max(0.0, std::abs(double{group.center[k]}) - double{group.half[k]});
+    return away.norm() * (1 - 1e-6) >
+           (reach + shape.whole.radius + pair.margin + kReachSlack * model.size) * (1 + 1e-6);
+  });
+}
+
+/// Numbers of Model::groups.
+using Groups = std::map<Item, std::uint32_t>;
+
+void add_items(std::size_t robot, const Groups& groups, Model& model) {
+  std::vector<Item> things(model.groups.size());
+  for (const auto& [item, group] : groups) things[group] = item;
+  for (const ShapePair& pair : model.shape_pairs)
+    model.items.push_back({Item{robot, pair.a}, Item{robot, pair.b}});
+  for (const ObstaclePair& pair : model.obstacle_pairs)
+    model.items.push_back({Item{robot, pair.shape}, things[pair.group]});
 }
 
 }  // namespace
@@ -639,7 +799,7 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   const auto moves = [&](const Item& item) {
     return item.robot == robot && out.shapes[item.index].frame != 0;
   };
-  std::map<Item, std::uint32_t> groups;
+  Groups groups;
   const auto group_of = [&](const Item& item) {
     if (const auto found = groups.find(item); found != groups.end()) return found->second;
     add_group(checker.places(state, {item}, scratch).front().place, model.base.translation, out);
@@ -668,19 +828,14 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
       [&](const auto& contact) { return !moves(contact.items[0]) && !moves(contact.items[1]); });
   add_corners(checker, model, robot, chain, errors, out);
   const std::vector<double> rows = drawn_rows(out);
+  PairProbe probe(out, rows);
   for (std::size_t i = 0; i < out.shape_pairs.size(); ++i)
-    add_witnesses(checker, state, robot, chain, errors, rows, i, out);
-  // What a link cannot reach is left out.
-  std::erase_if(out.obstacle_pairs, [&](const ObstaclePair& pair) {
-    const ShapeModel& shape = out.shapes[pair.shape];
-    const ObstacleGroup& group = out.groups[pair.group];
-    const LinkPlace& link = chain.links[model.shapes[pair.shape].link];
-    const double reach = placed(chain, link, model.shapes[pair.shape].outer.ball().center).reach;
-    const Vec3 center(group.center[0], group.center[1], group.center[2]);
-    return center.norm() * (1 - 1e-6) >
-           (reach + shape.whole.radius + group.radius + pair.margin + kReachSlack * out.size) *
-               (1 + 1e-6);
-  });
+    add_witnesses(checker, state, robot, chain, errors, rows, probe.look_at(out.shape_pairs[i]), i,
+                  out);
+  leave_out_of_reach(chain, model, out);
+  constexpr std::size_t kRowsForOrder = 500;
+  sort_pairs(std::span(rows).first(kRowsForOrder * out.variables), out);
+  add_items(robot, groups, out);
   return out;
 }
 

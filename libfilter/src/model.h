@@ -2,6 +2,7 @@
 
 #include <kaboum/world/checker.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,7 +39,7 @@ struct Range {
   std::uint32_t begin = 0, end = 0;
 };
 
-/// A corner of the hull of a link's set, in its frame.
+/// A corner of a body or of the hull of a link's set, in its frame.
 struct Corner {
   float at[3] = {};
 };
@@ -51,11 +52,20 @@ struct Witness {
   bool of_first = true;
 };
 
+/// A convex body: of a link in its frame, or of an obstacle in the world.
+struct BodyModel {
+  FrameBall ball;    ///< holds all of it
+  Range balls;       ///< of Model::outer, which hold it too; of a link
+  Range corners;     ///< whose hull holds it with a radius; none: it is not looked at by directions
+  float reach = 0;   ///< of the corners, rounded up
+  float offset = 0;  ///< the radius and all errors along any direction, rounded up
+};
+
 /// The bounding set of a link.
 struct ShapeModel {
   std::uint32_t frame = 0;
   FrameBall whole;  ///< holds all of it
-  Range outer, inner;
+  Range bodies, inner;
   Range corners;
   float reach = 0;          ///< of the corners, rounded up
   float corner_radius = 0;  ///< of balls round the corners whose hull holds all of it, as FrameBall
@@ -69,7 +79,8 @@ struct Obstacle {
   /// What lies in the body likewise: radius without errors, rounded down; below 0: nothing.
   float inner_center[3] = {}, inner_half[3] = {};
   float inner_radius = -1;
-  Range planes;  ///< of Model::planes: the body lies below all of them
+  Range planes;            ///< of Model::planes: the body lies below all of them
+  std::uint32_t body = 0;  ///< of Model::bodies
 };
 
 /// A half-space n·x ≤ offset that holds a body, errors included.
@@ -97,10 +108,9 @@ struct CloudModel {
   float inner_radius = 0;  ///< without them, rounded down; not above 0: none
 };
 
-/// The obstacles of one thing, and a ball round them.
+/// The obstacles of one thing, and a box along the world's axes round them.
 struct ObstacleGroup {
-  float center[3] = {};
-  float radius = 0;
+  float center[3] = {}, half[3] = {};  ///< half: errors included, rounded up
   Range obstacles;   ///< none of a cloud
   CloudModel cloud;  ///< nodes: empty where it is none
 };
@@ -130,6 +140,7 @@ struct Model {
   std::vector<Step> steps;        ///< of frame i + 1
   std::vector<FrameBall> outer, inner;
   std::vector<ShapeModel> shapes;
+  std::vector<BodyModel> bodies;
   std::vector<Corner> corners;
   std::vector<Witness> witnesses;
   std::vector<Obstacle> obstacles;
@@ -139,6 +150,9 @@ struct Model {
   std::vector<ObstacleGroup> groups;
   std::vector<ObstaclePair> obstacle_pairs;
   std::vector<ShapePair> shape_pairs;
+  bool obstacles_first = false;  ///< of the pairs, as they are looked at
+  /// The things of the pairs: of shape_pairs, then of obstacle_pairs.
+  std::vector<std::array<world::Item, 2>> items;
   /// For each variable, how far a point of the robot may move for a change by 1, about; only what
   /// is worth halving hangs on it.
   std::vector<double> levers;

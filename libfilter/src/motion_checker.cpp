@@ -35,8 +35,9 @@ struct MotionChecker::Impl {
   }
 
   /// Looks at the stretches, or at their middles alone.
+  /// @param told  is told of pairs; or null
   bool finds_contact(std::span<const double> from, std::span<const double> to, float slack,
-                     detail::Look look) {
+                     detail::Look look, detail::OpenPairs* told) {
     const std::size_t n = batch.model.variables;
     rows.resize(shares.size() * n);
     widths.resize(shares.size() * n);
@@ -47,7 +48,7 @@ struct MotionChecker::Impl {
     stretches += shares.size();
     detail::filter_rows(batch.model, batch.instructions, rows.data(),
                         look == detail::Look::Contacts ? nullptr : widths.data(), shares.size(),
-                        memory, answers.data(), slack, look);
+                        memory, answers.data(), slack, look, told);
     return std::ranges::find(answers, Answer::Contact) != answers.end();
   }
 
@@ -56,8 +57,27 @@ struct MotionChecker::Impl {
   std::vector<double> rows, widths;
   std::vector<detail::Share> shares, next;
   std::vector<Answer> answers;
+  /// Notes stretches that stay open, and for which pairs.
+  void leave_open(const detail::OpenPairs& told) {
+    std::vector<std::uint32_t> numbers;
+    bool any_pair = false;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      if (answers[i] != Answer::Open) continue;
+      open.push_back({shares[i].begin, shares[i].end});
+      const auto some = told.of(i);
+      any_pair = any_pair || !some;
+      if (some) numbers.insert(numbers.end(), some->begin(), some->end());
+    }
+    if (any_pair) return;
+    std::ranges::sort(numbers);
+    const auto repeated = std::ranges::unique(numbers);
+    numbers.erase(repeated.begin(), repeated.end());
+    for (const std::uint32_t k : numbers) pairs.push_back(batch.model.items[k]);
+  }
+
   std::vector<std::array<double, 2>> open;
-  std::vector<double> asked_from, asked_to;  ///< of the last motion
+  std::vector<std::array<world::Item, 2>> pairs;  ///< that these are open for; none: any
+  std::vector<double> asked_from, asked_to;       ///< of the last motion
   double asked_resolution = 0;
   std::optional<world::StretchChecker> exactly;
   world::Scratch scratch;
@@ -74,11 +94,15 @@ MotionChecker& MotionChecker::operator=(MotionChecker&&) noexcept = default;
 std::size_t MotionChecker::stretches() const { return impl_->stretches; }
 std::size_t MotionChecker::exact() const { return impl_->exact; }
 std::span<const std::array<double, 2>> MotionChecker::open() const { return impl_->open; }
+std::span<const std::array<world::Item, 2>> MotionChecker::open_pairs() const {
+  return impl_->pairs;
+}
 
 MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
                                             std::span<const double> to, double resolution) {
   Impl& s = *impl_;
   s.open.clear();
+  s.pairs.clear();
   s.asked_from.assign(from.begin(), from.end());
   s.asked_to.assign(to.begin(), to.end());
   s.asked_resolution = resolution;
@@ -108,20 +132,25 @@ MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
     std::swap(s.shares, s.next);
     if (s.shares.size() > kMostStretches) return Answer::Open;
     // Most motions that are not free are found in contact at first sight.
-    if (first && s.finds_contact(from, to, slack, detail::Look::Contacts)) return Answer::Contact;
-    if (s.finds_contact(from, to, slack, first ? detail::Look::Apart : detail::Look::One))
+    if (first && s.finds_contact(from, to, slack, detail::Look::Contacts, nullptr))
       return Answer::Contact;
+    const bool last = move <= fine;
+    detail::OpenPairs told(last ? s.shares.size() : 0);
+    if (s.finds_contact(from, to, slack, first && !last ? detail::Look::Apart : detail::Look::One,
+                        last ? &told : nullptr))
+      return Answer::Contact;
+    if (last) {
+      s.leave_open(told);
+      return s.open.empty() ? Answer::Free : Answer::Open;
+    }
     s.next.clear();
     for (std::size_t i = 0; i < s.shares.size(); ++i)
       if (s.answers[i] == Answer::Open) s.next.push_back(s.shares[i]);
     if (s.next.empty()) return Answer::Free;
     std::swap(s.shares, s.next);
-    if (move <= fine) break;
     parts = kParts;
     move /= kParts;
   }
-  for (const detail::Share& share : s.shares) s.open.push_back({share.begin, share.end});
-  return Answer::Open;
 }
 
 bool MotionChecker::are_open_free(std::span<const double> from, std::span<const double> to,
@@ -135,7 +164,7 @@ bool MotionChecker::are_open_free(std::span<const double> from, std::span<const 
   if (!s.exactly) s.exactly.emplace(*s.batch.checker, s.batch.state, s.batch.robot);
   const auto answer = s.exactly->is_apart(from, to, s.open,
                                           detail::slack_of(options.resolution, s.batch.model.size),
-                                          options.most_intervals);
+                                          options.most_intervals, s.pairs);
   intervals += answer.intervals;
   return answer.apart;
 }

@@ -248,7 +248,10 @@ bool SearchSpace::looks_free_where_open(const Values& from, const Values& to) {
       ++spent_.configurations;
       spent_.work += kConfiguration;
       state_.q[robot_] = between(from, to, 0.5 * (open[at - 1][0] + open[at - 1][1]));
-      if (!checker_.is_free(state_, scratch_)) return false;
+      const auto pairs = memory_.motions->open_pairs();
+      if (pairs.empty() ? !checker_.is_free(state_, scratch_)
+                        : !checker_.are_apart(state_, pairs, scratch_))
+        return false;
     }
   return true;
 }

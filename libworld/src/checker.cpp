@@ -217,20 +217,27 @@ std::vector<std::array<Item, 2>> Checker::pairs(const WorldState& state,
   return out;
 }
 
+double Checker::margin_of(const WorldState& state, std::size_t i, std::size_t j) const {
+  return largest_margin_ > 0 ? margin_between(*world_, state, items_[i], items_[j]) : 0;
+}
+
+std::optional<collide::BodyPair> Checker::find_bodies(std::size_t i, std::size_t j, double margin,
+                                                      Scratch::Impl& s) const {
+  if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return std::nullopt;
+  if (s.memory.empty()) s.memory.resize(items_.size() * items_.size());
+  return find_collision(s.set(i), s.set(j), margin, &s.memory[i * items_.size() + j]);
+}
+
 template <typename Found>
 void Checker::visit_meeting(const WorldState& state, Scratch& scratch, const Options& options,
                             const Found& found) const {
   if (observer_ != nullptr) observer_->asked(state);
   place(state, scratch);
   Scratch::Impl& s = *scratch.impl_;
-  if (s.memory.empty()) s.memory.resize(items_.size() * items_.size());
   const auto look = [&](std::size_t i) { return s.balls.look_from(i); };
   visit(state, options, look, [&](std::size_t i, std::size_t j) {
-    if (s.is_beside_box(i, j) || s.is_beside_box(j, i)) return false;
-    const double margin =
-        largest_margin_ > 0 ? margin_between(*world_, state, items_[i], items_[j]) : 0;
-    const auto bodies =
-        find_collision(s.set(i), s.set(j), margin, &s.memory[i * items_.size() + j]);
+    const double margin = margin_of(state, i, j);
+    const auto bodies = find_bodies(i, j, margin, s);
     return bodies && found(i, j, *bodies, margin);
   });
 }
@@ -261,6 +268,22 @@ bool Checker::is_free(const WorldState& state, Scratch& scratch, const Options& 
   bool meet = false;
   visit_meeting(state, scratch, options, [&](auto&&...) { return meet = true; });
   return !meet;
+}
+
+bool Checker::are_apart(const WorldState& state, std::span<const std::array<Item, 2>> pairs,
+                        Scratch& scratch) const {
+  if (observer_ != nullptr) observer_->asked(state);
+  place(state, scratch);
+  Scratch::Impl& s = *scratch.impl_;
+  const auto number_of = [&](const Item& item) {
+    return static_cast<std::size_t>(std::lower_bound(items_.begin(), items_.end(), item) -
+                                    items_.begin());
+  };
+  return std::ranges::none_of(pairs, [&](const std::array<Item, 2>& pair) {
+    std::size_t i = number_of(pair[0]), j = number_of(pair[1]);
+    if (i > j) std::swap(i, j);
+    return find_bodies(i, j, margin_of(state, i, j), s).has_value();
+  });
 }
 
 std::optional<Contact> Checker::find_contact(const WorldState& state, Scratch& scratch,

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace kaboum::world::detail {
@@ -111,6 +112,8 @@ MovingPairs::MovingPairs(const Checker& checker, const WorldState& state,
   std::optional<Scratch> own;
   resting_ = checker_.places(start, resting, scratch != nullptr ? *scratch : own.emplace());
   memory_.resize(pairs_.size());
+  all_.resize(pairs_.size());
+  std::iota(all_.begin(), all_.end(), std::size_t{0});
 }
 
 const robot::Path& MovingPairs::path_of(const Mover& m) const {
@@ -131,25 +134,30 @@ double MovingPairs::speed_of(const Mover& m, const std::vector<double>& from,
   return motion.moves() ? sweep::MotionBounds(motion, m.reach).derivative(1) : 0;
 }
 
-void MovingPairs::prepare(std::size_t segment) {
+void MovingPairs::prepare(std::size_t segment, std::span<const std::size_t> pairs) {
   const auto ends_of = [&](const Mover& m) {
     const robot::Path& path = path_of(m);
     return std::pair<const std::vector<double>&, const std::vector<double>&>(
         path[segment], path[std::min(segment + 1, path.size() - 1)]);
   };
-  motions_.clear();
-  errors_.clear();
-  std::vector<double> speed;
-  for (const Mover& m : movers_) {
+  motions_.assign(movers_.size(), std::nullopt);
+  errors_.assign(movers_.size(), 0);
+  std::vector<double> speed(movers_.size(), 0);
+  const auto prepare_mover = [&](std::size_t i) {
+    if (motions_[i]) return;
+    const Mover& m = movers_[i];
     const auto [from, to] = ends_of(m);
-    motions_.emplace_back(model_of(m).kinematics, m.link, from, to);
-    const sweep::MotionBounds bounds(motions_.back(), m.reach);
-    speed.push_back(motions_.back().moves() ? bounds.derivative(1) : 0);
-    errors_.push_back(error_of_motion(m, bounds, speed.back(), model_of(m).base));
-  }
-  for (Pair& pair : pairs_) {
+    motions_[i].emplace(model_of(m).kinematics, m.link, from, to);
+    const sweep::MotionBounds bounds(*motions_[i], m.reach);
+    speed[i] = motions_[i]->moves() ? bounds.derivative(1) : 0;
+    errors_[i] = error_of_motion(m, bounds, speed[i], model_of(m).base);
+  };
+  for (const std::size_t k : pairs) {
+    Pair& pair = pairs_[k];
+    prepare_mover(pair.mover);
     pair.speed = speed[pair.mover];
     if (!pair.other) continue;
+    prepare_mover(*pair.other);
     const Mover &a = movers_[pair.mover], &b = movers_[*pair.other];
     if (a.robot != b.robot) {
       pair.speed = (speed[pair.mover] + speed[*pair.other]) * kUp;
@@ -201,7 +209,7 @@ void MovingPairs::place(double at, const std::vector<std::size_t>& pairs) {
   const auto place = [&](std::size_t m) {
     if (placed_[m] != 0) return;
     placed_[m] = 1;
-    places_[m].place(model_of(movers_[m]).base * motions_[m].at(at) * movers_[m].on_link,
+    places_[m].place(model_of(movers_[m]).base * motions_[m]->at(at) * movers_[m].on_link,
                      errors_[m]);
   };
   for (const std::size_t k : pairs) {

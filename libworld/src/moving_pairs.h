@@ -2,6 +2,8 @@
 
 #include <kaboum/world/motion_check.h>
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "mover.h"
@@ -43,7 +45,11 @@ class MovingPairs {
   }
 
   /// What is asked from now on is about this segment.
-  void prepare(std::size_t segment);
+  void prepare(std::size_t segment) { prepare(segment, all_); }
+  /// The same, of some pairs only.
+  void prepare(std::size_t segment, std::span<const std::size_t> pairs);
+  /// The numbers of all pairs.
+  [[nodiscard]] const std::vector<std::size_t>& all() const { return all_; }
   /// Puts what moves, of some pairs, where it is at a share of the segment.
   void place(double at, const std::vector<std::size_t>& pairs);
   /// Whether the outer sets of a pair come within its margin, its room and `slack` of each other
@@ -76,8 +82,9 @@ class MovingPairs {
   std::vector<char> placed_;
   std::vector<Checker::PosedItem> resting_;
   std::vector<Pair> pairs_;
+  std::vector<std::size_t> all_;
   std::vector<collide::Memory> memory_;
-  std::vector<sweep::LinkMotion> motions_;
+  std::vector<std::optional<sweep::LinkMotion>> motions_;  ///< of movers of prepared pairs
   std::vector<double> errors_;
 };
 

@@ -5,7 +5,6 @@
 #include <kaboum/world/stretch_check.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "moving_pairs.h"
 
@@ -20,14 +19,25 @@ constexpr double kWhole = 1.0 / 16;
 struct StretchChecker::Impl {
   Impl(const Checker& checker, const WorldState& state, std::size_t robot)
       : motion{checker.world().robots[robot].home, checker.world().robots[robot].home},
-        moving(checker, state, {{robot, &motion}}, nullptr),
-        all(moving.pairs().size()) {
-    std::iota(all.begin(), all.end(), std::size_t{0});
+        moving(checker, state, {{robot, &motion}}, nullptr) {}
+
+  /// Numbers of pairs of things. @throws Error{InvalidArgument} for one that is not looked at.
+  std::vector<std::size_t> numbers_of(std::span<const std::array<Item, 2>> some) const {
+    std::vector<std::size_t> out;
+    for (const auto& [a, b] : some) {
+      const auto found = std::ranges::find_if(moving.all(), [&](std::size_t k) {
+        const Item &x = moving.mover(moving.pairs()[k]), &y = moving.other(moving.pairs()[k]);
+        return (x == a && y == b) || (x == b && y == a);
+      });
+      if (found == moving.all().end())
+        throw Error(ErrorCode::InvalidArgument, "a pair that is not looked at");
+      out.push_back(*found);
+    }
+    return out;
   }
 
   robot::Path motion;  ///< that `moving` refers to
   detail::MovingPairs moving;
-  std::vector<std::size_t> all;
   std::span<const std::array<double, 2>> stretches;
   double distance = 0;
   std::size_t most = 0;
@@ -72,7 +82,8 @@ StretchChecker& StretchChecker::operator=(StretchChecker&&) noexcept = default;
 StretchChecker::Answer StretchChecker::is_apart(std::span<const double> from,
                                                 std::span<const double> to,
                                                 std::span<const std::array<double, 2>> stretches,
-                                                double distance, std::size_t most_intervals) {
+                                                double distance, std::size_t most_intervals,
+                                                std::span<const std::array<Item, 2>> pairs) {
   Impl& s = *impl_;
   if (from.size() != s.motion[0].size() || to.size() != s.motion[0].size())
     throw Error(ErrorCode::InvalidArgument, "a configuration of another robot");
@@ -83,10 +94,11 @@ StretchChecker::Answer StretchChecker::is_apart(std::span<const double> from,
   s.distance = distance;
   s.most = most_intervals;
   s.answer = {};
-  s.moving.prepare(0);
+  const std::vector<std::size_t> some = pairs.empty() ? s.moving.all() : s.numbers_of(pairs);
+  s.moving.prepare(0, some);
   s.answer.apart = true;
   for (double begin = 0; begin < 1 && s.answer.apart; begin += kWhole)
-    s.answer.apart = s.are_apart(begin, begin + kWhole, s.all);
+    s.answer.apart = s.are_apart(begin, begin + kWhole, some);
   return s.answer;
 }
 

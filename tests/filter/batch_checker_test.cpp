@@ -550,6 +550,14 @@ TEST(Lanes, BallsAreWithinTheirErrorOfWhereTheyAre) {
   }
 }
 
+/// Of links that are a ball: what else holds them is not larger than it.
+void shrink_to_balls(detail::Model& model) {
+  for (detail::ShapeModel& s : model.shapes) {
+    detail::BodyModel& body = model.bodies[s.bodies.begin];
+    s.whole.radius = body.ball.radius = model.outer[body.balls.begin].radius;
+  }
+}
+
 /// The bounds matter: without them answers are wrong next to contacts, which no others are.
 TEST(Lanes, BoundsThatAreTakenAwayAreMissed) {
   const World world = cell(true);
@@ -568,9 +576,10 @@ TEST(Lanes, BoundsThatAreTakenAwayAreMissed) {
     outer.outer[b].radius = radii[b];
     inner.inner[b].radius = radii[b];
   }
-  for (detail::ShapeModel& s : outer.shapes) s.whole.radius = outer.outer[s.outer.begin].radius;
+  shrink_to_balls(outer);
   for (detail::Obstacle& o : outer.obstacles) o.radius -= 8e-6F;
-  for (detail::ObstacleGroup& g : outer.groups) g.radius -= 8e-6F;
+  for (detail::ObstacleGroup& g : outer.groups)
+    for (float& half : g.half) half -= 8e-6F;
   for (detail::Obstacle& o : inner.obstacles) o.inner_radius += 8e-6F;
   EXPECT_GT(wrong(outer)[0], 10U);
   EXPECT_GT(wrong(inner)[1], 10U);
@@ -613,6 +622,77 @@ TEST(Lanes, CornersThatLieAreNoticed) {
   EXPECT_GT(count(model, Answer::Free), count(none, Answer::Free) + 10);
   for (const Instructions set : instruction_sets())
     EXPECT_EQ(answers_of(model, set, rows), answers_of(model, instruction_sets().back(), rows));
+}
+
+/// Directions along which bodies are apart decide what balls leave open; bodies that are said to be
+/// smaller than they are give wrong answers, by far less where bodies are balls, which directions
+/// decide to the last bits.
+TEST(Lanes, DirectionsThatLieAreNoticed) {
+  for (const bool round : {false, true}) {
+    const World world = cell(round);
+    const world::Checker checker(world);
+    const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+    detail::Model mutant = model, none = model;
+    for (detail::BodyModel& b : mutant.bodies) b.offset -= round ? 4e-6F : 0.003F;
+    for (detail::BodyModel& b : none.bodies) b.corners = {};
+    const std::vector<double> rows =
+        round ? rows_at_contact(checker, 6000, 50, {1e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6})
+              : rows_at_contact(checker, 6000, 78, {1e-6, 1e-5, 1e-4, 1e-3});
+    const std::vector<std::uint8_t> free = by_checker(checker, rows);
+    const std::vector<Answer> answers = answers_of(model, instruction_sets().back(), rows);
+    const auto count = [&](const detail::Model& m, Answer answer) {
+      return std::ranges::count(answers_of(m, instruction_sets().back(), rows), answer);
+    };
+    EXPECT_EQ(wrong_answers(answers, free)[0], 0U);
+    EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 20U);
+    if (!round) {
+      EXPECT_GT(count(model, Answer::Free), count(none, Answer::Free) + 100);
+    }
+    for (const Instructions set : instruction_sets())
+      EXPECT_EQ(answers_of(model, set, rows), answers) << name_of(set);
+  }
+}
+
+/// Rows that are open are so for pairs that are named: all others are apart, and these decide.
+TEST(Lanes, OpenPairsDecideRows) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+  std::vector<double> rows = random_rows(world, 3000, 23);
+  const std::vector<double> near = rows_at_contact(checker, 3000, 79, {1e-6, 1e-4, 1e-3});
+  rows.insert(rows.end(), near.begin(), near.end());
+  rows[0] = 50;  // beyond its limits
+  const std::size_t n = model.variables, count = rows.size() / n;
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  std::vector<Answer> answers(count);
+  detail::LaneMemory memory(model);
+  detail::OpenPairs pairs(count);
+  detail::filter_rows(model, instruction_sets().back(), rows.data(), nullptr, count, memory,
+                      answers.data(), 0, detail::Look::All, &pairs);
+  world::Scratch scratch;
+  world::WorldState state = initial_state(world);
+  EXPECT_EQ(answers[0], Answer::Open);
+  EXPECT_FALSE(pairs.of(0));
+  std::array<std::size_t, 2> seen{};
+  for (std::size_t i = 1; i < count; ++i) {
+    if (answers[i] != Answer::Open) continue;
+    const auto left = pairs.of(i);
+    ASSERT_TRUE(left);  // no more pairs than there is room for
+    std::vector<std::array<world::Item, 2>> items;
+    for (const std::uint32_t k : *left) items.push_back(model.items[k]);
+    state.q[0].assign(rows.begin() + static_cast<std::ptrdiff_t>(i * n),
+                      rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+    EXPECT_EQ(checker.are_apart(state, items, scratch), free[i] != 0);
+    ++seen[free[i]];
+    // What meets is among them.
+    for (const world::Contact& contact : checker.find_contacts(state, scratch, {}))
+      EXPECT_TRUE(std::ranges::any_of(items, [&](const auto& pair) {
+        return pair == contact.items ||
+               (pair[0] == contact.items[1] && pair[1] == contact.items[0]);
+      }));
+  }
+  EXPECT_GT(seen[0], 100U);
+  EXPECT_GT(seen[1], 10U);
 }
 
 /// Motions one by one: what vector code says of them is so, and the same for all instructions.
@@ -814,7 +894,7 @@ TEST(Lanes, CloudsThatLieAreNoticed) {
     small.outer[b].radius = radii[b];
     large.inner[b].radius = radii[b];
   }
-  for (detail::ShapeModel& s : small.shapes) s.whole.radius = small.outer[s.outer.begin].radius;
+  shrink_to_balls(small);
   small.groups[0].cloud.radius = kRadius - 8e-6F;
   large.groups[0].cloud.inner_radius = kRadius + 8e-6F;
   for (detail::CloudNode& node : cut.cloud_nodes)

@@ -87,6 +87,7 @@ class BatchChecker {
 
  private:
   friend class MotionChecker;
+  class RowWorker;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

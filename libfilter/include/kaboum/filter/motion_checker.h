@@ -35,6 +35,10 @@ class MotionChecker {
   /// another one, ascending: all else of it is free as filter says. Empty where it did not look.
   [[nodiscard]] std::span<const std::array<double, 2>> open() const;
 
+  /// Pairs of things that these stretches are open for: all others are apart there by more than the
+  /// resolution, for certain. Empty: any may be nearer.
+  [[nodiscard]] std::span<const std::array<world::Item, 2>> open_pairs() const;
+
   /// True if the motion, which filter left open last, is free at every instant, for certain: the
   /// exact predicates decide its open stretches. Then check_motion calls it
   /// free. False: nothing is said.

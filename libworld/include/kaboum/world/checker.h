@@ -64,7 +64,7 @@ class Observer {
   virtual ~Observer() = default;
   Observer(const Observer&) = delete;
   Observer& operator=(const Observer&) = delete;
-  /// Called by find_contact, find_contacts and is_free.
+  /// Called by find_contact, find_contacts, is_free and are_apart.
   virtual void asked(const WorldState& state) = 0;
   /// Called by check_motion; by find_obstacles too, with the things that it looks at.
   virtual void asked(const WorldState& state, std::size_t robot,
@@ -127,6 +127,12 @@ class Checker {
   [[nodiscard]] bool is_free(const WorldState& state, Scratch& scratch) const {
     return is_free(state, scratch, Options{});
   }
+
+  /// True if none of some pairs is in contact, as find_contacts decides each of them: for who knows
+  /// of the others. A substitute is not asked. @pre no item of the pairs is absent
+  /// @throws as find_contact
+  [[nodiscard]] bool are_apart(const WorldState& state, std::span<const std::array<Item, 2>> pairs,
+                               Scratch& scratch) const;
 
   /// All pairs in contact.
   [[nodiscard]] std::vector<Contact> find_contacts(const WorldState& state, Scratch& scratch,
@@ -197,6 +203,11 @@ class Checker {
   template <typename Look, typename Pair>
   void visit(const WorldState& state, const Options& options, const Look& look,
              const Pair& pair) const;
+
+  /// The bodies of a pair of placed items that meet, by the numbers of the items.
+  [[nodiscard]] std::optional<collide::BodyPair> find_bodies(std::size_t i, std::size_t j,
+                                                             double margin, Scratch::Impl& s) const;
+  [[nodiscard]] double margin_of(const WorldState& state, std::size_t i, std::size_t j) const;
 
   /// Calls found(i, j, bodies, margin) for the pairs in contact until it is true.
   template <typename Found>

@@ -33,12 +33,15 @@ class StretchChecker {
   /// @param from, to  a value for each variable, within the limits
   /// @param stretches  from a share of the motion to another one, ascending: parts of [0, 1] that
   ///   come of halving it again and again
-  /// @pre all pairs are so far apart at every instant that is in none of the stretches
   /// @param distance  > 0 [length]
   /// @param most_intervals  that are looked at
+  /// @param pairs  that are looked at; none: all
+  /// @pre all pairs are so far apart at every instant that is in none of the stretches, and those
+  ///   that are not looked at are so always
+  /// @throws Error{InvalidArgument} for a pair that check_motion does not look at
   Answer is_apart(std::span<const double> from, std::span<const double> to,
                   std::span<const std::array<double, 2>> stretches, double distance,
-                  std::size_t most_intervals);
+                  std::size_t most_intervals, std::span<const std::array<Item, 2>> pairs = {});
 
  private:
   struct Impl;
