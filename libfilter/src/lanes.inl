@@ -172,19 +172,43 @@ inline Point turned_back(const Frame& frame, const Point& d) {
           r[2] * d.x + r[5] * d.y + r[8] * d.z};
 }
 
+/// The larger one; of equal ones, and where one is no number, the second.
+inline Floats larger(const Floats& a, const Floats& b) {
+#if KABOUM_LANES == 16
+  return reinterpret_cast<Floats>(
+      _mm512_maskz_max_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+#elif KABOUM_LANES == 8
+  return reinterpret_cast<Floats>(
+      _mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#else
+  return a > b ? a : b;
+#endif
+}
+
 /// How far the farthest corner of a body is along a direction of its own frame, and its number.
 inline Floats farthest(const View& m, const BodyModel& body, const Point& d, Ints& best) {
-  const float* first = m.corner[body.corners.begin].at;
-  Floats most = d.x * first[0] + d.y * first[1] + d.z * first[2];
-  best = Ints{} + static_cast<std::int32_t>(body.corners.begin);
-  for (std::uint32_t i = body.corners.begin + 1; i < body.corners.end; ++i) {
+  const auto along = [&](std::uint32_t i) {
     const float* p = m.corner[i].at;
-    const Floats along = d.x * p[0] + d.y * p[1] + d.z * p[2];
-    const Ints more = along > most;
-    most = more ? along : most;
-    best = more ? Ints{} + static_cast<std::int32_t>(i) : best;
+    return d.x * p[0] + d.y * p[1] + d.z * p[2];
+  };
+  const std::uint32_t begin = body.corners.begin, end = body.corners.end;
+  // Every other corner by itself: none has to wait for the last one.
+  Floats most = along(begin), other = most;
+  best = Ints{} + static_cast<std::int32_t>(begin);
+  Ints best_other = best, number = best;
+  for (std::uint32_t i = begin; i + 1 < end; i += 2) {
+    const Floats first = along(i), second = along(i + 1);
+    best = first > most ? number : best;
+    most = larger(first, most);
+    best_other = second > other ? number + 1 : best_other;
+    other = larger(second, other);
+    number += 2;
   }
-  return most;
+  const Floats last = along(end - 1);
+  best = last > most ? Ints{} + static_cast<std::int32_t>(end - 1) : best;
+  most = larger(last, most);
+  best = other > most ? best_other : best;
+  return larger(other, most);
 }
 
 /// Corners by their numbers.
@@ -342,6 +366,9 @@ class Pack {
   [[nodiscard]] unsigned open() const { return open_ & ~contact_; }
 
  private:
+  static constexpr int kSteps = Moving ? 4 : 6;  ///< of the search for directions
+  static constexpr int kFewSteps = 2;            ///< of that for whole links
+
   /// True if a contact ends the look.
   [[nodiscard]] bool stops() const { return m_.look == Look::One || m_.look == Look::Contacts; }
   [[nodiscard]] bool ends() const {
@@ -376,65 +403,72 @@ class Pack {
   void look_at(const ObstaclePair& pair, const ShapeModel& shape, const Obstacle& o,
                unsigned near) {
     if (near == 0) return;
+    if (m_.look == Look::Contacts) return note(0, inside(pair, shape, o, near));
     const auto motion = whole_motion(shape.frame, 0);
-    unsigned doubt = near;
-    if (m_.look != Look::Contacts) {
-      doubt = not_apart(pair, shape, motion, o, near);
-      if (doubt == 0) return;
-      if (m_.look == Look::Apart) return note(doubt, 0);
-    }
-    place_inner(pair.shape);
-    unsigned meet = 0;
-    for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != doubt; ++k)
-      meet |= doubt & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
-    note(doubt, meet);
-  }
-
-  /// Lanes in which nothing shows that a shape is apart from an obstacle.
-  template <typename Any>
-  unsigned not_apart(const ObstaclePair& pair, const ShapeModel& shape, const Any& motion,
-                     const Obstacle& o, unsigned near) {
-    place_outer(pair.shape);
     const float more = pair.margin + m_.slack;
-    unsigned doubt = 0, facing = 0;
-    bool has_faces = false;
-    for (std::uint32_t i = shape.bodies.begin; i < shape.bodies.end && doubt != near; ++i) {
+    const PlacedBody other{m_.body[o.body], world_point(m_.body[o.body].ball.center), nullptr};
+    const float reach = m_.body[o.body].offset + more;
+    if (is_worth_a_hull(shape, shape)) {
+      const BodyModel& hull = m_.body[shape.hull];
+      near = without_direction({hull, whole_[pair.shape], &frames_[shape.frame]}, other,
+                               offset_of(motion, hull) + reach, near, kFewSteps);
+      if (near == 0) return;
+    }
+    place_outer(pair.shape);
+    unsigned doubt = 0, meet = 0, facing = 0;
+    bool is_looked_into = false;
+    for (std::uint32_t i = shape.bodies.begin; i < shape.bodies.end && (doubt | meet) != near;
+         ++i) {
       const BodyModel& body = m_.body[i];
       const unsigned left =
-          near & ~doubt & may_meet(m_, bodies_[i], radius_of(motion, body.ball, more), o);
+          near & ~doubt & ~meet & may_meet(m_, bodies_[i], radius_of(motion, body.ball, more), o);
       unsigned found = 0;
       for (std::uint32_t k = body.balls.begin; k < body.balls.end && found != left; ++k)
         found |= left & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], more), o);
       if (found == 0) continue;
-      if (!has_faces) facing = not_beyond_face(pair, shape, motion, o, near);
-      has_faces = true;
-      found &= facing;
-      if (found != 0)
-        found =
-            without_direction({body, bodies_[i], &frames_[shape.frame]},
-                              {m_.body[o.body], world_point(m_.body[o.body].ball.center), nullptr},
-                              offset_of(motion, body) + (m_.body[o.body].offset + more), found);
-      doubt |= found;
+      if (!is_looked_into) {
+        if (m_.look != Look::Apart) meet = inside(pair, shape, o, near);
+        facing = not_beyond_face(pair, shape, motion, o, near & ~meet);
+      }
+      is_looked_into = true;
+      found &= facing & ~meet;
+      doubt |= without_direction({body, bodies_[i], &frames_[shape.frame]}, other,
+                                 offset_of(motion, body) + reach, found);
     }
-    return doubt;
+    note(doubt, meet);
+  }
+
+  /// Lanes in which a shape certainly meets an obstacle.
+  unsigned inside(const ObstaclePair& pair, const ShapeModel& shape, const Obstacle& o,
+                  unsigned lanes) {
+    place_inner(pair.shape);
+    unsigned meet = 0;
+    for (std::uint32_t k = shape.inner.begin; k < shape.inner.end && meet != lanes; ++k)
+      meet |= lanes & must_meet(inner_[k], m_.inner[k].radius + pair.least_margin, o);
+    return meet;
   }
 
   /// A body and where it is.
   struct PlacedBody {
     const BodyModel& body;
-    const Point& middle;
+    Point middle;
     const Frame* frame;  ///< null: the world
   };
 
-  /// Lanes of which no direction is found along which two bodies are apart by more than `reach`.
-  /// The search: mirrored at the vector between the farthest corners ([chung1996]).
+  /// Lanes that are open already, or of which no direction is found along which two bodies are
+  /// apart by more than `reach`. The search: mirrored at the vector between the farthest corners
+  /// ([chung1996]).
   template <typename Reach>
   [[nodiscard]] unsigned without_direction(const PlacedBody& a, const PlacedBody& b,
-                                           const Reach& reach, unsigned lanes) const {
-    constexpr int kSteps = 8;
+                                           const Reach& reach, unsigned lanes,
+                                           int steps = kSteps) const {
     constexpr float kShort = 1 - 0x1p-9F;
+    // What is open already is asked of the exact predicates, or is cut, in any case.
+    const unsigned open = Moving && pairs_ != nullptr ? 0 : lanes & open_;
+    lanes &= ~open;
+    if (lanes == 0) return open;
     if (a.body.corners.begin == a.body.corners.end || b.body.corners.begin == b.body.corners.end)
-      return lanes;
+      return lanes | open;
     Point d{b.middle.x - a.middle.x, b.middle.y - a.middle.y, b.middle.z - a.middle.z};
     for (int step = 0;; ++step) {
       const Floats scale = kShort / root(dot(d, d));
@@ -448,7 +482,7 @@ class Pack {
       const Point from = origin_of(a.frame), to = origin_of(b.frame);
       const Floats gap = dot({to.x - from.x, to.y - from.y, to.z - from.z}, d) - (top + bottom);
       lanes &= bits_of(~(gap > reach));
-      if (lanes == 0 || step == kSteps) return lanes;
+      if (lanes == 0 || step == steps) return lanes | open;
       Point p = corners_at(m_, of_a), q = corners_at(m_, of_b);
       if (a.frame != nullptr) p = place(*a.frame, p);
       if (b.frame != nullptr) q = place(*b.frame, q);
@@ -546,54 +580,79 @@ class Pack {
       near &= w.of_first ? not_separated(w, a, motion_a, b, motion_b)
                          : not_separated(w, b, motion_b, a, motion_a);
     }
+    if (is_worth_a_hull(a, b))
+      near =
+          without_direction({m_.body[a.hull], whole_a, &frames_[a.frame]},
+                            {m_.body[b.hull], whole_b, &frames_[b.frame]},
+                            offset_of(motion_a, m_.body[a.hull]) +
+                                (offset_of(motion_b, m_.body[b.hull]) + (pair.margin + m_.slack)),
+                            near, kFewSteps);
     if (near == 0) return;
     place_outer(pair.a);
     place_outer(pair.b);
-    unsigned doubt = 0;
-    for (std::uint32_t i = a.bodies.begin; i < a.bodies.end && doubt != near; ++i) {
+    unsigned doubt = 0, meet = 0;
+    bool is_looked_into = m_.look == Look::Apart;
+    for (std::uint32_t i = a.bodies.begin; i < a.bodies.end && (doubt | meet) != near; ++i) {
       const BodyModel& body = m_.body[i];
       const auto reach = radius_of(motion_a, body.ball, pair.margin + m_.slack);
-      const unsigned left =
-          near & ~doubt & may_meet(bodies_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
-      for (std::uint32_t k = b.bodies.begin; k < b.bodies.end && (left & ~doubt) != 0; ++k)
-        doubt |= not_apart(pair, i, motion_a, k, motion_b, left & ~doubt);
+      const unsigned left = near & ~doubt & ~meet &
+                            may_meet(bodies_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
+      for (std::uint32_t k = b.bodies.begin; k < b.bodies.end; ++k) {
+        unsigned found = balls_meet(pair, i, motion_a, k, motion_b, left & ~doubt & ~meet);
+        if (found == 0) continue;
+        if (!is_looked_into) meet = inside(pair, near);
+        is_looked_into = true;
+        found &= ~meet;
+        doubt |= without_direction({body, bodies_[i], &frames_[a.frame]},
+                                   {m_.body[k], bodies_[k], &frames_[b.frame]},
+                                   offset_of(motion_a, body) +
+                                       (offset_of(motion_b, m_.body[k]) + (pair.margin + m_.slack)),
+                                   found);
+      }
     }
-    if (doubt == 0) return;
-    if (m_.look == Look::Apart) return note(doubt, 0);
-    place_inner(pair.a);
-    place_inner(pair.b);
-    unsigned meet = 0;
-    for (std::uint32_t i = a.inner.begin; i < a.inner.end && meet != doubt; ++i)
-      for (std::uint32_t k = b.inner.begin; k < b.inner.end && meet != doubt; ++k)
-        meet |= doubt & must_meet(inner_[i], inner_[k],
-                                  m_.inner[i].radius + m_.inner[k].radius + pair.least_margin);
     note(doubt, meet);
   }
 
-  /// Lanes in which nothing shows that two bodies of links are apart.
+  /// True if two hulls are looked at before all pairs of bodies.
+  [[nodiscard]] static bool is_worth_a_hull(const ShapeModel& a, const ShapeModel& b) {
+    constexpr std::uint32_t kPairs = 3;
+    return (a.bodies.end - a.bodies.begin) * (b.bodies.end - b.bodies.begin) > kPairs;
+  }
+
+  /// Lanes in which two links certainly meet.
+  unsigned inside(const ShapePair& pair, unsigned lanes) {
+    place_inner(pair.a);
+    place_inner(pair.b);
+    const Range a = m_.shape[pair.a].inner, b = m_.shape[pair.b].inner;
+    unsigned meet = 0;
+    for (std::uint32_t i = a.begin; i < a.end && meet != lanes; ++i)
+      for (std::uint32_t k = b.begin; k < b.end && meet != lanes; ++k)
+        meet |= lanes & must_meet(inner_[i], inner_[k],
+                                  m_.inner[i].radius + m_.inner[k].radius + pair.least_margin);
+    return meet;
+  }
+
+  /// Lanes in which balls of two bodies of links may meet.
   template <typename Any>
-  unsigned not_apart(const ShapePair& pair, std::uint32_t i, const Any& motion_a, std::uint32_t k,
-                     const Any& motion_b, unsigned lanes) const {
+  unsigned balls_meet(const ShapePair& pair, std::uint32_t i, const Any& motion_a, std::uint32_t k,
+                      const Any& motion_b, unsigned lanes) const {
+    if (lanes == 0) return 0;
     const BodyModel &a = m_.body[i], &b = m_.body[k];
     const float more = pair.margin + m_.slack;
     lanes &= may_meet(bodies_[i], bodies_[k],
                       radius_of(motion_a, a.ball, more) + radius_of(motion_b, b.ball, 0));
-    if (lanes == 0) return 0;
-    unsigned doubt = 0;
-    for (std::uint32_t x = a.balls.begin; x < a.balls.end && doubt != lanes; ++x) {
+    unsigned out = 0;
+    for (std::uint32_t x = a.balls.begin; x < a.balls.end && out != lanes; ++x) {
       const auto reach = radius_of(motion_a, m_.outer[x], more);
       const unsigned left =
-          lanes & ~doubt & may_meet(outer_[x], bodies_[k], reach + radius_of(motion_b, b.ball, 0));
+          lanes & ~out & may_meet(outer_[x], bodies_[k], reach + radius_of(motion_b, b.ball, 0));
       if (left == 0) continue;
       unsigned found = 0;
       for (std::uint32_t y = b.balls.begin; y < b.balls.end && found != left; ++y)
         found |= left & may_meet(outer_[x], outer_[y], reach + radius_of(motion_b, m_.outer[y], 0));
-      doubt |= found;
+      out |= found;
     }
-    if (doubt == 0) return 0;
-    return without_direction({a, bodies_[i], &frames_[m_.shape[pair.a].frame]},
-                             {b, bodies_[k], &frames_[m_.shape[pair.b].frame]},
-                             offset_of(motion_a, a) + (offset_of(motion_b, b) + more), doubt);
+    return out;
   }
 
   /// Lanes in which a witness does not separate two shapes.

@@ -429,6 +429,15 @@ double largest_radius(const collide::BoundingSet& set) {
   return out;
 }
 
+/// What errors of places take of the extents of a link's corners along a direction.
+double extent_error(const Chain& chain, const LinkPlace& link, double reach, double lengths,
+                    double error) {
+  const FrameBounds& frame = chain.bounds[link.frame];
+  return kDoubles * (frame.lengths + link.lengths + lengths) +
+         (2 * frame.rotation + 12 * kUnit) * reach + frame.translation + 10 * kUnit * frame.reach +
+         2.5 * error;
+}
+
 void add_corners(const world::Checker& checker, const world::RobotModel& robot, std::size_t index,
                  const Chain& chain, const std::vector<double>& errors, Model& model) {
   for (std::size_t s = 0; s < model.shapes.size(); ++s) {
@@ -448,6 +457,17 @@ void add_corners(const world::Checker& checker, const world::RobotModel& robot, 
     }
     shape.corners.end = size_of(model.corners);
     shape.reach = rounded_up(reach * (1 + 1e-6));
+    BodyModel hull;
+    hull.ball = shape.whole;
+    if (shape.corners.end - shape.corners.begin <= kMostCorners) hull.corners = shape.corners;
+    hull.reach = shape.reach;
+    const auto& ball = robot.shapes[s].outer.ball();
+    hull.offset = rounded_up(
+        (radius * (1 + 1e-8) + 1.1 * extent_error(chain, link, shape.reach,
+                                                  ball.center.norm() + ball.radius, errors[s])) *
+        kSums);
+    shape.hull = size_of(model.bodies);
+    model.bodies.push_back(hull);
   }
 }
 
@@ -523,21 +543,12 @@ class WitnessSearch {
   std::vector<std::pair<std::size_t, Vec3>> normals_;
 };
 
-/// What errors of places take of the extents of a link's corners along a direction.
-double extent_error(const Chain& chain, const LinkPlace& link, double reach, double lengths,
-                    double error) {
-  const FrameBounds& frame = chain.bounds[link.frame];
-  return kDoubles * (frame.lengths + link.lengths + lengths) +
-         (2 * frame.rotation + 12 * kUnit) * reach + frame.translation + 10 * kUnit * frame.reach +
-         2.5 * error;
-}
-
 /// Looks at rows for a pair at a time.
 class PairProbe {
  public:
-  /// Points of clouds are left out: no pair with one may be asked for.
+  /// Points of clouds are left out: no pair with one may be asked for. So are directions.
   PairProbe(const Model& model, std::span<const double> rows)
-      : alone_(without_clouds(model)), memory_(alone_), rows_(rows) {}
+      : alone_(balls_alone(model)), memory_(alone_), rows_(rows) {}
 
   const std::vector<BatchChecker::Answer>& look_at(const ShapePair& pair) {
     alone_.shape_pairs = {pair};
@@ -555,10 +566,11 @@ class PairProbe {
   }
 
  private:
-  static Model without_clouds(const Model& model) {
+  static Model balls_alone(const Model& model) {
     Model out = model;
     out.cloud_points.clear();
     out.cloud_nodes.clear();
+    for (BodyModel& body : out.bodies) body.corners = {};
     return out;
   }
   const std::vector<BatchChecker::Answer>& look() {

@@ -66,6 +66,7 @@ struct ShapeModel {
   std::uint32_t frame = 0;
   FrameBall whole;  ///< holds all of it
   Range bodies, inner;
+  std::uint32_t hull = 0;  ///< of Model::bodies: the hull of all, whose balls are none
   Range corners;
   float reach = 0;          ///< of the corners, rounded up
   float corner_radius = 0;  ///< of balls round the corners whose hull holds all of it, as FrameBall
@@ -111,8 +112,8 @@ struct CloudModel {
 /// The obstacles of one thing, and a box along the world's axes round them.
 struct ObstacleGroup {
   float center[3] = {}, half[3] = {};  ///< half: errors included, rounded up
-  Range obstacles;   ///< none of a cloud
-  CloudModel cloud;  ///< nodes: empty where it is none
+  Range obstacles;                     ///< none of a cloud
+  CloudModel cloud;                    ///< nodes: empty where it is none
 };
 
 /// A shape and a thing that are to be apart by more than the margin.
