@@ -40,11 +40,8 @@ void describe_clouds(CLI::App& app, CheckOptions& o) {
                "where they see nothing");
 }
 
-}  // namespace
-
-void describe(CLI::App& app, CheckOptions& o) {
-  app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
-  app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
+/// Options of motions from files. @return the one that names these
+CLI::Option* describe_path(CLI::App& app, CheckOptions& o) {
   auto* path = app.add_option("--path", o.paths,
                               "Decide a whole motion, at every instant: waypoints, CSV, JSON, YAML "
                               "or .npy, also as MoveIt, VAMP and cuRobo have them. Repeated, with "
@@ -62,6 +59,15 @@ void describe(CLI::App& app, CheckOptions& o) {
       ->capture_default_str()
       ->type_name(std::string(kStraight) + "|" + kCubic + "|" + kQuintic)
       ->needs(path);
+  return path;
+}
+
+}  // namespace
+
+void describe(CLI::App& app, CheckOptions& o) {
+  app.add_option("SCENE", o.scene, "Scene file (docs/scene.md)")->required();
+  app.add_option("--robot", o.robot, "Which robot moves [the only one]")->type_name("NAME");
+  CLI::Option* path = describe_path(app, o);
   auto* one = app.add_option("--configuration", o.configuration,
                              "Decide the robot at these joint values, separated by commas [home]")
                   ->type_name("Q1,Q2,…")
