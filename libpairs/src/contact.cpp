@@ -2,8 +2,6 @@
 
 #include "contact.h"
 
-#include <kaboum/geom/closest_point.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -65,10 +63,6 @@ double margin(const Corners& s, const Corners& t) {
   return out;
 }
 
-double square_to_box(const Vec3& p, const geom::Box3& box) {
-  return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
-}
-
 Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
   Mesh out{mesh.vertices, {}};
   for (const geom::Triangle& t : mesh.triangles)
@@ -84,6 +78,7 @@ Surface::Surface(Mesh mesh)
     : mesh_(std::move(mesh)),
       tree_(mesh_),
       bvh_(std::make_shared<geom::Bvh>(mesh_)),
+      query_(mesh_.triangles.empty() ? nullptr : std::make_shared<geom::DistanceQuery>(mesh_)),
       winding_(mesh_, bvh_) {
   // Equal corners are one; what they connect is a part.
   std::map<std::array<double, 3>, std::uint32_t> first;
@@ -152,20 +147,10 @@ Surface::Winding Surface::winding(const Vec3& point) const {
   return out;
 }
 
-double Surface::distance(const Vec3& point, double most, double least) const {
-  if (whole_ != nullptr) return whole_->distance(point, most, least);
-  double best = most * most;
-  bvh_->traverse(
-      [&](const geom::Box3& box) {
-        return best > least * least && square_to_box(point, box) < best;
-      },
-      [&](std::uint32_t i) {
-        const geom::Triangle& t = mesh_.triangles[i];
-        const Vec3 near = geom::closest_point(point, mesh_.vertices[t[0]], mesh_.vertices[t[1]],
-                                              mesh_.vertices[t[2]]);
-        best = std::min(best, (near - point).squaredNorm());
-      });
-  return std::sqrt(best);
+double Surface::distance(const Vec3& point, double least) const {
+  if (whole_ != nullptr) return whole_->distance(point, least);
+  if (least > 0 && query_->within(point, least) != geom::TriangleSearch::kNone) return 0;
+  return query_->nearest(point).lower;
 }
 
 Contact::Nearest Contact::nearest(const BoxMotion& box, double gap, std::size_t most_steps) const {
@@ -311,7 +296,7 @@ double Contact::inside(const BoxMotion& box, std::size_t most_corners, bool few)
     // Spread over all of them where these are too many.
     const std::size_t step = found.size() / most_corners + 1;
     for (std::size_t i = 0; i < found.size(); i += step) {
-      const double distance = in.distance(found[i], root.reach * 2, best);
+      const double distance = in.distance(found[i], best);
       if (distance > best && in.winding(found[i]).sum >= 1) best = distance;
     }
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kaboum/geom/bvh.h>
+#include <kaboum/geom/triangle_search.h>
 #include <kaboum/geom/winding.h>
 #include <kaboum/pairs/decide.h>
 
@@ -34,15 +35,18 @@ class Surface {
     bool any = false;  ///< one of them does, be it a cavity's
   };
   [[nodiscard]] Winding winding(const Vec3& point) const;
-  /// The distance of a point from the triangles, rounded; searched below `most`, and not on where
-  /// it is seen to be no more than `least`.
-  [[nodiscard]] double distance(const Vec3& point, double most, double least) const;
+  /// The distance of a point from the triangles, from below; 0 where it is seen to be no more than
+  /// `least`.
+  [[nodiscard]] double distance(const Vec3& point, double least) const;
+  /// Distances from the triangles.
+  [[nodiscard]] const std::shared_ptr<const geom::DistanceQuery>& query() const { return query_; }
 
  private:
   const Surface* whole_ = nullptr;  ///< that this was cut from
   Mesh mesh_;
   HullTree tree_;
   std::shared_ptr<const geom::Bvh> bvh_;
+  std::shared_ptr<const geom::DistanceQuery> query_;
   geom::WindingNumber winding_;
   std::vector<std::uint32_t> part_of_;  ///< each triangle's
   std::vector<char> closed_;            ///< each part

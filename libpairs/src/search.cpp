@@ -18,11 +18,11 @@ namespace {
 constexpr std::array<std::uint32_t, 16> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                 23, 29, 31, 37, 41, 43, 47, 53};
 constexpr std::size_t kFirstSamples = 50;
-constexpr std::size_t kClimbs = 4;          ///< from the best places of each time
-constexpr std::size_t kTargets = 8;         ///< of each time, by twos from the best places
-constexpr std::size_t kFewSteps = 400;      ///< down the trees, until a contact is seen
-constexpr std::size_t kManySteps = 20'000;  ///< the same, where it matters more
-constexpr std::size_t kMostSteps = 1'000;   ///< of a search for the nearest triangles
+constexpr std::size_t kClimbs = 4;         ///< from the best places of each time
+constexpr std::size_t kTargets = 8;        ///< of each time, by twos from the best places
+constexpr std::size_t kFewSteps = 400;     ///< down the trees, until a contact is seen
+constexpr std::size_t kManySteps = 4'000;  ///< the same, where it matters more
+constexpr std::size_t kMostSteps = 1'000;  ///< of a search for the nearest triangles
 constexpr std::size_t kAlwaysBoxes = 3'000;
 constexpr std::size_t kFewItems = 60, kMostItems = 6'000;
 constexpr std::size_t kMostFixedItems = 300'000;  ///< of links that fixed joints connect
@@ -339,7 +339,7 @@ bool Search::meet_always(std::vector<double> middle, std::vector<double> half, s
   if (left == 0 || stop()) return false;
   --left;
   motion_.set(middle, half);
-  const double deep = inner_.depth_below(motion_, 300);
+  const double deep = inner_.depth_below(motion_, 60, 100);
   if (!(deep > 0)) return false;
   const Cluster &a = (*tree_a_)[0], &b = (*tree_b_)[0];
   const Vec3 center = motion_.placed().b * b.center;

@@ -215,9 +215,7 @@ void Swept::Grid::sweep_rises(double from, double to) {
 }
 
 Swept::Swept(const Surface& surface)
-    : mesh_(std::make_shared<geom::DistanceQuery>(surface.mesh())),
-      surface_(&surface),
-      extent_(surface.tree().extent()) {}
+    : mesh_(surface.query()), surface_(&surface), extent_(surface.tree().extent()) {}
 
 double Swept::distance(const Vec3& point) const {
   const Vec3 p = to_grid_ * point;
