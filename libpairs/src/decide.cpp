@@ -112,6 +112,7 @@ std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
   search.begin(stop);
   for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
   search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), kAwayWork, stop);
+  search.look_deeper(stop);
   out.verdict = search.verdict();
   out.nearest = search.nearest();
   out.q = configuration(robot, search);
@@ -222,7 +223,10 @@ class Pairs {
         return pair.search->boxes() / 2 >= options_.most_boxes ||
                (unsure(pair) && work >= kWorkOfUnsure);
       });
+      // How deep comes when what is easy is decided.
+      look_deeper(stop);
     }
+    look_deeper(stop);
     return found();
   }
 
@@ -249,6 +253,13 @@ class Pairs {
   }
   void look_for_contacts(const std::function<bool()>& stop) {
     round([&](Sought& pair) { pair.search->look_for_contacts(stop); });
+  }
+  void look_deeper(const std::function<bool()>& stop) {
+    parallel_for(std::size_t{0}, pairs_.size(),
+                 [&](std::size_t i) {
+                   if (pairs_[i].search != nullptr) pairs_[i].search->look_deeper(stop);
+                 },
+                 {.alone = true});
   }
   void sweep(std::size_t most_nodes, const std::function<bool()>& stop) {
     std::vector<std::uint32_t> links;

@@ -299,6 +299,7 @@ void Search::show_contact(std::vector<double> values) {
   if (!(deepest > 0)) return;  // they touch up to rounding
   motion_.set(best_values_, still_);
   depth_ = {deepest, std::max(deepest, outer_.depth_above(motion_))};
+  deepened_ = true;
   verdict_ = Verdict::CanTouch;
 }
 
@@ -309,15 +310,7 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   if (!shows_) return;
   const std::size_t round = rounds_++;
   const std::vector<std::vector<double>> near = look_at_samples(stop);
-  const auto found = [&] {
-    if (verdict_ == Verdict::CanTouch) show_contact(best_values_);
-    return verdict_ != Verdict::Open;
-  };
-  if (always_ && found()) {
-    std::size_t left = kAlwaysBoxes;
-    if (meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
-    return;
-  }
+  const auto found = [&] { return verdict_ != Verdict::Open; };
   if (found()) return;
   for (std::size_t i = 0; i < near.size() && i < kClimbs && !stop(); ++i)
     if (approach(near[i], nullptr)) break;
@@ -332,6 +325,14 @@ void Search::look_for_contacts(const std::function<bool()>& stop) {
   else
     for (std::size_t i = 0; i < near.size() && i < kClimbs && !stop(); ++i)
       if (climb(near[i], kMostSteps) && verdict_ == Verdict::CanTouch) return;
+}
+
+void Search::look_deeper(const std::function<bool()>& stop) {
+  if (verdict_ != Verdict::CanTouch || std::exchange(deepened_, true)) return;
+  stop_ = &stop;
+  show_contact(best_values_);
+  std::size_t left = kAlwaysBoxes;
+  if (always_ && meet_always(middle_, half_, left, stop)) verdict_ = Verdict::Always;
 }
 
 bool Search::meet_always(std::vector<double> middle, std::vector<double> half, std::size_t& left,
@@ -498,8 +499,7 @@ void Search::go_on(std::size_t boxes, std::size_t work, const std::function<bool
     if (stop()) return;
     if (shows_ && looked_ >= next_climb_) {
       next_climb_ = looked_ + std::clamp<std::size_t>(looked_ / 2, 32, 2'000);
-      if (approach(open_.top().middle, nullptr)) show_contact(best_values_);
-      if (verdict_ == Verdict::Open) climb(open_.top().middle, kMostSteps);
+      if (!approach(open_.top().middle, nullptr)) climb(open_.top().middle, kMostSteps);
       if (verdict_ == Verdict::CanTouch) return;
     }
     const Box box = open_.top();

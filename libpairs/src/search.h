@@ -32,6 +32,8 @@ class Search {
   void look_for_contacts(const std::function<bool()>& stop);
   /// Goes on with the proof for so many boxes, or until so many pairs of clusters were looked at.
   void go_on(std::size_t boxes, std::size_t work, const std::function<bool()>& stop);
+  /// Of a contact that was shown: looks for deeper ones, and whether the links meet everywhere.
+  void look_deeper(const std::function<bool()>& stop);
   /// The surfaces are apart everywhere by more than a distance, which others have proved.
   void take_apart(double distance, const std::function<bool()>& stop);
 
@@ -123,6 +125,7 @@ class Search {
   std::size_t samples_, sampled_ = 0;
   std::size_t rounds_ = 0;  ///< of looking for contacts
   bool always_ = true;      ///< so far all places were contacts
+  bool deepened_ = false;   ///< deeper contacts were looked for
   const HullTree *tree_a_, *tree_b_;
   mutable BoxMotion motion_;
   std::vector<double> middle_, half_, still_;  ///< of the limits; no width
