@@ -471,7 +471,10 @@ class Pack {
       return lanes | open;
     Point d{b.middle.x - a.middle.x, b.middle.y - a.middle.y, b.middle.z - a.middle.z};
     for (int step = 0;; ++step) {
-      const Floats scale = kShort / root(dot(d, d));
+      const Floats square = dot(d, d);
+      // Of what is too short or too long for its square, or is no number, nothing is said.
+      const Ints sound = (square > 0x1p-100F) & (square < 0x1p100F);
+      const Floats scale = kShort / root(square);
       d = {d.x * scale, d.y * scale, d.z * scale};
       const Point back{-d.x, -d.y, -d.z};
       Ints of_a, of_b;
@@ -481,7 +484,7 @@ class Pack {
           farthest(m_, b.body, b.frame == nullptr ? back : turned_back(*b.frame, back), of_b);
       const Point from = origin_of(a.frame), to = origin_of(b.frame);
       const Floats gap = dot({to.x - from.x, to.y - from.y, to.z - from.z}, d) - (top + bottom);
-      lanes &= bits_of(~(gap > reach));
+      lanes &= bits_of(~((gap > reach) & sound));
       if (lanes == 0 || step == steps) return lanes | open;
       Point p = corners_at(m_, of_a), q = corners_at(m_, of_b);
       if (a.frame != nullptr) p = place(*a.frame, p);

@@ -70,8 +70,7 @@ struct MotionChecker::Impl {
     }
     if (any_pair) return;
     std::ranges::sort(numbers);
-    const auto repeated = std::ranges::unique(numbers);
-    numbers.erase(repeated.begin(), repeated.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     for (const std::uint32_t k : numbers) pairs.push_back(batch.model.items[k]);
   }
 

@@ -470,7 +470,9 @@ void Search::end_proof() {
 }
 
 void Search::take_apart(double distance, const std::function<bool()>& stop) {
-  const bool above_rounding = distance > 1e-6 * outer_.gaps().reach();
+  // Of joints' values beyond all turns, too, which the error grows with.
+  const bool above_rounding =
+      distance > 1e-6 * outer_.gaps().reach() + outer_.gaps().error() && distance < kInfinite;
   if (verdict_ != Verdict::Open || exhausted_ || !above_rounding) return;
   stop_ = &stop;
   begun_ = true;

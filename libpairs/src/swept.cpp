@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <queue>
@@ -24,9 +25,15 @@ Transform inverse(const Transform& t) {
   return {back, -(back * t.translation)};
 }
 
-/// A rotation that turns the axis to z.
+/// A rotation that turns the axis, of length 1, to z. A quaternion between the two would not be one
+/// next to -z.
 Eigen::Matrix3d upright(const Vec3& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(axis, Vec3::UnitZ()).toRotationMatrix();
+  const Vec3 first = axis.unitOrthogonal();
+  Eigen::Matrix3d out;
+  out.row(0) = first;
+  out.row(1) = axis.cross(first);
+  out.row(2) = axis;
+  return out;
 }
 
 /// The values of a joint, those of its variable's limits. Without limits a turn, or nullopt of what
@@ -52,7 +59,10 @@ double between_nodes(double least, double half) {
 }
 
 /// A little less, as far as rounding goes.
-float below(double value) { return static_cast<float>(std::max(0.0, value) * (1 - 0x1p-22)); }
+float below(double value) {
+  constexpr double kMost = 0.5 * std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(value, 0.0, kMost) * (1 - 0x1p-22));
+}
 
 /// A lower bound of the distance of a point between two others, a share of the way from the first.
 /// Squares of distances from a set, less those from a point, are concave.
@@ -94,12 +104,15 @@ void least_of_shifts(std::vector<float>& values, double low, double high, bool c
   const auto n = static_cast<std::ptrdiff_t>(values.size());
   low -= 1e-9;
   high += 1e-9;
-  const auto first = static_cast<std::ptrdiff_t>(std::ceil(low)),
-             last = static_cast<std::ptrdiff_t>(std::floor(high));
-  if (cyclic && last - first + 1 >= n) {
+  // Numbers that no index can be.
+  const bool all = !(std::max(std::abs(low), std::abs(high)) < 1e9) ||
+                   (cyclic && high - low >= static_cast<double>(n) + 1);
+  if (all) {
     std::ranges::fill(values, *std::ranges::min_element(values));
     return;
   }
+  const auto first = static_cast<std::ptrdiff_t>(std::ceil(low)),
+             last = static_cast<std::ptrdiff_t>(std::floor(high));
   const auto value = [&](std::ptrdiff_t i) {
     return values[cyclic ? ((i % n) + n) % n : std::clamp<std::ptrdiff_t>(i, 0, n - 1)];
   };
@@ -270,11 +283,12 @@ void Swept::bound(const Transform& to_frame, Grid& out) const {
   }
 }
 
-void Swept::fill(const Transform& from_frame, Grid& out) const {
+bool Swept::fill(const Transform& from_frame, Grid& out, const std::function<bool()>& stop) const {
   out.values.resize(out.rings * out.rises * out.turns);
   std::vector<double> row(out.turns + 1);
   for (std::size_t a = 0; a < out.rings; ++a)
     for (std::size_t b = 0; b < out.rises; ++b) {
+      if (stop()) return false;
       const double r = static_cast<double>(a) * out.ring,
                    z = out.floor + static_cast<double>(b) * out.rise;
       const auto ask = [&](std::size_t m) {
@@ -303,10 +317,11 @@ void Swept::fill(const Transform& from_frame, Grid& out) const {
       between(between, 0, out.turns);
       for (std::size_t m = 0; m < out.turns; ++m) out.values[out.at(a, b) + m] = below(row[m]);
     }
+  return true;
 }
 
 std::optional<Swept> Swept::above(const robot::Robot& robot, const robot::Joint& joint,
-                                  std::size_t most_nodes) const {
+                                  std::size_t most_nodes, const std::function<bool()>& stop) const {
   Swept out = *this;
   out.extent_ += joint.origin.translation.norm();
   if (joint.type == robot::JointType::Fixed) {
@@ -325,7 +340,7 @@ std::optional<Swept> Swept::above(const robot::Robot& robot, const robot::Joint&
   const double low = grid->bottom + (slides ? std::min(0.0, from) : 0),
                high = grid->top + (slides ? std::max(0.0, to) : 0);
   grid->choose_steps(low, high, most_nodes, 1e-4 * extent_);
-  fill(inverse(turned), *grid);
+  if (!fill(inverse(turned), *grid, stop)) return std::nullopt;
   if (slides) {
     grid->sweep_rises(from, to);
     grid->bottom += from;
@@ -339,7 +354,8 @@ std::optional<Swept> Swept::above(const robot::Robot& robot, const robot::Joint&
   return out;
 }
 
-std::optional<double> between(const Swept& first, const Swept& second) {
+std::optional<double> between(const Swept& first, const Swept& second,
+                              const std::function<bool()>& stop) {
   const bool swapped = second.ball().radius < first.ball().radius;
   const Swept &a = swapped ? second : first, &b = swapped ? first : second;
   // Points of a, in cubes; the least bound of the distance from b of any of them.
@@ -365,6 +381,7 @@ std::optional<double> between(const Swept& first, const Swept& second) {
     const Cube top = cubes.top();
     if (top.bound > 0 && ++more > kMoreCubes) break;
     if (top.bound >= proved) break;
+    if (looked % 256 < 8 && stop()) return std::nullopt;
     if (top.half < finest) {
       if (top.bound <= 0) return std::nullopt;
       proved = std::min(proved, top.bound);
@@ -379,7 +396,8 @@ std::optional<double> between(const Swept& first, const Swept& second) {
            half);
   }
   if (!cubes.empty()) proved = std::min(proved, cubes.top().bound);
-  if (!(proved > 0)) return std::nullopt;
+  // A set has points: that no cube holds one says that a number was too large.
+  if (!(proved > 0) || proved == kInfinite) return std::nullopt;
   return proved;
 }
 
@@ -427,7 +445,7 @@ std::vector<double> apart_by_sweeping(const robot::Robot& robot,
                  [&](std::size_t i) {
                    const auto [a, b] = pairs[at[l][i]];
                    if (stop() || !of.contains(a) || !of.contains(b)) return;
-                   out[at[l][i]] = between(*of.at(a), *of.at(b)).value_or(0);
+                   out[at[l][i]] = between(*of.at(a), *of.at(b), stop).value_or(0);
                  },
                  {.alone = true});
     if (l == 0) break;
@@ -437,7 +455,7 @@ std::vector<double> apart_by_sweeping(const robot::Robot& robot,
                  [&](std::size_t i) {
                    here[i].swept =
                        stop() ? std::nullopt
-                              : here[i].swept->above(robot, robot.joints[l - 1], most_nodes);
+                              : here[i].swept->above(robot, robot.joints[l - 1], most_nodes, stop);
                  },
                  {.alone = true});
     for (Member& member : here)

@@ -21,10 +21,12 @@ class Swept {
   explicit Swept(const Surface& surface);
 
   /// What it sweeps while one joint takes all of its values, seen from the joint's parent. nullopt:
-  /// the joint slides without limits.
-  /// @param most_nodes  of the grid
+  /// the joint slides without limits, or it was stopped.
+  /// @param most_nodes  of the grid, or up to twice as many
+  /// @param stop        often called; true: nothing comes of it
   [[nodiscard]] std::optional<Swept> above(const robot::Robot& robot, const robot::Joint& joint,
-                                           std::size_t most_nodes) const;
+                                           std::size_t most_nodes,
+                                           const std::function<bool()>& stop) const;
 
   /// A lower bound of the distance of a point from the swept set. [length]
   [[nodiscard]] double distance(const Vec3& point) const;
@@ -59,7 +61,8 @@ class Swept {
   };
   /// A cylinder round the z axis of a frame that holds the set.
   void bound(const Transform& to_frame, Grid& out) const;
-  void fill(const Transform& from_frame, Grid& out) const;
+  [[nodiscard]] bool fill(const Transform& from_frame, Grid& out,
+                          const std::function<bool()>& stop) const;
 
   Transform to_grid_;                                ///< or to the link's frame
   std::shared_ptr<const geom::DistanceQuery> mesh_;  ///< of no joint yet
@@ -70,7 +73,7 @@ class Swept {
 
 /// A lower bound above 0 of the distance of two swept sets that are seen from the same link.
 /// nullopt: none was found.
-std::optional<double> between(const Swept& a, const Swept& b);
+std::optional<double> between(const Swept& a, const Swept& b, const std::function<bool()>& stop);
 
 /// Two of several surfaces.
 using PairOfSurfaces = std::pair<std::size_t, std::size_t>;

@@ -352,8 +352,8 @@ class TrajectoryReader {
         refuse(place, "some points have a \"time_from_start\", others have none");
       if (timed) row.push_back(seconds(point["time_from_start"], place + ", time_from_start"));
       const std::size_t joints = row.size() - (timed ? 1 : 0);
-      derivatives_.velocities.push_back(derivatives(point, "velocities", joints));
-      derivatives_.accelerations.push_back(derivatives(point, "accelerations", joints));
+      derivatives_.velocities.push_back(derivatives(point, "velocities", joints, number));
+      derivatives_.accelerations.push_back(derivatives(point, "accelerations", joints, number));
       append(out, std::move(row), name_, place);
     }
     out.notes = std::move(notes_);
@@ -361,14 +361,18 @@ class TrajectoryReader {
   }
 
   /// Of a point that has as many of them as joints, all of which are numbers; else none.
-  static std::vector<double> derivatives(const Json& point, const char* key, std::size_t joints) {
-    std::vector<double> out;
-    if (!point.contains(key) || !point[key].is_array() || point[key].size() != joints) return out;
-    for (const Json& x : point[key]) {
-      if (!x.is_number() || !std::isfinite(x.get<double>())) return {};
-      out.push_back(x.get<double>());
-    }
-    return out;
+  std::vector<double> derivatives(const Json& point, const char* key, std::size_t joints,
+                                  std::size_t number) {
+    if (!point.contains(key) || point[key].is_null() || point[key].empty()) return {};
+    const Json& given = point[key];
+    const auto is_finite = [](const Json& x) {
+      return x.is_number() && std::isfinite(x.get<double>());
+    };
+    if (given.is_array() && given.size() == joints && std::ranges::all_of(given, is_finite))
+      return given.get<std::vector<double>>();
+    if (derivatives_.unfit.empty())
+      derivatives_.unfit = "point " + std::to_string(number) + ", " + key;
+    return {};
   }
 
   /// A duration of ROS, or seconds.

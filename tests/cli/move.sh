@@ -205,6 +205,16 @@ message still.json 1 '[0.5, 0]' '[-3, 0]' 1 '[0.5, 0]' '[3, 0]'
 expect 3 '' "$BIN/kaboum-check" cell.json --path still.json --between cubic
 sed 's/, "velocities": \[3, 0\]//' into.json >some.json
 expect 3 'point 2 has no velocities' "$BIN/kaboum-check" cell.json --path some.json --between cubic
+# Lists that do not fit, and accelerations that the polynomials do not have.
+sed 's/"velocities": \[3, 0\]/"velocities": [3]/' into.json >short.json
+expect 3 'point 2, velocities: a number for each joint is expected' "$BIN/kaboum-check" cell.json --path short.json --between cubic
+shows 0 'free at every instant$' "$BIN/kaboum-check" cell.json --path short.json
+grep -q 'velocities and accelerations are passed over' err.txt || fail "velocities that do not fit are passed over silently: $(cat err.txt)"
+sed 's/"velocities": \[3, 0\]/&, "accelerations": [0, 0]/; s/"velocities": \[-3, 0\]/&, "accelerations": [8, 0]/' into.json >bent.json
+"$BIN/kaboum-check" cell.json --path bent.json --between cubic >out.txt 2>err.txt
+grep -q 'WARNING: bent.json states accelerations.*--between quintic decides that' err.txt || fail "accelerations are left out silently: $(cat err.txt)"
+"$BIN/kaboum-check" cell.json --path bent.json --between quintic >out.txt 2>err.txt
+! grep -q WARNING err.txt || fail "a warning of accelerations that are taken: $(cat err.txt)"
 expect 7 'larger --resolution' "$BIN/kaboum-check" cell.json --path into.json --between cubic --resolution 1e-14
 expect 2 'leave out --between' "$BIN/kaboum-check" cell.json --path into.json --between cubic --inside arm/tip=box
 expect 2 '' "$BIN/kaboum-check" cell.json --between cubic

@@ -652,6 +652,102 @@ TEST(Lanes, DirectionsThatLieAreNoticed) {
   }
 }
 
+/// A box that slides face to face to an equal one behind two turns that cancel: the errors of its
+/// frames are all that the bound is for. Without it there are wrong answers.
+TEST(Lanes, TheErrorOfDirectionsIsNeeded) {
+  robot::Robot arm;
+  arm.name = "arm";
+  for (const char* name : {"base", "l1", "l2", "l3"}) arm.links.emplace_back().name = name;
+  arm.variables = {{"t", -3.0, 3.0}, {"s", -2.0, 2.0}};
+  robot::Joint turn, back, slide;
+  turn.name = "t";
+  turn.type = robot::JointType::Revolute;
+  turn.axis = Vec3::UnitZ();
+  back = turn;
+  back.name = "b";
+  back.parent = 1;
+  back.multiplier = -1;
+  back.origin.translation = {0.9, 0.3, 0.2};
+  slide.name = "s";
+  slide.type = robot::JointType::Prismatic;
+  slide.axis = Vec3::UnitX();
+  slide.variable = 1;
+  slide.parent = 2;
+  slide.origin.translation = {0.1, 0, 0.1};
+  arm.joints = {turn, back, slide};
+  World world;
+  world::RobotModel robot;
+  robot.name = "arm";
+  robot.kinematics = arm;
+  robot.home = {0, 0};
+  robot.shapes.push_back(shape(3, {box({0.1, 0.12, 0.09})}));
+  world.robots.push_back(robot);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::size_t wrong = 0, wrong_without = 0;
+  for (int k = 0; k < 60; ++k) {
+    const double t = 3 * uniform(random);
+    World cell = world;
+    world::Scratch scratch;
+    world::WorldState state = initial_state(cell);
+    state.q[0] = {t, 0};
+    const Vec3 at =
+        world::Checker(cell).places(state, {{0, 0}}, scratch).front().place.pose().translation;
+    add_object(cell, "o",
+               {Eigen::Matrix3d::Identity(), at + Vec3(0.5 + 0.3 * uniform(random), 0, 0)},
+               {box({0.1, 0.12, 0.09})});
+    const double touch = cell.objects[0].pose.translation.x() - at.x() - 0.2;
+    const world::Checker checker(cell);
+    detail::Model model = detail::make_model(checker, initial_state(cell), 0, 30);
+    std::vector<double> rows;
+    for (int i = -60; i <= 10; ++i) {
+      rows.push_back(t);
+      rows.push_back(touch - i * 2e-8);
+    }
+    const std::vector<std::uint8_t> free = by_checker(checker, rows);
+    wrong += wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0];
+    for (detail::BodyModel& b : model.bodies) b.offset = 0;
+    for (auto& one : model.shapes) one.corner_radius = 1;  // faces say nothing
+    wrong_without += wrong_answers(answers_of(model, instruction_sets().back(), rows), free)[0];
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(wrong_without, 10U);
+}
+
+/// Balls about one place, up to what float squares cannot tell: nothing is said by directions.
+TEST(Lanes, DirectionsWithoutALengthSayNothing) {
+  for (const double t : {1e-23, 1e-22, 1e-20, 1e-12}) {
+    robot::Robot arm;
+    arm.name = "arm";
+    for (const char* name : {"base", "l1"}) arm.links.emplace_back().name = name;
+    arm.variables = {{"t", -3.0, 3.0}};
+    robot::Joint joint;
+    joint.name = "t";
+    joint.type = robot::JointType::Revolute;
+    joint.axis = Vec3::UnitZ();
+    joint.origin.translation = Vec3::Constant(0.1 * t);
+    arm.joints = {joint};
+    World world;
+    world::RobotModel robot;
+    robot.name = "arm";
+    robot.kinematics = arm;
+    robot.home = {0};
+    // No column of the rotation has two signs.
+    robot.base.linear =
+        Eigen::Matrix3d::Constant(1e-10) + (1 - 1e-10) * Eigen::Matrix3d::Identity();
+    robot.shapes.push_back(shape(1, {ball(Vec3::Constant(t), 0.1), ball(Vec3::Constant(t), 0.09)}));
+    world.robots.push_back(robot);
+    add_object(world, "o", {Eigen::Matrix3d::Identity(), Vec3::Constant(-t)},
+               {ball({0, 0, 0}, 0.1)});
+    const world::Checker checker(world);
+    const BatchChecker batch(checker, initial_state(world), 0, {});
+    const std::vector<double> rows{0.0, 0.0, 1.0};
+    std::vector<Answer> answers(rows.size());
+    batch.filter(rows, answers);
+    for (const Answer answer : answers) EXPECT_NE(answer, Answer::Free) << t;
+  }
+}
+
 /// Rows that are open are so for pairs that are named: all others are apart, and these decide.
 TEST(Lanes, OpenPairsDecideRows) {
   const World world = cell(false);

@@ -30,8 +30,16 @@ void require_same_times(const std::vector<double>& before, const std::vector<dou
 
 /// What the polynomials of a file are made of.
 motion::SplineWaypoints spline_of(const CheckOptions& o, robot::TimedPath read,
-                                  const std::string& file) {
+                                  const std::string& file, std::vector<std::string>& notes) {
   const bool quintic = o.between == kQuintic;
+  const auto is_moving = [](const std::vector<double>& row) {
+    return std::ranges::any_of(row, [](double x) { return x != 0; });
+  };
+  if (!quintic && std::ranges::any_of(read.accelerations, is_moving))
+    notes.push_back(
+        "WARNING: " + file +
+        " states accelerations, which cubic polynomials do not have: a controller that "
+        "takes these, as ROS 2's does, moves otherwise; --between quintic decides that");
   const char* missing = read.times.empty()                      ? "times"
                         : read.velocities.empty()               ? "velocities"
                         : quintic && read.accelerations.empty() ? "accelerations"
@@ -39,7 +47,8 @@ motion::SplineWaypoints spline_of(const CheckOptions& o, robot::TimedPath read,
   if (missing != nullptr)
     throw Error(ErrorCode::InvalidInput,
                 file + ": --between " + o.between + " needs the " + missing +
-                    " of all points, which a JointTrajectory has (.json, .yaml)");
+                    " of all points, which a JointTrajectory has (.json, .yaml), and times that "
+                    "rise");
   return {std::move(read.times), std::move(read.waypoints), std::move(read.velocities),
           quintic ? std::move(read.accelerations) : robot::Path{}};
 }
@@ -143,7 +152,7 @@ StatedMotions read_motions(const CheckOptions& o, const world::World& world,
     world::RobotPath& made = out.paths.emplace_back(world::RobotPath{index, read.waypoints, {}});
     if (out.paths.size() == 1) out.waypoints = made.path.size();
     add_finger_room(world, made, path.file, "waypoint");
-    if (curved) splines.push_back(spline_of(o, std::move(read), path.file));
+    if (curved) splines.push_back(spline_of(o, std::move(read), path.file, notes));
   }
   if (curved) follow_splines(o, world, stated, splines, out);
   return out;

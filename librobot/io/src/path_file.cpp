@@ -305,11 +305,15 @@ TimedPath read_arranged(const std::string& file, const Robot& robot, const PathO
   notes.insert(notes.end(), path.notes.begin(), path.notes.end());
   TimedPath out;
   if (derivatives) {
+    if (!stated.unfit.empty())
+      throw Error(ErrorCode::InvalidInput,
+                  name + ": " + stated.unfit + ": a number for each joint is expected");
     out.velocities =
         arranged_derivatives(path, stated.velocities, "velocities", robot, options, name);
     out.accelerations =
         arranged_derivatives(path, stated.accelerations, "accelerations", robot, options, name);
-  } else if (is_any_not_zero(stated.velocities) || is_any_not_zero(stated.accelerations)) {
+  } else if (!stated.unfit.empty() || is_any_not_zero(stated.velocities) ||
+             is_any_not_zero(stated.accelerations)) {
     notes.push_back(name +
                     ": velocities and accelerations are passed over: between points, joints move "
                     "straight; a controller that makes splines of them leaves that" +

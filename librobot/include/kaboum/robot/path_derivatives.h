@@ -11,6 +11,8 @@ namespace kaboum::robot {
 /// waypoint, without columns of times; rows without numbers where it has none. Empty: it is none.
 struct PathDerivatives {
   Path velocities, accelerations;
+  std::string unfit =
+      {};  ///< the first list that is not one number for each joint: "point 3, velocities"
 };
 
 /// The path of parse_path_json, of which times are the last column, and its derivatives.
