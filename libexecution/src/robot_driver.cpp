@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "finger_motion.h"
@@ -65,6 +66,13 @@ class Side {
   virtual void end(bool finished) = 0;
 };
 
+/// A length of time, as people write it.
+std::string in_words(double seconds) {
+  std::ostringstream out;
+  out << seconds;
+  return out.str();
+}
+
 class Program final : public Side {
  public:
   explicit Program(const std::string& command) : channel_(command) {}
@@ -82,7 +90,7 @@ class Program final : public Side {
         return {"", Kind::Ended, finish() + " without an answer"};
       case LineSocket::ReadOutcome::Late:
         finish();
-        return {"", Kind::Late, "no answer within " + dump(most) + " s; it was ended"};
+        return {"", Kind::Late, "no answer within " + in_words(most) + " s; it was ended"};
       case LineSocket::ReadOutcome::TooLong:
         break;
     }

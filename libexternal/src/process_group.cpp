@@ -11,6 +11,11 @@
 #include <csignal>
 
 namespace kaboum::external {
+namespace {
+
+constexpr useconds_t kLastWords = 200'000;  ///< [µs]
+
+}  // namespace
 
 void close_others(int kept, int from) {
   if (kept > from) close_range(static_cast<unsigned>(from), static_cast<unsigned>(kept - 1), 0);
@@ -27,6 +32,8 @@ bool ProcessGroup::start() {
     char none = 0;
     while (::read(ends[0], &none, 1) < 0 && errno == EINTR) {
     }
+    // The planner is gone: its children see the end of their input, and may stop what they drive.
+    usleep(kLastWords);
     if (getpgrp() == getpid()) ::kill(0, SIGKILL);  // itself as well
     _exit(0);
   }

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 import jsonschema
 import yaml
@@ -336,6 +337,37 @@ Stopping().run()
         fail("the driver is told to stop after the run was judged")
 
 
+def stops_without_its_planner(folder):
+    """The planner is killed while the driver moves: the driver sees the end of its input, and has time to stop."""
+    driver = """import json, sys, time
+
+print('{"kaboum_driver": 1}', flush=True)
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["do"] == "move":
+        open("moving", "w").close()  # and says nothing
+    elif "id" in message:
+        print(json.dumps({"id": message["id"], "done": True}), flush=True)
+time.sleep(0.05)
+open("stopped", "w").close()
+"""
+    (folder / "alone.py").write_text(driver)
+    for name in ("moving", "stopped"):
+        (folder / name).unlink(missing_ok=True)
+    command = [TOOLS / "kaboum-plan", "run", "domain.kpl", "problem.kpl", "--scene", "cell.json", "--plan", "plan.json", "--quiet",
+               "--robot", f"{sys.executable} alone.py"]
+    planner = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if (folder / "moving").exists():
+            break
+        time.sleep(0.1)
+    planner.kill()
+    planner.wait()
+    time.sleep(1)
+    if not (folder / "stopped").exists():
+        fail("a driver whose planner was killed has no time to stop")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -354,6 +386,7 @@ def main():
             if report["collisions"] + report["limit_violations"] + report["jumps"] or report["samples"] < 1000:
                 fail(f"seed {seed}: {report}")
             judge(scenario, True)
+        stops_without_its_planner(scenario)
         keeps_schema(scenario)
         sensed = {json.loads(e["told"])["fact"] for e in journal(scenario) if "told" in e and json.loads(e["told"])["do"] == "sense"}
         if len(sensed) != 2:

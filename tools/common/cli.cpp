@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -74,6 +75,8 @@ std::string name_with_command(const CLI::App& app, int argc, char** argv) {
 const char* version() { return KABOUM_VERSION; }
 
 int run(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  // A file that may not grow is one that cannot be written, as on a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   app.set_version_flag("--version", app.get_name() + " " + KABOUM_VERSION);
   wrap_help(app);
   const std::string name = app.get_name();

@@ -69,12 +69,14 @@ Execution execute(const MoveRequest& r, const robot::Path& path, const MoveOptio
     report["blends"] = made.blends;
     report["between_samples"] = made.between_samples;
   }
-  const std::string check = check_command(o);
-  report["check"] = check;
+  const bool is_file = o.trajectory != "-";
+  const std::string check = is_file ? check_command(o) : "";
+  if (is_file) report["check"] = check;
   const auto format = motion::message_format(o.trajectory);
   std::ostringstream summary;
   summary << o.trajectory << ": " << made.trajectory.samples() << " samples in "
-          << made.trajectory.duration() << " s; what decides it anew: " << check;
+          << made.trajectory.duration() << " s";
+  if (is_file) summary << "; what decides it anew: " << check;
   return {
       format ? to_joint_trajectory(made.trajectory, r.kinematics(), *format) : std::move(made.csv),
       summary.str(), std::move(report)};

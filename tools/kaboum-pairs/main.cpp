@@ -93,8 +93,10 @@ int run(const PairsOptions& o) {
     pairs::require_own(*matrix, o.judge, file.robot);
   }
   std::vector<std::string> notes;
-  const std::vector<pairs::DecidedPair> pairs = decide(file, o, notes);
-  if (matrix && matrix->pairs.empty()) {
+  const bool is_idle = matrix && matrix->pairs.empty();
+  std::vector<pairs::DecidedPair> pairs;
+  if (!is_idle || !o.srdf.empty()) pairs = decide(file, o, notes);
+  if (is_idle) {
     notes.push_back(o.judge + " disables no pair of links: there is nothing to judge");
     tools::log(o.common.quiet, notes.back());
   }
@@ -111,9 +113,11 @@ int run(const PairsOptions& o) {
   }
   if (o.json) {
     std::cout << report.dump(2, ' ', false, tools::Json::error_handler_t::replace) << '\n';
+  } else if (o.common.quiet) {
+    // Errors only, and files.
   } else if (judged) {
     say_judgement(*judged);
-  } else if (!o.common.quiet) {
+  } else {
     for (const pairs::DecidedPair& pair : pairs)
       std::cout << tools::line_of(file.robot, pair) << '\n';
   }
