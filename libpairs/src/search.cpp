@@ -214,6 +214,7 @@ std::vector<std::vector<double>> Search::look_at_samples(const std::function<boo
   }
   std::ranges::stable_sort(near, {}, [](const auto& place) { return place.first; });
   std::vector<std::vector<double>> out;
+  out.reserve(near.size());
   for (auto& place : near) out.push_back(std::move(place.second));
   return out;
 }

@@ -390,10 +390,11 @@ std::optional<double> between(const Swept& first, const Swept& second,
     }
     cubes.pop();
     const double half = 0.5 * top.half * (1 + kRounding);
-    for (int corner = 0; corner < 8; ++corner)
-      look(top.center + 0.5 * top.half *
-                            Vec3(corner % 2 * 2 - 1, corner / 2 % 2 * 2 - 1, corner / 4 * 2 - 1),
-           half);
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const Vec3 side((corner & 1U) != 0 ? 1 : -1, (corner & 2U) != 0 ? 1 : -1,
+                      (corner & 4U) != 0 ? 1 : -1);
+      look(top.center + 0.5 * top.half * side, half);
+    }
   }
   if (!cubes.empty()) proved = std::min(proved, cubes.top().bound);
   // A set has points: that no cube holds one says that a number was too large.
