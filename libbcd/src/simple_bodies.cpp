@@ -416,7 +416,7 @@ class BodySearch {
 
   // --- one body for given points ---
 
-  /// Whether a point is farther from the solid than bodies may be.
+  /// True for a point farther from the solid than bodies may be; of some it is not seen.
   [[nodiscard]] bool is_beyond(const Vec3& p) const {
     if (query_.within(p, body_->distance() * (1 + 1e-9)) != geom::TriangleSearch::kNone)
       return false;
@@ -424,7 +424,8 @@ class BodySearch {
     return winding && *winding <= 0;
   }
 
-  /// Whether a point half way along the capsule is beyond, or one of its tips, of some.
+  /// True if a point of the capsule is beyond: of the middle and those across it and across the
+  /// ends.
   [[nodiscard]] bool is_too_wide(const Capsule& one) const {
     const Vec3 middle = 0.5 * (one.from + one.to);
     if (is_beyond(middle)) return true;
@@ -469,7 +470,7 @@ class BodySearch {
     for (const Vec3& d : directions) {
       const Cylinder cylinder = cylinder_round(points, d);
       const double least = cylinder.radius + spare_;
-      // What is too wide where it is narrowest is so with all radii.
+      // What is too wide where it is narrowest hardly ever fits with another radius.
       if (const auto narrow =
               capsule_round(points, cylinder, least + kShares.back() * epsilon_, spare_);
           !narrow || is_too_wide(*narrow))
@@ -848,7 +849,7 @@ class BodySearch {
     double half;
   };
 
-  /// Where a cube is as to the solid, whatever the bodies are, and its eight parts.
+  /// A cube of an octree over the solid: its place, which no body changes, and its eight parts.
   struct PlacedCube {
     enum class Place : std::uint8_t { Unknown, Outside, Inside, Border } place = Place::Unknown;
     std::uint32_t parts = 0;  ///< the first of eight; 0: none are known

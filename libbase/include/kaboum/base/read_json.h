@@ -111,7 +111,7 @@ class JsonBuilder {
   [[nodiscard]] Json& value() { return value_; }
   /// The name of the member that is given twice.
   [[nodiscard]] const std::optional<String>& doubled() const { return doubled_; }
-  /// How many bytes were read where the text stopped being JSON.
+  /// Number of bytes to where the text stops being JSON; nullopt: it is.
   [[nodiscard]] std::optional<std::size_t> damage() const { return damage_; }
   [[nodiscard]] bool out_of_range() const { return out_of_range_; }
 
