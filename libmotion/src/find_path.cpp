@@ -1,5 +1,6 @@
 // Paths in joint space: straight, else RRT-Connect. Source: [kuffner2000], with edges that are
-// certified only once they are part of a path. docs/algorithms/motion-planning.md.
+// certified only once they are part of a path, and with samples that are left out as in
+// [yershova2005]. docs/algorithms/motion-planning.md.
 
 #include <kaboum/motion/path_finder.h>
 
@@ -32,6 +33,9 @@ class TreeSearch {
   }
 
  private:
+  /// Steps that samples are away from a node next to an obstacle, at most.
+  static constexpr double kDomain = 2;
+
   void grow() {
     std::array<Tree, 2> trees;
     trees[0].add_root(start_);
@@ -39,7 +43,13 @@ class TreeSearch {
     std::size_t near = 0;
     for (;;) {
       if (const auto outcome = space_.ended()) return query_.end(*outcome);
-      const std::size_t node = extend(trees[near], near == 1, space_.sample(random_), nullptr);
+      const Values sample = space_.sample(random_);
+      const std::size_t from = trees[near].nearest(sample, space_);
+      if (trees[near][from].is_next_to_obstacle &&
+          space_.distance(trees[near].at(from), sample) > kDomain * space_.range())
+        continue;
+      const std::size_t node = step(trees[near], near == 1, from, sample, nullptr);
+      if (node == Tree::kNone) trees[near].set_next_to_obstacle(from);
       if (node != Tree::kNone) {
         const Values q = trees[near].at(node);
         const std::size_t other = connect(trees[1 - near], near == 0, q);

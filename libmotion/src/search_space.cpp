@@ -17,7 +17,8 @@ using Outcome = PathAnswer::Outcome;
 
 // Steps in about seconds of one core; only their ratio matters to what is found.
 constexpr double kConfiguration = 4e-6, kMotion = 20e-6, kInterval = 5e-6, kNode = 10e-9,
-                 kInstant = 0.5e-6, kProjection = 35e-6, kPack = 1e-6, kStretch = 0.15e-6;
+                 kInstant = 0.5e-6, kProjection = 35e-6, kPack = 1e-6, kStretch = 0.15e-6,
+                 kSample = 0.2e-6;
 
 /// A configuration is on the constraints where no deviation is more than this part of what is
 /// allowed: the rest is for the lines between such configurations.
@@ -142,6 +143,7 @@ Values SearchSpace::sample(Random& random) {
   Values q(low.size());
   for (std::size_t i = 0; i < q.size(); ++i) q[i] = random.between(low[i], high[i]);
   ++spent_.samples;
+  spent_.work += kSample;
   return q;
 }
 

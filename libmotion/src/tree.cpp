@@ -10,14 +10,14 @@ namespace kaboum::motion {
 std::size_t Tree::add_root(const Values& q) {
   variables_ = q.size();
   values_.insert(values_.end(), q.begin(), q.end());
-  nodes_.push_back({kNone, nodes_.size(), true, false});
+  nodes_.push_back({kNone, nodes_.size(), true, false, false});
   ++living_;
   return nodes_.size() - 1;
 }
 
 std::size_t Tree::add(const Values& q, std::size_t parent, bool certain) {
   values_.insert(values_.end(), q.begin(), q.end());
-  nodes_.push_back({parent, nodes_[parent].root, certain, false});
+  nodes_.push_back({parent, nodes_[parent].root, certain, false, false});
   ++living_;
   return nodes_.size() - 1;
 }

@@ -13,6 +13,7 @@ class Tree {
     std::size_t root = 0;
     bool certain = false;  ///< the edge to the parent is free at every instant
     bool gone = false;
+    bool is_next_to_obstacle = false;  ///< a step from here did not get through
   };
 
   std::size_t add_root(const Values& q);
@@ -30,6 +31,7 @@ class Tree {
     const double* q = values_.data() + i * variables_;
     return {q, q + variables_};
   }
+  void set_next_to_obstacle(std::size_t node) { nodes_[node].is_next_to_obstacle = true; }
   void set_certain(std::size_t node) { nodes_[node].certain = true; }
   [[nodiscard]] std::size_t size() const { return living_; }
 
