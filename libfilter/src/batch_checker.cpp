@@ -76,8 +76,10 @@ void BatchChecker::Impl::filter(std::span<const double> rows, std::span<Answer> 
     return;
   }
   detail::LaneMemory memory(model);
-  detail::filter_rows(model, instructions, rows.data(), nullptr, answers.size(), memory,
-                      answers.data(), 0, detail::Look::All, pairs);
+  const std::vector<double> blocks =
+      detail::in_blocks(rows.data(), answers.size(), model.variables);
+  detail::filter_blocks(model, instructions, blocks.data(), nullptr, answers.size(), memory,
+                        answers.data(), 0, detail::Look::All, pairs);
 }
 
 namespace {
@@ -267,15 +269,19 @@ class MotionBatch {
 
   void look() {
     const std::size_t n = model_.variables;
-    rows_.clear();
-    widths_.clear();
-    for (const Stretch& s : stretches_)
-      for (std::size_t k = 0; k < n; ++k)
-        detail::put_stretch(s, from_[s.motion * n + k], to_[s.motion * n + k], rows_.emplace_back(),
-                            widths_.emplace_back());
+    rows_.resize(detail::blocks_size(stretches_.size(), n));
+    ways_.resize(rows_.size());
+    for (std::size_t i = 0; i < rows_.size() / n; ++i) {
+      const Stretch& s = stretches_[std::min(i, stretches_.size() - 1)];
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t at = detail::place_of(i, k, n);
+        detail::put_stretch(s, from_[s.motion * n + k], to_[s.motion * n + k], rows_[at],
+                            ways_[at]);
+      }
+    }
     answers_.resize(stretches_.size());
-    detail::filter_rows(model_, set_, rows_.data(), widths_.data(), answers_.size(), memory_,
-                        answers_.data(), slack_);
+    detail::filter_blocks(model_, set_, rows_.data(), ways_.data(), answers_.size(), memory_,
+                          answers_.data(), slack_);
   }
 
   const detail::Model& model_;
@@ -284,7 +290,7 @@ class MotionBatch {
   float slack_;
   std::vector<Answer> result_;
   std::vector<Stretch> stretches_;
-  std::vector<double> rows_, widths_;
+  std::vector<double> rows_, ways_;
   std::vector<Answer> answers_;
   detail::LaneMemory memory_;
 };

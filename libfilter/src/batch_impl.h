@@ -52,13 +52,13 @@ struct Share {
   double begin = 0, end = 1;
 };
 
-/// What of variable values a stretch is looked at by: the value at its middle, and how far others
-/// are from that, at most; more than is rounded: of the value, and of the place between.
-inline void put_stretch(const Share& s, double a, double b, double& value, double& width) {
+/// A stretch of a variable: its value at the middle, and half of its way from there on, both up to
+/// 2⁻⁵⁰ of the largest values between.
+inline void put_stretch(const Share& s, double a, double b, double& value, double& way) {
   const double middle = 0.5 * (s.begin + s.end), half = 0.5 * (s.end - s.begin);
   const double at = a + middle * (b - a), low = a < b ? a : b, high = a < b ? b : a;
   value = at < low ? low : at > high ? high : at;
-  width = half * std::abs(b - a) * (1 + 0x1p-40) + 0x1p-48 * (std::abs(a) + std::abs(b));
+  way = half * (b - a);
 }
 
 }  // namespace detail

@@ -18,10 +18,12 @@ class LaneMemory {
   explicit LaneMemory(const Model& model);
 
   float* floats();  ///< aligned for vectors
+  std::uint32_t* near() { return near_.data(); }
   unsigned char* ready() { return ready_.data(); }
 
  private:
   std::unique_ptr<float[]> floats_;
+  std::vector<std::uint32_t> near_;
   std::vector<unsigned char> ready_;
 };
 
@@ -53,15 +55,45 @@ class OpenPairs {
   std::vector<std::uint32_t> numbers_;
 };
 
+/// A pair that a row is open for.
+struct Suspect {
+  static constexpr std::uint32_t kNone = ~0U;
+  std::uint32_t pair = kNone;  ///< number of Model::items
+  bool unparted = false;       ///< at the row itself, too, no direction parts some of its bodies
+};
+
+/// Rows are in blocks of as many as the widest vectors have lanes: for each variable its values of
+/// all rows of a block, one after the other. The last block is full.
+inline constexpr std::size_t kBlock = 16;
+inline constexpr std::size_t place_of(std::size_t row, std::size_t variable,
+                                      std::size_t variables) {
+  return (row / kBlock * variables + variable) * kBlock + row % kBlock;
+}
+inline constexpr std::size_t blocks_size(std::size_t rows, std::size_t variables) {
+  return (rows + kBlock - 1) / kBlock * kBlock * variables;
+}
+
 /// Decides rows of values, several at a time. @pre the processor has the instructions.
-/// @param widths  null; or for each row how far every variable goes from its value, to both sides:
-///   free is then what is so at all these values, in contact what is so at the row's own
+/// @param rows  in blocks. @pre those after the last one are finite
+/// @param ways  null; or of each row a vector w, in blocks: free is then what is so at row + s·w
+/// for
+///   all |s| ≤ 1, up to what put_stretch rounds, in contact what is so at the row
 /// @param slack  free is what is apart by more than that besides the margin; rounded up [length]
 /// @param look  what is looked for
 /// @param pairs  is told of all rows, unless it is null. @pre all answers are looked for
-void filter_rows(const Model& model, Instructions set, const double* rows, const double* widths,
+/// @param suspects  null; or of each row none before: where there are ways, one is named
+void filter_blocks(const Model& model, Instructions set, const double* rows, const double* ways,
+                   std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers,
+                   float slack = 0, Look look = Look::All, OpenPairs* pairs = nullptr,
+                   Suspect* suspects = nullptr);
+
+/// The same of rows one after the other, and all their answers.
+void filter_rows(const Model& model, Instructions set, const double* rows, const double* ways,
                  std::size_t count, LaneMemory& memory, BatchChecker::Answer* answers,
-                 float slack = 0, Look look = Look::All, OpenPairs* pairs = nullptr);
+                 float slack = 0);
+
+/// Rows one after the other, in blocks.
+std::vector<double> in_blocks(const double* rows, std::size_t count, std::size_t variables);
 
 /// Centres of the outer balls for each row, x, y, z; for tests.
 void place_outer_balls(const Model& model, Instructions set, const double* rows, std::size_t count,

@@ -36,6 +36,10 @@ inline unsigned bits_of(const Ints& mask) {
 constexpr float kAbove = 1 + 0x1p-18F, kBelow = 1 - 0x1p-18F;
 /// Share of motions that holds the rounding of their sums, for up to 64 joints.
 constexpr float kMoves = 0x1p-14F;
+/// Share of motions that holds what middles and ways of stretches are rounded by.
+constexpr float kResidue = 0x1p-12F;
+/// Directions that are shorter say nothing of where straight ways are.
+constexpr float kShortest = 0x1p-30F;
 
 inline Floats magnitude(const Floats& x) {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(x) & 0x7fffffff);
@@ -78,25 +82,26 @@ inline void sine_and_cosine(const Doubles& angle, Floats& sine, Floats& cosine) 
   cosine = reinterpret_cast<Floats>(reinterpret_cast<Ints>(odd ? s : c) ^ cosine_sign);
 }
 
-/// Values of a variable, in lanes beyond `count` those of the last row.
-inline void read_values(const View& m, const double* rows, unsigned count, std::size_t variable,
-                        Doubles& out) {
-  for (unsigned lane = 0; lane < KABOUM_LANES; ++lane)
-    out[lane] = rows[(lane < count ? lane : count - 1) * m.variables + variable];
+/// Values of a variable. @param rows  of the first lane, as place_of has them
+inline void read_values(const double* rows, std::size_t variable, Doubles& out) {
+  __builtin_memcpy(&out, rows + variable * kBlock, sizeof out);
 }
 
-/// How far points of a frame move in a stretch of values: a point at a distance r from the frame's
-/// origin by at most shift + turn · r.
+/// How points of a frame move in a stretch q + s·w of a straight motion, |s| ≤ 1. One at a distance
+/// r from the frame's origin is never farther than shift + turn · r from where it is at s = 0. At
+/// s = 0, one at p has the velocity drift + spin × p, up to blur.
 struct Motion {
   Floats turn, shift;
+  Point spin, drift;
+  Floats blur;
 };
 
 /// Poses of all frames. @return the lanes whose values are beyond what errors are bounded for
-inline unsigned place_frames(const View& m, const double* rows, unsigned count, Frame* frames) {
+inline unsigned place_frames(const View& m, const double* rows, Frame* frames) {
   Ints beyond{};
   for (std::size_t i = 0; i < m.variables; ++i) {
     Doubles q;
-    read_values(m, rows, count, i, q);
+    read_values(rows, i, q);
     const auto within = (q >= m.low[i]) & (q <= m.high[i]);
     beyond |= __builtin_convertvector(~within, Ints);
   }
@@ -113,7 +118,7 @@ inline unsigned place_frames(const View& m, const double* rows, unsigned count, 
       out.t[row] = a * f[9] + b * f[10] + c * f[11] + p.t[row];
     }
     Doubles q;
-    read_values(m, rows, count, step.variable, q);
+    read_values(rows, step.variable, q);
     const auto within = (q >= m.low[step.variable]) & (q <= m.high[step.variable]);
     q = within ? q : Doubles{} + m.low[step.variable];
     const Doubles x = q * step.multiplier + step.offset;
@@ -133,19 +138,45 @@ inline unsigned place_frames(const View& m, const double* rows, unsigned count, 
   return bits_of(beyond);
 }
 
-/// @param widths  how far values may be from those of the rows, for each variable
-inline void bound_motions(const View& m, const double* widths, unsigned count, Motion* motions) {
-  motions[0] = {Floats{}, Floats{}};
+inline Point cross(const Point& a, const Point& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Point sum(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Point difference(const Point& a, const Point& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Point scaled(const Point& a, const Floats& by) { return {a.x * by, a.y * by, a.z * by}; }
+inline Floats dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// @param ways  w, as of Motion, for each variable
+inline void bound_motions(const View& m, const double* ways, const Frame* frames, Motion* motions) {
+  const Point none{Floats{}, Floats{}, Floats{}};
+  motions[0] = {Floats{}, Floats{}, none, none, Floats{}};
   for (std::size_t j = 0; j < m.steps; ++j) {
     const Step& step = m.step[j];
     const Motion& p = motions[step.parent];
-    Doubles width;
-    read_values(m, widths, count, step.variable, width);
-    const Floats x = __builtin_convertvector(width, Floats) * step.factor * kAbove;
-    const Floats turn = step.turns ? p.turn + x : p.turn;
-    Floats shift = p.shift + p.turn * step.length;
-    if (!step.turns) shift += x + p.turn * step.slide;
-    motions[j + 1] = {turn, shift};
+    Motion& out = motions[j + 1];
+    Doubles way;
+    read_values(ways, step.variable, way);
+    const Floats w = __builtin_convertvector(way * step.multiplier, Floats);
+    const Doubles size = way < 0 ? -way : way;
+    const Floats x =
+        __builtin_convertvector(size + m.more[step.variable], Floats) * step.factor * kAbove;
+    const Frame& frame = frames[j + 1];
+    const Point along{frame.r[2] * w, frame.r[5] * w, frame.r[8] * w};
+    out.turn = p.turn;
+    out.shift = p.shift + p.turn * step.length;
+    out.spin = p.spin;
+    if (step.turns) {
+      out.turn += x;
+      out.spin = sum(p.spin, along);
+      out.drift = sum(p.drift, cross({frame.t[0], frame.t[1], frame.t[2]}, along));
+      out.blur = p.blur + x * m.blur_of_turns;
+    } else {
+      out.shift += x + p.turn * step.slide;
+      out.drift = sum(p.drift, along);
+      out.blur = p.blur + x * m.blur_of_slides;
+    }
   }
 }
 
@@ -162,8 +193,6 @@ inline Point place(const Frame& frame, const float* c) {
           r[3] * c[0] + r[4] * c[1] + r[5] * c[2] + frame.t[1],
           r[6] * c[0] + r[7] * c[1] + r[8] * c[2] + frame.t[2]};
 }
-
-inline Floats dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// A direction of the world, in a frame.
 inline Point turned_back(const Frame& frame, const Point& d) {
@@ -209,6 +238,21 @@ inline Floats farthest(const View& m, const BodyModel& body, const Point& d, Int
   most = larger(last, most);
   best = other > most ? best_other : best;
   return larger(other, most);
+}
+
+/// The same without the number.
+inline Floats extent(const View& m, const BodyModel& body, const Point& d) {
+  const auto along = [&](std::uint32_t i) {
+    const float* p = m.corner[i].at;
+    return d.x * p[0] + d.y * p[1] + d.z * p[2];
+  };
+  const std::uint32_t begin = body.corners.begin, end = body.corners.end;
+  Floats most = along(begin), other = most;
+  for (std::uint32_t i = begin; i + 1 < end; i += 2) {
+    most = larger(along(i), most);
+    other = larger(along(i + 1), other);
+  }
+  return larger(larger(along(end - 1), most), other);
 }
 
 /// Corners by their numbers.
@@ -282,6 +326,62 @@ inline unsigned may_meet(const View& m, const Point& p, const Reach& radius, con
   return left;
 }
 
+// The same of balls whose middles go straight from p - v to p + v.
+
+inline Point velocity_of(const Motion& motion, const Point& p) {
+  return sum(motion.drift, cross(motion.spin, p));
+}
+
+/// Lanes in which two points, the second at d + s·v from the first, |s| ≤ 1, may be no farther
+/// apart than `reach`.
+inline unsigned may_meet_on_way(const Point& d, const Point& v, const Floats& reach) {
+  const Floats square = dot(v, v);
+  Floats s = -dot(d, v) / square;  // where they are nearest to each other; any s would do
+  s = s < 1 ? s : Floats{} + 1;
+  s = s > -1 ? s : Floats{} - 1;
+  const Point n = sum(d, scaled(v, square > 0 ? s : Floats{}));
+  const Floats length = root(dot(n, n));
+  const Floats least = dot(n, d) - magnitude(dot(n, v));
+  const Ints apart = (length > kShortest) & (least > length * (reach + length * 0x1p-18F) * kAbove);
+  return bits_of(~apart);
+}
+
+inline unsigned may_meet_on_way(const Point& p, const Point& v, const Floats& radius,
+                                const ObstacleGroup& box) {
+  const Ints apart =
+      (magnitude(p.x - box.center[0]) > (radius + magnitude(v.x) + box.half[0]) * kAbove) |
+      (magnitude(p.y - box.center[1]) > (radius + magnitude(v.y) + box.half[1]) * kAbove) |
+      (magnitude(p.z - box.center[2]) > (radius + magnitude(v.z) + box.half[2]) * kAbove);
+  return bits_of(~apart);
+}
+
+inline unsigned may_meet_on_way(const View& m, const Point& p, const Point& v, const Floats& radius,
+                                const Obstacle& o) {
+  const Floats x = p.x - o.center[0], y = p.y - o.center[1], z = p.z - o.center[2];
+  Floats square{}, way{};
+  for (int k = 0; k < 3; ++k) {
+    const float* axis = o.axes + 3 * k;
+    const Floats along = axis[0] * x + axis[1] * y + axis[2] * z;
+    const Floats beyond = magnitude(along) - o.half[k];
+    const Floats positive = beyond > 0 ? beyond : Floats{};
+    square += positive * positive;
+    const Floats moves = positive * (axis[0] * v.x + axis[1] * v.y + axis[2] * v.z);
+    way += along > 0 ? moves : -moves;
+  }
+  const Floats length = root(square);
+  const Ints apart =
+      (length > kShortest) &
+      (square - magnitude(way) > length * (radius + o.radius + length * 0x1p-18F) * kAbove);
+  unsigned left = bits_of(~apart);
+  for (std::uint32_t i = o.planes.begin; i < o.planes.end && left != 0; ++i) {
+    const float* n = m.plane[i].normal;
+    const Floats moves = magnitude(v.x * n[0] + v.y * n[1] + v.z * n[2]);
+    const Ints above = p.x * n[0] + p.y * n[1] + p.z * n[2] - moves > m.plane[i].offset + radius;
+    left &= bits_of(~above);
+  }
+  return left;
+}
+
 inline unsigned must_meet(const Point& p, float radius, const Obstacle& o) {
   const float reach = radius + o.inner_radius;
   if (!(reach > 0)) return 0;
@@ -323,6 +423,85 @@ inline unsigned any_point(const View& m, const CloudModel& cloud, const Point& p
   return found;
 }
 
+/// The point of a segment that is nearest to the origin.
+inline Point nearest_of_segment(const Point& a, const Point& b) {
+  const Point way = difference(b, a);
+  const Floats square = dot(way, way);
+  Floats share = -dot(a, way) / square;
+  share = square > 0 ? share : Floats{};
+  share = share > 0 ? share : Floats{};
+  share = share < 1 ? share : Floats{} + 1;
+  return sum(a, scaled(way, share));
+}
+
+inline Point chosen(const Ints& mask, const Point& a, const Point& b) {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
+/// The point of a triangle that is nearest to the origin, about.
+inline Point nearest_of_triangle(const Point& a, const Point& b, const Point& c) {
+  const Point ab = difference(b, a), ac = difference(c, a);
+  const Floats bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), ub = -dot(a, ab),
+               uc = -dot(a, ac);
+  const Floats all = bb * cc - bc * bc, s = cc * ub - bc * uc, t = bb * uc - bc * ub;
+  const Ints inside = (s > 0) & (t > 0) & (s + t < all) & (all > 0x1p-20F * (bb * cc));
+  const Floats share = 1 / all;
+  const Point plane = sum(a, sum(scaled(ab, s * share), scaled(ac, t * share)));
+  Point out = nearest_of_segment(a, c);
+  const Point other = nearest_of_segment(b, c);
+  out = chosen(dot(other, other) < dot(out, out), other, out);
+  return chosen(inside, plane, out);
+}
+
+/// Three points of a convex set ([gilbert1988]).
+struct Simplex {
+  Point p, q, r;
+
+  /// Replaces one by another point of the set, where the nearest point to the origin is then
+  /// nearest. @return that point
+  /// @param first  it is the first one
+  Point with(const Point& v, bool first) {
+    if (first) {
+      p = q = r = v;
+      return v;
+    }
+    const Point qr = nearest_of_triangle(q, r, v), rp = nearest_of_triangle(r, p, v),
+                pq = nearest_of_triangle(p, q, v);
+    const Floats without_p = dot(qr, qr), without_q = dot(rp, rp), without_r = dot(pq, pq);
+    const Ints drop_p = (without_p < without_q) & (without_p < without_r);
+    const Ints drop_q = ~drop_p & (without_q < without_r);
+    p = chosen(drop_p, v, p);
+    q = chosen(drop_q, v, q);
+    r = chosen(drop_p | drop_q, r, v);
+    return chosen(drop_p, qr, chosen(drop_q, rp, pq));
+  }
+};
+
+/// Lanes in which a ball round the origin is within the tetrahedron of a simplex and a point.
+inline unsigned hold_ball(const Simplex& s, const Point& v, float radius) {
+  const Point* corners[4] = {&s.p, &s.q, &s.r, &v};
+  Floats most{};
+  for (const Point* p : corners) {
+    const Floats square = dot(*p, *p);
+    most = square > most ? square : most;
+  }
+  // Products of edges round by less than 32u of the square of the farthest corner, most².
+  const Floats length = root(most) * kAbove, rounding = (length + radius) * most * 0x1p-16F;
+  constexpr int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  Ints before = Ints{} - 1, behind = before;
+  for (const int* face : kFaces) {
+    const Point& a = *corners[face[0]];
+    const Point n = cross(difference(*corners[face[1]], a), difference(*corners[face[2]], a));
+    const Floats height = dot(n, a);
+    const Floats least = root(dot(n, n)) * (radius * kAbove) + rounding;
+    before &= height > least;
+    behind &= height < -least;
+  }
+  return bits_of(before | behind);
+}
+
+struct Still {};
+
 /// Configurations that are looked at at once, and what is known of them; with Moving, stretches of
 /// values round them: free is what is so in all of a stretch, in contact what is so at its
 /// configuration.
@@ -330,24 +509,29 @@ template <bool Moving>
 class Pack {
  public:
   /// @param pairs  of the first row, as View has them; or null
-  Pack(const View& m, const double* rows, const double* widths, unsigned count,
-       std::uint32_t* pairs)
-      : m_(m), pairs_(pairs) {
+  /// @param suspects  likewise
+  Pack(const View& m, const double* rows, const double* ways, unsigned count, std::uint32_t* pairs,
+       Suspect* suspects)
+      : m_(m), pairs_(pairs), suspects_(suspects) {
     frames_ = reinterpret_cast<Frame*>(m.memory);
     motions_ = reinterpret_cast<Motion*>(frames_ + m.steps + 1);
     whole_ = reinterpret_cast<Point*>(motions_ + m.steps + 1);
-    outer_ = whole_ + m.shapes;
+    clusters_ = whole_ + m.shapes;
+    outer_ = clusters_ + m.clusters;
     inner_ = outer_ + m.outer_count;
     bodies_ = inner_ + m.inner_count;
     corners_ = bodies_ + m.body_count;
     all_ = count == 32 ? ~0U : (1U << count) - 1;
-    open_ = place_frames(m, rows, count, frames_) & all_;
-    if constexpr (Moving) bound_motions(m, widths, count, motions_);
+    open_ = place_frames(m, rows, frames_) & all_;
+    if constexpr (Moving) bound_motions(m, ways, frames_, motions_);
     all_ &= ~open_;
     for (std::size_t s = 0; s < m.shapes; ++s) {
       whole_[s] = place(frames_[m.shape[s].frame], m.shape[s].whole.center);
       m.ready[s] = 0;
     }
+    for (std::size_t c = 0; c < m.clusters; ++c)
+      clusters_[c] = place(frames_[m.cluster[c].frame], m.cluster[c].whole.center);
+    for (std::size_t i = 0; i < m.cluster_pairs; ++i) m.near[i] = kUnknown;
   }
 
   void decide() {
@@ -366,8 +550,9 @@ class Pack {
   [[nodiscard]] unsigned open() const { return open_ & ~contact_; }
 
  private:
-  static constexpr int kSteps = Moving ? 4 : 6;  ///< of the search for directions
-  static constexpr int kFewSteps = 2;            ///< of that for whole links
+  static constexpr int kSteps = Moving ? 8 : 8;   ///< of the search for directions
+  static constexpr std::uint32_t kUnknown = ~0U;  ///< not a set of lanes
+  static constexpr int kFewSteps = 2;             ///< of that for whole links
 
   /// True if a contact ends the look.
   [[nodiscard]] bool stops() const { return m_.look == Look::One || m_.look == Look::Contacts; }
@@ -383,20 +568,42 @@ class Pack {
     }
   }
 
+  /// Lanes in which the clusters of a pair may meet.
+  unsigned near_clusters(std::uint32_t number) {
+    if (number == kNoCluster) return ~0U;
+    std::uint32_t& out = m_.near[number];
+    if (out != kUnknown) return out;
+    const ClusterPair& pair = m_.cluster_pair[number];
+    const Cluster& a = m_.cluster[pair.a];
+    const float more = pair.margin + m_.slack;
+    if (pair.with_group) {
+      out = near_to(clusters_[pair.a], whole_motion(a.frame, 0), a.whole, more, m_.group[pair.b],
+                    all_);
+      return out;
+    }
+    const Cluster& b = m_.cluster[pair.b];
+    out = near_to({clusters_[pair.a], a.whole, whole_motion(a.frame, pair.common)},
+                  {clusters_[pair.b], b.whole, whole_motion(b.frame, pair.common)}, more, all_);
+    return out;
+  }
+
   void look_at(const ObstaclePair& pair) {
+    const unsigned lanes = all_ & ~contact_ & near_clusters(pair.clusters);
+    if (lanes == 0) return;
     const ShapeModel& shape = m_.shape[pair.shape];
     const Point& whole = whole_[pair.shape];
     const ObstacleGroup& group = m_.group[pair.group];
     const auto motion = whole_motion(shape.frame, 0);
-    const auto radius = radius_of(motion, shape.whole, pair.margin + m_.slack);
-    const unsigned near = may_meet(whole, radius, group) & all_ & ~contact_;
+    const float more = pair.margin + m_.slack;
+    const unsigned near = near_to(whole, motion, shape.whole, more, group, lanes);
     if (near == 0) return;
     if (group.cloud.nodes.begin != group.cloud.nodes.end)
       return look_at(pair, shape, group.cloud, near);
     for (std::uint32_t i = group.obstacles.begin; i < group.obstacles.end; ++i) {
       const unsigned left = near & ~contact_;
       if (left == 0) return;
-      look_at(pair, shape, m_.obstacle[i], left & may_meet(m_, whole, radius, m_.obstacle[i]));
+      look_at(pair, shape, m_.obstacle[i],
+              near_to(whole, motion, shape.whole, more, m_.obstacle[i], left));
     }
   }
 
@@ -406,25 +613,25 @@ class Pack {
     if (m_.look == Look::Contacts) return note(0, inside(pair, shape, o, near));
     const auto motion = whole_motion(shape.frame, 0);
     const float more = pair.margin + m_.slack;
-    const PlacedBody other{m_.body[o.body], world_point(m_.body[o.body].ball.center), nullptr};
-    const float reach = m_.body[o.body].offset + more;
+    const auto still = whole_motion(0, 0);
+    const PlacedBody other{m_.body[o.body], world_point(m_.body[o.body].ball.center), nullptr,
+                           still};
     if (is_worth_a_hull(shape, shape)) {
-      const BodyModel& hull = m_.body[shape.hull];
-      near = without_direction({hull, whole_[pair.shape], &frames_[shape.frame]}, other,
-                               offset_of(motion, hull) + reach, near, kFewSteps);
+      near = without_direction(
+          {m_.body[shape.hull], whole_[pair.shape], &frames_[shape.frame], motion}, other, more,
+          near, kFewSteps);
       if (near == 0) return;
     }
     place_outer(pair.shape);
-    unsigned doubt = 0, meet = 0, facing = 0;
+    unsigned doubt = 0, meet = 0, facing = 0, suspect = 0;
     bool is_looked_into = false;
     for (std::uint32_t i = shape.bodies.begin; i < shape.bodies.end && (doubt | meet) != near;
          ++i) {
       const BodyModel& body = m_.body[i];
-      const unsigned left =
-          near & ~doubt & ~meet & may_meet(m_, bodies_[i], radius_of(motion, body.ball, more), o);
+      const unsigned left = near_to(bodies_[i], motion, body.ball, more, o, near & ~doubt & ~meet);
       unsigned found = 0;
       for (std::uint32_t k = body.balls.begin; k < body.balls.end && found != left; ++k)
-        found |= left & may_meet(m_, outer_[k], radius_of(motion, m_.outer[k], more), o);
+        found |= near_to(outer_[k], motion, m_.outer[k], more, o, left & ~found);
       if (found == 0) continue;
       if (!is_looked_into) {
         if (m_.look != Look::Apart) meet = inside(pair, shape, o, near);
@@ -432,10 +639,13 @@ class Pack {
       }
       is_looked_into = true;
       found &= facing & ~meet;
-      doubt |= without_direction({body, bodies_[i], &frames_[shape.frame]}, other,
-                                 offset_of(motion, body) + reach, found);
+      doubt |=
+          without_direction({body, bodies_[i], &frames_[shape.frame], motion}, other, more, found);
+      meet |= meeting_;
+      suspect |= unparted_;
     }
-    note(doubt, meet);
+    doubt &= ~meet;
+    note(doubt, meet, suspect);
   }
 
   /// Lanes in which a shape certainly meets an obstacle.
@@ -448,51 +658,99 @@ class Pack {
     return meet;
   }
 
+  /// What is known of how things move; nothing where they do not.
+  using Moves = std::conditional_t<Moving, Motion, Still>;
+
   /// A body and where it is.
   struct PlacedBody {
     const BodyModel& body;
     Point middle;
     const Frame* frame;  ///< null: the world
+    const Moves& motion;
   };
 
   /// Lanes that are open already, or of which no direction is found along which two bodies are
-  /// apart by more than `reach`. The search: mirrored at the vector between the farthest corners
-  /// ([chung1996]).
-  template <typename Reach>
-  [[nodiscard]] unsigned without_direction(const PlacedBody& a, const PlacedBody& b,
-                                           const Reach& reach, unsigned lanes,
-                                           int steps = kSteps) const {
-    constexpr float kShort = 1 - 0x1p-9F;
+  /// apart by more than `more`: those of nearer and nearer points of their difference
+  /// ([gilbert1988]). Tells of `meeting_` and `unparted_`.
+  [[nodiscard]] unsigned without_direction(const PlacedBody& a, const PlacedBody& b, float more,
+                                           unsigned lanes, int steps = kSteps) {
+    constexpr float kShort = 1 - 0x1p-9F, kProgress = 0.98F;
+    unparted_ = meeting_ = 0;
     // What is open already is asked of the exact predicates, or is cut, in any case.
     const unsigned open = Moving && pairs_ != nullptr ? 0 : lanes & open_;
     lanes &= ~open;
     if (lanes == 0) return open;
     if (a.body.corners.begin == a.body.corners.end || b.body.corners.begin == b.body.corners.end)
       return lanes | open;
-    Point d{b.middle.x - a.middle.x, b.middle.y - a.middle.y, b.middle.z - a.middle.z};
+    const auto reach = offset_of(a.motion, a.body) + (offset_of(b.motion, b.body) + more);
+    const float still = a.body.offset + (b.body.offset + more);
+    // A lane is looked at while that leads on; what is found there does not depend on the others.
+    unsigned going = lanes, unparted = lanes;
+    Point d = difference(b.middle, a.middle);
+    Simplex nearest;
+    Floats last = Floats{} + __builtin_huge_valf();
     for (int step = 0;; ++step) {
       const Floats square = dot(d, d);
       // Of what is too short or too long for its square, or is no number, nothing is said.
       const Ints sound = (square > 0x1p-100F) & (square < 0x1p100F);
-      const Floats scale = kShort / root(square);
-      d = {d.x * scale, d.y * scale, d.z * scale};
-      const Point back{-d.x, -d.y, -d.z};
+      d = scaled(d, kShort / root(square));
+      const Point back = scaled(d, Floats{} - 1);
       Ints of_a, of_b;
       const Floats top =
           farthest(m_, a.body, a.frame == nullptr ? d : turned_back(*a.frame, d), of_a);
       const Floats bottom =
           farthest(m_, b.body, b.frame == nullptr ? back : turned_back(*b.frame, back), of_b);
-      const Point from = origin_of(a.frame), to = origin_of(b.frame);
-      const Floats gap = dot({to.x - from.x, to.y - from.y, to.z - from.z}, d) - (top + bottom);
-      lanes &= bits_of(~((gap > reach) & sound));
-      if (lanes == 0 || step == steps) return lanes | open;
+      const Floats gap =
+          dot(difference(origin_of(b.frame), origin_of(a.frame)), d) - (top + bottom);
+      unsigned parted = going & bits_of((gap > reach) & sound);
+      if constexpr (Moving) {
+        unparted &= ~(going & bits_of((gap > still) & sound));
+        parted |= apart_on_way(a, b, more, d, gap, going & bits_of(sound));
+      }
+      lanes &= ~parted;
+      unparted_ = lanes & unparted;
+      going &= lanes;
+      if (going == 0 || step == steps) return lanes | open;
       Point p = corners_at(m_, of_a), q = corners_at(m_, of_b);
       if (a.frame != nullptr) p = place(*a.frame, p);
       if (b.frame != nullptr) q = place(*b.frame, q);
-      const Point v{q.x - p.x, q.y - p.y, q.z - p.z};
-      const Floats mirror = 2 * gap / dot(v, v);
-      d = {d.x - mirror * v.x, d.y - mirror * v.y, d.z - mirror * v.z};
+      const Point way_between = difference(q, p);
+      const Simplex before = nearest;
+      d = nearest.with(way_between, step == 0);
+      // No gap is wider than the way between points of both; where this does not get shorter,
+      // either it is the gap, or the bodies meet.
+      const Floats way = dot(d, d);
+      const unsigned on = bits_of((way > still * still) & (way < kProgress * last));
+      if (step > 2 && (going & ~on) != 0)
+        meeting_ |= going & ~on & hold_ball(before, way_between, a.body.error + b.body.error);
+      going &= on;
+      last = way;
+      if (going == 0) return lanes | open;
     }
+  }
+
+  /// Those of some lanes in which two bodies are apart along a direction in all of a stretch.
+  /// @param gap  at its middle
+  [[nodiscard]] unsigned apart_on_way(const PlacedBody& a, const PlacedBody& b, float more,
+                                      const Point& d, const Floats& gap, unsigned lanes) const {
+    const Floats reach =
+        bent_offset_of(a.motion, a.body) + (bent_offset_of(b.motion, b.body) + more);
+    lanes &= bits_of(gap > reach);
+    if (lanes == 0) return 0;
+    const Point from = origin_of(a.frame), to = origin_of(b.frame);
+    const Floats still = dot(difference(to, from), d);
+    const Floats moves = dot(difference(velocity_of(b.motion, to), velocity_of(a.motion, from)), d);
+    const Point turn_a = cross(d, a.motion.spin), turn_b = cross(d, b.motion.spin);
+    for (const float s : {-1.0F, 1.0F}) {
+      const Point e = sum(d, scaled(turn_a, Floats{} + s));
+      const Point back = scaled(sum(d, scaled(turn_b, Floats{} + s)), Floats{} - 1);
+      const Floats top = extent(m_, a.body, a.frame == nullptr ? e : turned_back(*a.frame, e));
+      const Floats bottom =
+          extent(m_, b.body, b.frame == nullptr ? back : turned_back(*b.frame, back));
+      lanes &= bits_of(still + s * moves - (top + bottom) > reach);
+      if (lanes == 0) return 0;
+    }
+    return lanes;
   }
 
   static Point origin_of(const Frame* frame) {
@@ -505,14 +763,14 @@ class Pack {
 
   /// Lanes in which no face of an obstacle's box, of those that the shape's ball is in front of,
   /// separates the shape from it.
-  template <typename Any>
-  unsigned not_beyond_face(const ObstaclePair& pair, const ShapeModel& shape, const Any& motion,
+  unsigned not_beyond_face(const ObstaclePair& pair, const ShapeModel& shape, const Moves& motion,
                            const Obstacle& o, unsigned doubt) {
     place_corners(pair.shape);
     FrameBall ball;
     ball.length = shape.reach;
     ball.radius = shape.corner_radius;
-    const auto reach = radius_of(motion, ball, pair.margin + m_.slack) + o.radius;
+    const float more = pair.margin + m_.slack;
+    const auto reach = radius_of(motion, ball, more) + o.radius;
     unsigned left = ~0U;
     for (int k = 0; k < 3; ++k) {
       const float* axis = o.axes + 3 * k;
@@ -523,15 +781,26 @@ class Pack {
       const unsigned lanes = bits_of(outside) & doubt & left;
       if (lanes == 0) continue;
       Floats least = Floats{} + __builtin_huge_valf(), most = -least;
+      [[maybe_unused]] Floats least_on_way = least, most_on_way = most;
       for (std::uint32_t i = shape.corners.begin; i < shape.corners.end; ++i) {
         const Point& p = corners_[i];
         const Floats along = axis[0] * (p.x - o.center[0]) + axis[1] * (p.y - o.center[1]) +
                              axis[2] * (p.z - o.center[2]);
         least = along < least ? along : least;
         most = along > most ? along : most;
+        if constexpr (Moving) {
+          const Point v = velocity_of(motion, p);
+          const Floats way = magnitude(axis[0] * v.x + axis[1] * v.y + axis[2] * v.z);
+          least_on_way = along - way < least_on_way ? along - way : least_on_way;
+          most_on_way = along + way > most_on_way ? along + way : most_on_way;
+        }
       }
       const auto face = (o.half[k] + reach) * kAbove;
-      const Ints apart = (least > face) | (-most > face);
+      Ints apart = (least > face) | (-most > face);
+      if constexpr (Moving) {
+        const Floats near = (o.half[k] + (bent_radius_of(motion, ball, more) + o.radius)) * kAbove;
+        apart |= (least_on_way > near) | (-most_on_way > near);
+      }
       left &= bits_of(~apart) | ~lanes;
     }
     return left;
@@ -570,50 +839,47 @@ class Pack {
   }
 
   void look_at(const ShapePair& pair) {
+    const unsigned lanes = all_ & ~contact_ & near_clusters(pair.clusters);
+    if (lanes == 0) return;
     const ShapeModel &a = m_.shape[pair.a], &b = m_.shape[pair.b];
     const Point &whole_a = whole_[pair.a], &whole_b = whole_[pair.b];
     const auto motion_a = whole_motion(a.frame, pair.common),
                motion_b = whole_motion(b.frame, pair.common);
-    unsigned near = all_ & ~contact_ &
-                    may_meet(whole_a, whole_b,
-                             radius_of(motion_a, a.whole, pair.margin + m_.slack) +
-                                 radius_of(motion_b, b.whole, 0));
+    const float more = pair.margin + m_.slack;
+    unsigned near =
+        near_to({whole_a, a.whole, motion_a}, {whole_b, b.whole, motion_b}, more, lanes);
     for (std::uint32_t i = pair.witnesses.begin; i < pair.witnesses.end && near != 0; ++i) {
       const Witness& w = m_.witness[i];
       near &= w.of_first ? not_separated(w, a, motion_a, b, motion_b)
                          : not_separated(w, b, motion_b, a, motion_a);
     }
     if (is_worth_a_hull(a, b))
-      near =
-          without_direction({m_.body[a.hull], whole_a, &frames_[a.frame]},
-                            {m_.body[b.hull], whole_b, &frames_[b.frame]},
-                            offset_of(motion_a, m_.body[a.hull]) +
-                                (offset_of(motion_b, m_.body[b.hull]) + (pair.margin + m_.slack)),
-                            near, kFewSteps);
+      near = without_direction({m_.body[a.hull], whole_a, &frames_[a.frame], motion_a},
+                               {m_.body[b.hull], whole_b, &frames_[b.frame], motion_b}, more, near,
+                               kFewSteps);
     if (near == 0) return;
     place_outer(pair.a);
     place_outer(pair.b);
-    unsigned doubt = 0, meet = 0;
+    unsigned doubt = 0, meet = 0, suspect = 0;
     bool is_looked_into = m_.look == Look::Apart;
     for (std::uint32_t i = a.bodies.begin; i < a.bodies.end && (doubt | meet) != near; ++i) {
       const BodyModel& body = m_.body[i];
-      const auto reach = radius_of(motion_a, body.ball, pair.margin + m_.slack);
-      const unsigned left = near & ~doubt & ~meet &
-                            may_meet(bodies_[i], whole_b, reach + radius_of(motion_b, b.whole, 0));
+      const unsigned left = near_to({bodies_[i], body.ball, motion_a}, {whole_b, b.whole, motion_b},
+                                    more, near & ~doubt & ~meet);
       for (std::uint32_t k = b.bodies.begin; k < b.bodies.end; ++k) {
-        unsigned found = balls_meet(pair, i, motion_a, k, motion_b, left & ~doubt & ~meet);
+        unsigned found = balls_meet(i, motion_a, k, motion_b, more, left & ~doubt & ~meet);
         if (found == 0) continue;
         if (!is_looked_into) meet = inside(pair, near);
         is_looked_into = true;
         found &= ~meet;
-        doubt |= without_direction({body, bodies_[i], &frames_[a.frame]},
-                                   {m_.body[k], bodies_[k], &frames_[b.frame]},
-                                   offset_of(motion_a, body) +
-                                       (offset_of(motion_b, m_.body[k]) + (pair.margin + m_.slack)),
-                                   found);
+        doubt |=
+            without_direction({body, bodies_[i], &frames_[a.frame], motion_a},
+                              {m_.body[k], bodies_[k], &frames_[b.frame], motion_b}, more, found);
+        meet |= meeting_;
+        suspect |= unparted_;
       }
     }
-    note(doubt, meet);
+    note(doubt, meet, suspect);
   }
 
   /// True if two hulls are looked at before all pairs of bodies.
@@ -636,32 +902,70 @@ class Pack {
   }
 
   /// Lanes in which balls of two bodies of links may meet.
-  template <typename Any>
-  unsigned balls_meet(const ShapePair& pair, std::uint32_t i, const Any& motion_a, std::uint32_t k,
-                      const Any& motion_b, unsigned lanes) const {
+  unsigned balls_meet(std::uint32_t i, const Moves& motion_a, std::uint32_t k,
+                      const Moves& motion_b, float more, unsigned lanes) const {
     if (lanes == 0) return 0;
     const BodyModel &a = m_.body[i], &b = m_.body[k];
-    const float more = pair.margin + m_.slack;
-    lanes &= may_meet(bodies_[i], bodies_[k],
-                      radius_of(motion_a, a.ball, more) + radius_of(motion_b, b.ball, 0));
+    const PlacedBall ball_b{bodies_[k], b.ball, motion_b};
+    lanes = near_to({bodies_[i], a.ball, motion_a}, ball_b, more, lanes);
     unsigned out = 0;
     for (std::uint32_t x = a.balls.begin; x < a.balls.end && out != lanes; ++x) {
-      const auto reach = radius_of(motion_a, m_.outer[x], more);
-      const unsigned left =
-          lanes & ~out & may_meet(outer_[x], bodies_[k], reach + radius_of(motion_b, b.ball, 0));
-      if (left == 0) continue;
-      unsigned found = 0;
-      for (std::uint32_t y = b.balls.begin; y < b.balls.end && found != left; ++y)
-        found |= left & may_meet(outer_[x], outer_[y], reach + radius_of(motion_b, m_.outer[y], 0));
-      out |= found;
+      const PlacedBall ball{outer_[x], m_.outer[x], motion_a};
+      const unsigned left = near_to(ball, ball_b, more, lanes & ~out);
+      for (std::uint32_t y = b.balls.begin; y < b.balls.end && (left & ~out) != 0; ++y)
+        out |= near_to(ball, {outer_[y], m_.outer[y], motion_b}, more, left & ~out);
     }
     return out;
   }
 
+  /// A ball and where it is.
+  struct PlacedBall {
+    const Point& at;
+    const FrameBall& ball;
+    const Moves& motion;
+  };
+
+  /// Those of some lanes in which two balls may come within `more` of each other.
+  [[nodiscard]] unsigned near_to(const PlacedBall& a, const PlacedBall& b, float more,
+                                 unsigned lanes) const {
+    if (lanes == 0) return 0;
+    lanes &=
+        may_meet(a.at, b.at, radius_of(a.motion, a.ball, more) + radius_of(b.motion, b.ball, 0));
+    if constexpr (Moving) {
+      if (lanes != 0)
+        lanes &= may_meet_on_way(
+            difference(b.at, a.at),
+            difference(velocity_of(b.motion, b.at), velocity_of(a.motion, a.at)),
+            bent_radius_of(a.motion, a.ball, more) + bent_radius_of(b.motion, b.ball, 0));
+    }
+    return lanes;
+  }
+  /// Those in which a ball may come within `more` of an obstacle.
+  [[nodiscard]] unsigned near_to(const Point& p, const Moves& motion, const FrameBall& ball,
+                                 float more, const Obstacle& o, unsigned lanes) const {
+    if (lanes == 0) return 0;
+    lanes &= may_meet(m_, p, radius_of(motion, ball, more), o);
+    if constexpr (Moving) {
+      if (lanes != 0)
+        lanes &=
+            may_meet_on_way(m_, p, velocity_of(motion, p), bent_radius_of(motion, ball, more), o);
+    }
+    return lanes;
+  }
+  [[nodiscard]] unsigned near_to(const Point& p, const Moves& motion, const FrameBall& ball,
+                                 float more, const ObstacleGroup& box, unsigned lanes) const {
+    lanes &= may_meet(p, radius_of(motion, ball, more), box);
+    if constexpr (Moving) {
+      if (lanes != 0)
+        lanes &=
+            may_meet_on_way(p, velocity_of(motion, p), bent_radius_of(motion, ball, more), box);
+    }
+    return lanes;
+  }
+
   /// Lanes in which a witness does not separate two shapes.
-  template <typename Any>
-  [[nodiscard]] unsigned not_separated(const Witness& w, const ShapeModel& a, const Any& motion_a,
-                                       const ShapeModel& b, const Any& motion_b) const {
+  [[nodiscard]] unsigned not_separated(const Witness& w, const ShapeModel& a, const Moves& motion_a,
+                                       const ShapeModel& b, const Moves& motion_b) const {
     const Frame &at_a = frames_[a.frame], &at_b = frames_[b.frame];
     Floats n[3], local[3];
     for (int k = 0; k < 3; ++k)
@@ -688,9 +992,17 @@ class Pack {
     }
   }
 
-  void note(unsigned doubt, unsigned meet) {
+  /// @param suspect  lanes in which some bodies may not be apart even at the middles of stretches
+  void note(unsigned doubt, unsigned meet, unsigned suspect = 0) {
     contact_ |= meet;
     open_ |= doubt & ~meet;
+    if constexpr (Moving) {
+      for (unsigned left = suspects_ == nullptr ? 0 : doubt & ~meet; left != 0; left &= left - 1) {
+        Suspect& at = suspects_[__builtin_ctz(left)];
+        const bool surely = ((suspect & left & -left) != 0);
+        if (at.pair == Suspect::kNone || (surely && !at.unparted)) at = {number_, surely};
+      }
+    }
     if (pairs_ == nullptr) return;
     for (unsigned left = doubt & ~meet; left != 0; left &= left - 1) {
       std::uint32_t* row =
@@ -733,7 +1045,8 @@ class Pack {
 
   /// Motion of a frame, as seen from one that it hangs from.
   [[nodiscard]] Motion motion_of(std::uint32_t frame, std::uint32_t from) const {
-    if (frame == from) return {Floats{}, Floats{}};
+    const Point none{Floats{}, Floats{}, Floats{}};
+    if (frame == from) return {Floats{}, Floats{}, none, none, Floats{}};
     const Motion &all = motions_[frame], &part = motions_[from];
     if (from == 0) return all;
     // Differences of sums that are rounded: what that takes is added.
@@ -741,18 +1054,33 @@ class Pack {
     const Floats turn = all.turn - part.turn, shift = all.shift - part.shift - part.turn * path;
     return {
         (turn > 0 ? turn : Floats{}) + all.turn * kMoves,
-        (shift > 0 ? shift : Floats{}) + (all.shift + all.turn * m_.step[frame - 1].path) * kMoves};
+        (shift > 0 ? shift : Floats{}) + (all.shift + all.turn * m_.step[frame - 1].path) * kMoves,
+        difference(all.spin, part.spin), difference(all.drift, part.drift), all.blur + part.blur};
   }
-  [[nodiscard]] auto whole_motion(std::uint32_t frame, std::uint32_t from) const {
+  [[nodiscard]] Moves whole_motion(std::uint32_t frame, std::uint32_t from) const {
     if constexpr (Moving)
       return motion_of(frame, from);
     else
-      return 0;
+      return {};
+  }
+
+  /// How far a point at so much from a frame's origin is from the straight way that it goes with
+  /// its velocity at the middle, at most.
+  [[nodiscard]] Floats bend_of(const Motion& motion, float length) const {
+    return (motion.shift + motion.turn * length) * (motion.turn * m_.bend + kResidue) *
+               (1 + kMoves) +
+           motion.blur;
+  }
+  [[nodiscard]] Floats bent_offset_of(const Motion& motion, const BodyModel& body) const {
+    return bend_of(motion, body.reach) + body.offset;
+  }
+  [[nodiscard]] Floats bent_radius_of(const Motion& motion, const FrameBall& ball,
+                                      float more) const {
+    return bend_of(motion, ball.length) + (ball.radius + more);
   }
 
   /// What is added to the extent of a body along any direction.
-  template <typename Any>
-  [[nodiscard]] auto offset_of(const Any& motion, const BodyModel& body) const {
+  [[nodiscard]] auto offset_of(const Moves& motion, const BodyModel& body) const {
     if constexpr (Moving)
       return (motion.shift + motion.turn * body.reach) * (1 + kMoves) + body.offset;
     else
@@ -760,8 +1088,7 @@ class Pack {
   }
 
   /// Radius of a ball with a motion, and what is added to it.
-  template <typename Any>
-  [[nodiscard]] auto radius_of(const Any& motion, const FrameBall& ball, float more) const {
+  [[nodiscard]] auto radius_of(const Moves& motion, const FrameBall& ball, float more) const {
     if constexpr (Moving)
       return (motion.shift + motion.turn * ball.length) * (1 + kMoves) + (ball.radius + more);
     else
@@ -770,23 +1097,27 @@ class Pack {
 
   const View& m_;
   std::uint32_t* pairs_;
+  Suspect* suspects_;
   std::uint32_t number_ = 0;  ///< of the pair that is looked at
   Frame* frames_;
   Motion* motions_;
-  Point *whole_, *outer_, *inner_, *corners_, *bodies_;
+  Point *whole_, *clusters_, *outer_, *inner_, *corners_, *bodies_;
   unsigned all_ = 0, contact_ = 0, open_ = 0;
+  unsigned meeting_ = 0;   ///< lanes in which the last search has found that bodies meet
+  unsigned unparted_ = 0;  ///< lanes in which the last search has not parted bodies at all
 };
 
-/// @param widths  as of bound_motions; null: none
+/// @param ways  as of bound_motions; null: none
 template <bool Moving>
-void filter_all(const View& m, const double* rows, const double* widths, std::size_t count,
+void filter_all(const View& m, const double* rows, const double* ways, std::size_t count,
                 Answer* answers) {
   for (std::size_t first = 0; first < count; first += KABOUM_LANES) {
     const std::size_t left = count - first;
     const unsigned here = left < KABOUM_LANES ? static_cast<unsigned>(left) : KABOUM_LANES;
-    const std::size_t at = first * m.variables;
-    Pack<Moving> pack(m, rows + at, Moving ? widths + at : nullptr, here,
-                      m.pairs == nullptr ? nullptr : m.pairs + first * (OpenPairs::kMost + 1));
+    const std::size_t at = place_of(first, 0, m.variables);
+    Pack<Moving> pack(m, rows + at, Moving ? ways + at : nullptr, here,
+                      m.pairs == nullptr ? nullptr : m.pairs + first * (OpenPairs::kMost + 1),
+                      m.suspects == nullptr ? nullptr : m.suspects + first);
     pack.decide();
     const unsigned contact = pack.contact(), open = pack.open();
     for (unsigned lane = 0; lane < here; ++lane)
@@ -799,24 +1130,26 @@ void filter_all(const View& m, const double* rows, const double* widths, std::si
     return;
   }
 }
-void filter_rows(const View& m, const double* rows, const double* widths, std::size_t count,
-                 Answer* answers) {
-  if (widths != nullptr) return filter_all<true>(m, rows, widths, count, answers);
+void filter_blocks(const View& m, const double* rows, const double* ways, std::size_t count,
+                   Answer* answers) {
+  if (ways != nullptr) return filter_all<true>(m, rows, ways, count, answers);
   filter_all<false>(m, rows, nullptr, count, answers);
 }
 
 void place_outer_balls(const View& m, const double* rows, std::size_t count, float* centers) {
   Frame* frames = reinterpret_cast<Frame*>(m.memory);
   for (std::size_t row = 0; row < count; ++row) {
-    place_frames(m, rows + row * m.variables, 1, frames);
+    // Every lane reads within the blocks.
+    const std::size_t first = row / KABOUM_LANES * KABOUM_LANES, lane = row - first;
+    place_frames(m, rows + place_of(first, 0, m.variables), frames);
     for (std::size_t s = 0; s < m.shapes; ++s)
       for (std::uint32_t i = m.shape[s].bodies.begin; i < m.shape[s].bodies.end; ++i)
         for (std::uint32_t k = m.body[i].balls.begin; k < m.body[i].balls.end; ++k) {
           const Point p = place(frames[m.shape[s].frame], m.outer[k].center);
           float* out = centers + 3 * (row * m.outer_count + k);
-          out[0] = p.x[0];
-          out[1] = p.y[0];
-          out[2] = p.z[0];
+          out[0] = p.x[lane];
+          out[1] = p.y[lane];
+          out[2] = p.z[lane];
         }
   }
 }

@@ -109,6 +109,8 @@ Chain add_chain(const world::RobotModel& robot, Model& model) {
   for (const robot::Variable& v : variables) {
     model.low.push_back(std::max(v.lower.value_or(-kFarthest), -kFarthest));
     model.high.push_back(std::min(v.upper.value_or(kFarthest), kFarthest));
+    model.more.push_back(0x1p-32 *
+                         std::max(std::abs(model.low.back()), std::abs(model.high.back())));
     model.unusable = model.unusable || !(model.low.back() <= model.high.back());
   }
   for (const robot::Joint& joint : robot.kinematics.joints) {
@@ -270,6 +272,7 @@ std::uint32_t add_body(const std::vector<Vec3>& points, double radius, double si
     out.corners.end = size_of(model.corners);
   }
   out.offset = rounded_up((radius + (12 * kUnit + kDoubles) * size) * kSums);
+  out.error = rounded_up(1.1 * (12 * kUnit + kDoubles) * size);
   model.bodies.push_back(out);
   return size_of(model.bodies) - 1;
 }
@@ -691,6 +694,28 @@ void add_levers(const Chain& chain, Model& model) {
   }
 }
 
+/// Bounds of how far velocities are off: docs/algorithms/batches.md, "Motions".
+void add_blur(const Chain& chain, Model& model) {
+  double rotation = 0, translation = 0, reach = 0;
+  for (const FrameBounds& frame : chain.bounds) {
+    rotation = std::max(rotation, frame.rotation);
+    translation = std::max(translation, frame.translation);
+    reach = std::max(reach, frame.reach);
+  }
+  double farthest = 0;  // of the links' points, from their frames
+  for (const ShapeModel& shape : model.shapes)
+    farthest = std::max<double>(farthest, shape.whole.length + shape.whole.radius);
+  const auto joints = static_cast<double>(model.steps.size());
+  const double all = 1.01 * (reach + farthest);
+  const double error = translation + (rotation + 20 * kUnit) * farthest + 5 * kUnit * all;
+  model.blur_of_turns =
+      rounded_up(1.1 * (((8 * joints + 80) * kUnit + 3 * rotation) * all + 3 * error));
+  model.blur_of_slides = rounded_up(1.1 * ((4 * joints + 20) * kUnit + 2 * rotation));
+  for (const Step& step : model.steps)
+    for (std::uint32_t f = step.parent; !step.turns && f > 0; f = model.steps[f - 1].parent)
+      if (model.steps[f - 1].turns) model.bend = 1;
+}
+
 /// Bodies of a link's set.
 /// @param error  of its place, as the checker has it
 void add_bodies(const collide::BoundingSet& set, const BallCover& cover, const Chain& chain,
@@ -719,6 +744,7 @@ void add_bodies(const collide::BoundingSet& set, const BallCover& cover, const C
       out.corners = {};
     }
     out.reach = rounded_up(reach * (1 + 1e-6));
+    out.error = rounded_up(1.1 * extent_error(chain, link, out.reach, lengths, 0));
     out.offset = rounded_up(
         (body.radius * (1 + 1e-8) + 1.1 * extent_error(chain, link, out.reach, lengths, error)) *
         kSums);
@@ -781,6 +807,80 @@ void add_items(std::size_t robot, const Groups& groups, Model& model) {
     model.items.push_back({Item{robot, pair.shape}, things[pair.group]});
 }
 
+/// Balls round the shapes of each frame, for pairs of which one has several.
+/// @param errors  of the shapes' places, as the checker has them
+class Clusters {
+ public:
+  Clusters(const Chain& chain, const std::vector<double>& errors, Model& model)
+      : chain_(chain), errors_(errors), model_(model), of_frame_(chain.bounds.size(), kNoCluster) {
+    count_.assign(chain.bounds.size(), 0);
+    for (const ShapeModel& shape : model.shapes) ++count_[shape.frame];
+  }
+
+  void add() {
+    for (ObstaclePair& pair : model_.obstacle_pairs)
+      if (const std::uint32_t frame = frame_of(pair.shape); count_[frame] > 1)
+        pair.clusters = number_of({cluster_of(frame), pair.group, true, 0, 0}, pair.margin);
+    for (ShapePair& pair : model_.shape_pairs) {
+      const std::uint32_t a = frame_of(pair.a), b = frame_of(pair.b);
+      if (count_[a] * count_[b] > 1 && a != b)
+        pair.clusters =
+            number_of({cluster_of(a), cluster_of(b), false, pair.common, 0}, pair.margin);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t frame_of(std::uint32_t shape) const {
+    return model_.shapes[shape].frame;
+  }
+
+  std::uint32_t cluster_of(std::uint32_t frame) {
+    if (of_frame_[frame] != kNoCluster) return of_frame_[frame];
+    Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+    double error = 0;
+    const auto center_of = [](const ShapeModel& shape) {
+      return Vec3(shape.whole.center[0], shape.whole.center[1], shape.whole.center[2]);
+    };
+    const auto for_all = [&](const auto& tell) {
+      for (std::size_t s = 0; s < model_.shapes.size(); ++s)
+        if (model_.shapes[s].frame == frame) tell(model_.shapes[s], errors_[s]);
+    };
+    for_all([&](const ShapeModel& shape, double its) {
+      const Vec3 radius = Vec3::Constant(shape.whole.radius);
+      low = low.cwiseMin(center_of(shape) - radius);
+      high = high.cwiseMax(center_of(shape) + radius);
+      error = std::max(error, its);
+    });
+    Ball ball;
+    ball.center = 0.5 * (low + high);
+    for_all([&](const ShapeModel& shape, double) {
+      ball.radius = std::max(
+          ball.radius, (center_of(shape) - ball.center).norm() * (1 + 1e-12) + shape.whole.radius);
+    });
+    const LinkPlace place{frame, {}, 0};
+    of_frame_[frame] = size_of(model_.clusters);
+    model_.clusters.push_back({frame, outer_ball(chain_, place, ball, error)});
+    return of_frame_[frame];
+  }
+
+  std::uint32_t number_of(const ClusterPair& pair, float margin) {
+    const auto found = std::ranges::find_if(model_.cluster_pairs, [&](const ClusterPair& other) {
+      return other.a == pair.a && other.b == pair.b && other.with_group == pair.with_group;
+    });
+    const auto number = static_cast<std::uint32_t>(found - model_.cluster_pairs.begin());
+    if (found == model_.cluster_pairs.end()) model_.cluster_pairs.push_back(pair);
+    float& most = model_.cluster_pairs[number].margin;
+    most = std::max(most, margin);
+    return number;
+  }
+
+  const Chain& chain_;
+  const std::vector<double>& errors_;
+  Model& model_;
+  std::vector<std::uint32_t> of_frame_;
+  std::vector<std::size_t> count_;
+};
+
 }  // namespace
 
 Model make_model(const world::Checker& checker, const world::WorldState& given, std::size_t robot,
@@ -807,6 +907,7 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   for (const auto& at : checker.places(state, links, scratch)) errors.push_back(at.place.error());
   add_shapes(model, chain, errors, most_balls, out);
   add_levers(chain, out);
+  add_blur(chain, out);
 
   const auto moves = [&](const Item& item) {
     return item.robot == robot && out.shapes[item.index].frame != 0;
@@ -847,6 +948,7 @@ Model make_model(const world::Checker& checker, const world::WorldState& given, 
   leave_out_of_reach(chain, model, out);
   constexpr std::size_t kRowsForOrder = 500;
   sort_pairs(std::span(rows).first(kRowsForOrder * out.variables), out);
+  Clusters(chain, errors, out).add();
   add_items(robot, groups, out);
   return out;
 }

@@ -59,6 +59,7 @@ struct BodyModel {
   Range corners;     ///< whose hull holds it with a radius; none: it is not looked at by directions
   float reach = 0;   ///< of the corners, rounded up
   float offset = 0;  ///< the radius and all errors along any direction, rounded up
+  float error = 0;   ///< of the corners' places, rounded up
 };
 
 /// The bounding set of a link.
@@ -116,10 +117,28 @@ struct ObstacleGroup {
   CloudModel cloud;                    ///< nodes: empty where it is none
 };
 
+/// Shapes that one frame moves, held by a ball.
+struct Cluster {
+  std::uint32_t frame = 0;
+  FrameBall whole;
+};
+
+/// A cluster and a thing, or two clusters: what they are apart by is so of all their shapes.
+struct ClusterPair {
+  std::uint32_t a = 0, b = 0;  ///< of Model::clusters; b of Model::groups where it is one
+  bool with_group = false;
+  std::uint32_t common = 0;  ///< as of ShapePair
+  float margin = 0;          ///< the largest of the pairs', rounded up
+};
+
+/// Of a pair that is in no pair of clusters.
+inline constexpr std::uint32_t kNoCluster = ~0U;
+
 /// A shape and a thing that are to be apart by more than the margin.
 struct ObstaclePair {
   std::uint32_t shape = 0, group = 0;
-  float margin = 0, least_margin = 0;  ///< rounded up, and down
+  float margin = 0, least_margin = 0;   ///< rounded up, and down
+  std::uint32_t clusters = kNoCluster;  ///< of Model::cluster_pairs
 };
 
 struct ShapePair {
@@ -127,6 +146,7 @@ struct ShapePair {
   std::uint32_t common = 0;  ///< the last frame that both are fixed to or hang from
   float margin = 0, least_margin = 0;
   Range witnesses;
+  std::uint32_t clusters = kNoCluster;  ///< as of ObstaclePair
 };
 
 /// Share of the robot's size: things that a link is farther from than that are not looked at, so no
@@ -137,8 +157,13 @@ inline constexpr double kReachSlack = 1e-2;
 struct Model {
   std::size_t variables = 0;
   std::vector<double> low, high;  ///< rows with values beyond are left open
-  float base[9] = {};             ///< rotation of the root
-  std::vector<Step> steps;        ///< of frame i + 1
+  std::vector<double> more;       ///< of each variable, what holds the rounding of its stretches
+  /// Half of the largest acceleration divided by the speed that it is bounded by: 1/2, or 1 where a
+  /// slide follows a turn.
+  float bend = 0.5F;
+  float blur_of_turns = 0, blur_of_slides = 0;  ///< errors of velocities, by the rates of joints
+  float base[9] = {};                           ///< rotation of the root
+  std::vector<Step> steps;                      ///< of frame i + 1
   std::vector<FrameBall> outer, inner;
   std::vector<ShapeModel> shapes;
   std::vector<BodyModel> bodies;
@@ -151,6 +176,9 @@ struct Model {
   std::vector<ObstacleGroup> groups;
   std::vector<ObstaclePair> obstacle_pairs;
   std::vector<ShapePair> shape_pairs;
+  std::vector<Cluster>
+      clusters;  ///< of frames with several shapes, and of those in pairs with them
+  std::vector<ClusterPair> cluster_pairs;
   bool obstacles_first = false;  ///< of the pairs, as they are looked at
   /// The things of the pairs: of shape_pairs, then of obstacle_pairs.
   std::vector<std::array<world::Item, 2>> items;

@@ -6,6 +6,7 @@
 #include <kaboum/world/stretch_check.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr std::size_t kFirst = 16;
 constexpr std::size_t kParts = 4;             ///< that an open stretch is cut into
 constexpr std::size_t kMostStretches = 1024;  ///< at a time; a motion with more is open
+constexpr std::size_t kMostSuspects = 4;      ///< asked about exactly at a time
 constexpr double kFine = 0.004;  ///< of the robot's size: moves that are not cut further
 
 }  // namespace
@@ -39,22 +41,61 @@ struct MotionChecker::Impl {
   bool finds_contact(std::span<const double> from, std::span<const double> to, float slack,
                      detail::Look look, detail::OpenPairs* told) {
     const std::size_t n = batch.model.variables;
-    rows.resize(shares.size() * n);
-    widths.resize(shares.size() * n);
+    rows.resize(detail::blocks_size(shares.size(), n));
+    ways.resize(rows.size());
+    std::array<detail::Share, detail::kBlock> block;
+    for (std::size_t first = 0; first < shares.size(); first += detail::kBlock) {
+      for (std::size_t i = 0; i < detail::kBlock; ++i)
+        block[i] = shares[std::min(first + i, shares.size() - 1)];
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t at = detail::place_of(first, k, n);
+        for (std::size_t i = 0; i < detail::kBlock; ++i)
+          detail::put_stretch(block[i], from[k], to[k], rows[at + i], ways[at + i]);
+      }
+    }
     answers.resize(shares.size());
-    for (std::size_t i = 0; i < shares.size(); ++i)
-      for (std::size_t k = 0; k < n; ++k)
-        detail::put_stretch(shares[i], from[k], to[k], rows[i * n + k], widths[i * n + k]);
     stretches += shares.size();
-    detail::filter_rows(batch.model, batch.instructions, rows.data(),
-                        look == detail::Look::Contacts ? nullptr : widths.data(), shares.size(),
-                        memory, answers.data(), slack, look, told);
+    suspects.assign(shares.size(), {});
+    detail::filter_blocks(batch.model, batch.instructions, rows.data(),
+                          look == detail::Look::Contacts ? nullptr : ways.data(), shares.size(),
+                          memory, answers.data(), slack, look, told,
+                          look == detail::Look::Contacts ? nullptr : suspects.data());
     return std::ranges::find(answers, Answer::Contact) != answers.end();
+  }
+
+  /// True if sets meet at the middle of an open stretch: those are looked at that are suspected of
+  /// it, and a few others.
+  bool has_met() {
+    for (const bool unparted : {true, false}) {
+      const auto is_one = [&](std::size_t i) {
+        return answers[i] == Answer::Open && suspects[i].pair != detail::Suspect::kNone &&
+               suspects[i].unparted == unparted;
+      };
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < answers.size(); ++i) count += is_one(i) ? 1 : 0;
+      const std::size_t every = (count + kMostSuspects - 1) / kMostSuspects;
+      std::size_t number = 0;
+      for (std::size_t i = 0; i < answers.size(); ++i)
+        if (is_one(i) && number++ % every == every / 2 && meets(i)) return true;
+    }
+    return false;
+  }
+
+  /// True if the suspected pair meets at the middle of a stretch.
+  bool meets(std::size_t stretch) {
+    const std::size_t n = batch.model.variables;
+    if (!there) there = batch.state;
+    std::vector<double>& q = there->q[batch.robot];
+    for (std::size_t k = 0; k < n; ++k) q[k] = rows[detail::place_of(stretch, k, n)];
+    return !batch.checker->are_apart(*there, {&batch.model.items[suspects[stretch].pair], 1},
+                                     scratch);
   }
 
   const BatchChecker::Impl& batch;
   detail::LaneMemory memory;
-  std::vector<double> rows, widths;
+  std::vector<detail::Suspect> suspects;
+  std::optional<world::WorldState> there;  ///< of what is asked exactly
+  std::vector<double> rows, ways;
   std::vector<detail::Share> shares, next;
   std::vector<Answer> answers;
   /// Notes stretches that stay open, and for which pairs.
@@ -138,6 +179,7 @@ MotionChecker::Answer MotionChecker::filter(std::span<const double> from,
     if (s.finds_contact(from, to, slack, first && !last ? detail::Look::Apart : detail::Look::One,
                         last ? &told : nullptr))
       return Answer::Contact;
+    if (s.has_met()) return Answer::Contact;
     if (last) {
       s.leave_open(told);
       return s.open.empty() ? Answer::Free : Answer::Open;

@@ -444,45 +444,70 @@ TEST(BatchChecker, MotionsAreAsCheckMotionHasThem) {
   EXPECT_THROW(batch.decide_motions(from, to, finest, fine), Error);
 }
 
-/// What points move in a stretch is bounded; bounds that are too small are noticed.
+/// Straight ways from rows: w of row + s·w, within the limits.
+std::vector<double> ways_from(const detail::Model& model, const std::vector<double>& rows,
+                              double longest, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    out.push_back(longest * share(random) *
+                  std::min(1.0, std::min(rows[i] - model.low[i % model.variables],
+                                         model.high[i % model.variables] - rows[i])));
+  return out;
+}
+
+/// Rows that are called free with their ways, and are not free somewhere on these.
+std::size_t count_wrong(const world::Checker& checker, const std::vector<double>& rows,
+                        const std::vector<double>& ways, const std::vector<Answer>& answers) {
+  constexpr int kPlaces = 20;
+  const std::size_t n = rows.size() / answers.size();
+  std::vector<double> places;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    for (int p = -kPlaces; answers[i] == Answer::Free && p <= kPlaces; ++p)
+      for (std::size_t k = 0; k < n; ++k)
+        places.push_back(rows[i * n + k] + p / double{kPlaces} * ways[i * n + k]);
+  const std::vector<std::uint8_t> free = by_checker(checker, places);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < free.size(); i += 2 * kPlaces + 1)
+    wrong += std::ranges::count(std::span(free).subspan(i, 2 * kPlaces + 1), 0) > 0 ? 1 : 0;
+  return wrong;
+}
+
+/// Where points are in a stretch is bounded; bounds that are too small are noticed.
 TEST(Lanes, StretchesHoldAllTheirConfigurations) {
   const World world = cell(true);
   const world::Checker checker(world);
   const detail::Model model = detail::make_model(checker, initial_state(world), 0, 10);
-  detail::Model mutant = model;
-  for (detail::Step& step : mutant.steps) step.factor *= 0.1F;
-  const std::vector<double> rows = rows_at_contact(checker, 12000, 13, {1e-4, 1e-3, 3e-3, 1e-2});
+  detail::Model slow = model, straight = model;
+  for (detail::Step& step : slow.steps) step.factor *= 0.1F;  // less of a way, and of its bend
+  straight.bend = 0;
+  EXPECT_EQ(model.bend, 1);  // it has a slide
   std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> share(-1, 1);
-  std::vector<double> widths;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    widths.push_back(0.05 * std::abs(share(random)) *
-                     std::min(1.0, std::min(rows[i] - model.low[i % model.variables],
-                                            model.high[i % model.variables] - rows[i])));
-  const std::size_t count = rows.size() / model.variables;
-  std::vector<Answer> answers(count), others(count);
-  detail::LaneMemory memory(model);
-  detail::filter_rows(model, instruction_sets().back(), rows.data(), widths.data(), count, memory,
-                      answers.data());
-  for (const Instructions set : instruction_sets()) {
-    detail::filter_rows(model, set, rows.data(), widths.data(), count, memory, others.data());
-    EXPECT_EQ(others, answers) << name_of(set);
+  const auto filtered = [](const detail::Model& of, Instructions set,
+                           const std::vector<double>& rows, const std::vector<double>& ways) {
+    std::vector<Answer> out(rows.size() / of.variables);
+    detail::LaneMemory memory(of);
+    detail::filter_rows(of, set, rows.data(), ways.data(), out.size(), memory, out.data());
+    return out;
+  };
+  std::size_t free = 0, of_slow = 0, of_straight = 0;
+  for (const double longest : {0.05, 0.5}) {
+    const std::vector<double> rows = rows_at_contact(
+        checker, 12000, 13, {longest * 2e-3, longest * 2e-2, longest * 6e-2, longest * 0.2});
+    const std::vector<double> ways = ways_from(model, rows, longest, random);
+    const std::vector<Answer> answers = filtered(model, instruction_sets().back(), rows, ways);
+    for (const Instructions set : instruction_sets())
+      EXPECT_EQ(filtered(model, set, rows, ways), answers) << name_of(set);
+    free += static_cast<std::size_t>(std::ranges::count(answers, Answer::Free));
+    EXPECT_EQ(count_wrong(checker, rows, ways, answers), 0U);
+    of_slow +=
+        count_wrong(checker, rows, ways, filtered(slow, instruction_sets().back(), rows, ways));
+    of_straight +=
+        count_wrong(checker, rows, ways, filtered(straight, instruction_sets().back(), rows, ways));
   }
-  detail::filter_rows(mutant, instruction_sets().back(), rows.data(), widths.data(), count, memory,
-                      others.data());
-  std::size_t wrong = 0, wrong_of_mutant = 0;
-  for (int round = 0; round < 8; ++round) {
-    std::vector<double> some = rows;
-    for (std::size_t i = 0; i < some.size(); ++i)
-      some[i] += (share(random) < 0 ? -1 : 1) * widths[i];
-    const std::vector<std::uint8_t> free = by_checker(checker, some);
-    for (std::size_t i = 0; i < count; ++i) {
-      wrong += answers[i] == Answer::Free && free[i] == 0 ? 1 : 0;
-      wrong_of_mutant += others[i] == Answer::Free && free[i] == 0 ? 1 : 0;
-    }
-  }
-  EXPECT_EQ(wrong, 0U);
-  EXPECT_GT(wrong_of_mutant, 5U);
+  EXPECT_GT(free, 300U);
+  EXPECT_GT(of_slow, 5U);
+  EXPECT_GT(of_straight, 5U);
 }
 
 /// Kinematics in long double, by Rodrigues' formula: another way than the vector code's.
@@ -652,6 +677,56 @@ TEST(Lanes, DirectionsThatLieAreNoticed) {
   }
 }
 
+/// Bodies whose difference holds a ball round the origin meet; with a ball that is smaller than
+/// nothing there are wrong answers.
+TEST(Lanes, MeetingsThatLieAreNoticed) {
+  const World world = cell(false);
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+  detail::Model mutant = model, none = model;
+  for (detail::BodyModel& b : mutant.bodies) b.error = -0.003F;
+  for (detail::BodyModel& b : none.bodies) b.error = 100;
+  const std::vector<double> rows = rows_at_contact(checker, 6000, 79, {1e-7, 1e-5, 1e-3, 1e-2});
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  const std::vector<Answer> answers = answers_of(model, instruction_sets().back(), rows);
+  EXPECT_EQ(wrong_answers(answers, free), (std::array<std::size_t, 2>{0, 0}));
+  EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[1], 20U);
+  EXPECT_GT(
+      std::ranges::count(answers, Answer::Contact),
+      std::ranges::count(answers_of(none, instruction_sets().back(), rows), Answer::Contact) + 300);
+  for (const Instructions set : instruction_sets())
+    EXPECT_EQ(answers_of(model, set, rows), answers) << name_of(set);
+}
+
+/// Balls round all shapes of a frame leave out pairs; balls that are too small are noticed.
+TEST(Lanes, ClustersThatLieAreNoticed) {
+  World world = cell(false);
+  std::vector<world::LinkShape>& shapes = world.robots[0].shapes;
+  shapes.push_back(shape(7, {box({0.02, 0.1, 0.02})}));
+  shapes.push_back(shape(2, {capsule({0, 0, 0}, {0, 0.1, 0.1}, 0.03)}));
+  for (const std::uint32_t a : {6U, 7U})
+    for (std::uint32_t b = 0; b < a; ++b)
+      if (a == 7 ? b != 5 : b == 5)
+        world.robots[0].allowed.push_back({b, a, world::AllowedPair::Reason::Stated});
+  const world::Checker checker(world);
+  const detail::Model model = detail::make_model(checker, initial_state(world), 0, 30);
+  ASSERT_GT(model.clusters.size(), 2U);
+  const auto with_groups =
+      std::ranges::count(model.cluster_pairs, true, &detail::ClusterPair::with_group);
+  ASSERT_GT(with_groups, 2);
+  ASSERT_LT(static_cast<std::size_t>(with_groups), model.cluster_pairs.size());
+  const std::vector<double> rows = random_rows(world, 20000, 80);
+  const std::vector<std::uint8_t> free = by_checker(checker, rows);
+  EXPECT_EQ(wrong_answers(answers_of(model, instruction_sets().back(), rows), free),
+            (std::array<std::size_t, 2>{0, 0}));
+  for (const bool with_group : {false, true}) {
+    detail::Model mutant = model;
+    for (detail::ClusterPair& pair : mutant.cluster_pairs)
+      if (pair.with_group == with_group) pair.margin -= 0.15F;
+    EXPECT_GT(wrong_answers(answers_of(mutant, instruction_sets().back(), rows), free)[0], 20U);
+  }
+}
+
 /// A box that slides face to face to an equal one behind two turns that cancel: the errors of its
 /// frames are all that the bound is for. Without it there are wrong answers.
 TEST(Lanes, TheErrorOfDirectionsIsNeeded) {
@@ -762,8 +837,9 @@ TEST(Lanes, OpenPairsDecideRows) {
   std::vector<Answer> answers(count);
   detail::LaneMemory memory(model);
   detail::OpenPairs pairs(count);
-  detail::filter_rows(model, instruction_sets().back(), rows.data(), nullptr, count, memory,
-                      answers.data(), 0, detail::Look::All, &pairs);
+  const std::vector<double> blocks = detail::in_blocks(rows.data(), count, n);
+  detail::filter_blocks(model, instruction_sets().back(), blocks.data(), nullptr, count, memory,
+                        answers.data(), 0, detail::Look::All, &pairs);
   world::Scratch scratch;
   world::WorldState state = initial_state(world);
   EXPECT_EQ(answers[0], Answer::Open);
@@ -792,11 +868,17 @@ TEST(Lanes, OpenPairsDecideRows) {
 
 /// Motions one by one: what vector code says of them is so, and the same for all instructions.
 TEST(MotionChecker, AnswersAsCheckMotionDoes) {
-  const World world = cell(false);
+  World world = cell(false);
+  // Nothing is known of it but by balls.
+  add_object(world, "boulder", pose(0, 0.3, {3.2, -1.6, 1.5}),
+             {polytope(11, 400, {0.1, 0.2, 0.1})});
   const world::Checker checker(world);
-  const std::size_t count = 400;
-  const std::vector<double> from = random_rows(world, count, 61),
-                            ends = random_rows(world, count, 62);
+  const std::size_t count = 1200;
+  // A third of them begin next to contacts.
+  std::vector<double> from = rows_at_contact(checker, 400, 61, {1e-3, 5e-3});
+  const std::vector<double> others = random_rows(world, count, 61);
+  from.insert(from.end(), others.begin() + static_cast<std::ptrdiff_t>(from.size()), others.end());
+  const std::vector<double> ends = random_rows(world, count, 62);
   const std::size_t n = world.robots[0].kinematics.variables.size();
   std::vector<BatchChecker> batches;
   std::vector<MotionChecker> checkers;
@@ -824,7 +906,8 @@ TEST(MotionChecker, AnswersAsCheckMotionDoes) {
       ++answers[static_cast<std::size_t>(answer)];
       if (answer != Answer::Open) {
         EXPECT_EQ(answer == Answer::Free, free) << i;
-        EXPECT_EQ(checkers.back().filter(b, a, resolution), answer) << i;
+        const Answer back = checkers.back().filter(b, a, resolution);
+        EXPECT_TRUE(back == answer || back == Answer::Open) << i;
       }
       for (MotionChecker& other : checkers) {
         EXPECT_EQ(other.filter(a, b, resolution), answer) << i;
@@ -839,8 +922,8 @@ TEST(MotionChecker, AnswersAsCheckMotionDoes) {
       ++(apart ? open_free : open_not_free);
     }
   }
-  for (const std::size_t some : answers) EXPECT_GT(some, 30U);
-  EXPECT_GT(open_free, 10U);
+  for (const std::size_t some : answers) EXPECT_GT(some, 20U);
+  EXPECT_GT(open_free, 5U);
   EXPECT_GT(open_not_free, 10U);
 }
 
