@@ -1,15 +1,17 @@
-// Balls round and in convex bodies. Cutting is convex: a part below a plane is the hull of the
-// corners below it and of the points where edges cross the plane. docs/algorithms/batches.md.
+// Balls round and in convex bodies. A part below a plane is the hull of the corners below it and of
+// the points where edges cross the plane: faces are cut, and no hull is made.
+// docs/algorithms/batches.md.
 
 #include "ball_cover.h"
 
-#include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/convex_polytope.h>
 #include <kaboum/geom/point_triangle.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <queue>
 
@@ -19,10 +21,12 @@ namespace {
 /// What rounded cuts leave out between two parts, of the largest coordinate.
 constexpr double kCuts = 0x1p-38;
 
-/// A part of a body's core: the hull of points.
+/// A part of a body's core: the hull of points. Its faces have all of its edges; those that cuts
+/// have opened are left out.
 struct Part {
   std::size_t set = 0, body = 0;
   std::vector<Vec3> points;
+  std::vector<std::vector<std::uint32_t>> faces;
   Vec3 axis = Vec3::UnitX();  ///< along which it is longest
   Vec3 middle = Vec3::Zero();
   Ball ball;          ///< round the points
@@ -61,42 +65,46 @@ void measure(Part& part) {
   part.excess = part.ball.radius - 0.5 * shortest;
 }
 
-/// Pairs of points whose segments hold all edges of the hull.
-template <typename Visit>
-void visit_edges(const std::vector<Vec3>& points, const Visit& visit) {
-  geom::HullBuilder hull;
-  if (hull.build(points)) {
-    for (const geom::Triangle& t : hull.triangles())
-      for (std::size_t k = 0; k < 3; ++k)
-        if (t[k] < t[(k + 1) % 3]) visit(points[t[k]], points[t[(k + 1) % 3]]);
-    return;
-  }
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) visit(points[i], points[j]);
-}
-
-/// The points that the hull needs.
-std::vector<Vec3> hull_of(const std::vector<Vec3>& points) {
-  geom::HullBuilder hull;
-  if (!hull.build(points)) return points;
-  std::vector<Vec3> out;
-  for (const std::uint32_t v : hull.vertices()) out.push_back(points[v]);
-  return out;
-}
-
-/// The part on one side of the plane in its middle.
+/// The part on one side of the plane in its middle: each face is cut along it. Edges of what the
+/// plane opens are those of faces, too.
 Part half_of(const Part& part, double side) {
+  constexpr std::uint32_t kNone = ~0U;
   Part out;
   out.set = part.set;
   out.body = part.body;
-  const auto above = [&](const Vec3& p) { return side * part.axis.dot(p - part.middle); };
-  for (const Vec3& p : part.points)
-    if (above(p) >= 0) out.points.push_back(p);
-  visit_edges(part.points, [&](const Vec3& p, const Vec3& q) {
-    const double a = above(p), b = above(q);
-    if ((a < 0) != (b < 0)) out.points.emplace_back(p + a / (a - b) * (q - p));
-  });
-  out.points = hull_of(out.points);
+  std::vector<double> above;
+  for (const Vec3& p : part.points) above.push_back(side * part.axis.dot(p - part.middle));
+  std::vector<std::uint32_t> kept(part.points.size(), kNone);
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> crossings;
+  const auto add = [&](std::uint32_t& number, const Vec3& p) {
+    if (number != kNone) return number;
+    number = static_cast<std::uint32_t>(out.points.size());
+    out.points.push_back(p);
+    return number;
+  };
+  for (const std::vector<std::uint32_t>& face : part.faces) {
+    std::vector<std::uint32_t> left;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint32_t p = face[k], q = face[(k + 1) % face.size()];
+      if (above[p] >= 0) left.push_back(add(kept[p], part.points[p]));
+      if ((above[p] < 0) == (above[q] < 0)) continue;
+      const auto [a, b] = std::minmax(p, q);
+      std::uint32_t& crossing = crossings.try_emplace({a, b}, kNone).first->second;
+      left.push_back(add(crossing, part.points[a] + above[a] / (above[a] - above[b]) *
+                                                        (part.points[b] - part.points[a])));
+    }
+    if (!left.empty()) out.faces.push_back(std::move(left));
+  }
+  return out;
+}
+
+/// The faces of a body's core; of a point or a segment, one that has all points.
+std::vector<std::vector<std::uint32_t>> faces_of(const geom::Mesh& core) {
+  std::vector<std::vector<std::uint32_t>> out;
+  for (const geom::Triangle& t : core.triangles) out.emplace_back(t.begin(), t.end());
+  if (!out.empty()) return out;
+  out.emplace_back(core.vertices.size());
+  std::iota(out.front().begin(), out.front().end(), 0U);
   return out;
 }
 
@@ -154,6 +162,7 @@ std::vector<BallCover> cover_by_balls(const std::vector<const collide::BoundingS
       part.set = s;
       part.body = b;
       part.points = sets[s]->body(b).core.vertices;
+      part.faces = faces_of(sets[s]->body(b).core);
       measure(part);
       parts.push(std::move(part));
     }

@@ -578,7 +578,7 @@ class PairProbe {
   }
   const std::vector<BatchChecker::Answer>& look() {
     answers_.resize(rows_.size() / alone_.variables);
-    filter_rows(alone_, Instructions::Baseline, rows_.data(), nullptr, answers_.size(), memory_,
+    filter_rows(alone_, instruction_sets().back(), rows_.data(), nullptr, answers_.size(), memory_,
                 answers_.data());
     return answers_;
   }
