@@ -2,10 +2,14 @@
 
 #include "contact.h"
 
+#include <kaboum/base/radical_inverse.h>
+#include <kaboum/geom/predicates.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <queue>
 
@@ -16,7 +20,10 @@ namespace {
 
 constexpr std::size_t kStepsToTriangles = 40;  ///< down the trees, for each pair of triangles
 
+constexpr std::size_t kRays = 64;  ///< from a point that may be shut off
+
 using Corners = std::array<Vec3, 3>;
+using geom::Sign;
 
 /// Smallest distance of two segments, rounded: [ericson2005] §5.1.9, all ends besides.
 double between_segments(const Vec3& p, const Vec3& p2, const Vec3& q, const Vec3& q2) {
@@ -63,6 +70,44 @@ double margin(const Corners& s, const Corners& t) {
   return out;
 }
 
+/// Whether a segment is seen not to meet a triangle, exactly: its ends are on one side, or the line
+/// passes edges on both sides. Where it is not seen, it may still be so.
+bool is_clear(const Vec3& p, const Vec3& q, const Corners& t) {
+  const Sign at_p = geom::orient3d(t[0], t[1], t[2], p);
+  if (at_p != Sign::Zero && at_p == geom::orient3d(t[0], t[1], t[2], q)) return true;
+  bool left = false, right = false;
+  for (int i = 0; i < 3; ++i) {
+    const Sign side = geom::orient3d(p, q, t[i], t[(i + 1) % 3]);
+    left = left || side == Sign::Positive;
+    right = right || side == Sign::Negative;
+  }
+  return left && right;
+}
+
+/// Whether a segment may meet a box. @param more  that the box is wider to all sides
+bool may_meet(const geom::Box3& box, const Vec3& p, const Vec3& q, double more) {
+  double from = 0, to = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double low = box.min[k] - more - p[k], high = box.max[k] + more - p[k],
+                 along = q[k] - p[k];
+    if (std::abs(along) <= more) {
+      if (low > more || high < -more) return false;
+      continue;
+    }
+    from = std::max(from, (along > 0 ? low : high) / along);
+    to = std::min(to, (along > 0 ? high : low) / along);
+  }
+  return from <= to;
+}
+
+/// The i-th of directions that are spread all over; of length 1, rounded.
+Vec3 spread_direction(std::size_t i) {
+  const double z = 1 - 2 * radical_inverse(i, 2),
+               turn = 2 * std::numbers::pi * radical_inverse(i, 3);
+  const double across = std::sqrt(std::max(0.0, 1 - z * z));
+  return {across * std::cos(turn), across * std::sin(turn), z};
+}
+
 Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
   Mesh out{mesh.vertices, {}};
   for (const geom::Triangle& t : mesh.triangles)
@@ -74,8 +119,9 @@ Mesh away_from(const Mesh& mesh, const Vec3& point, double distance) {
 
 }  // namespace
 
-Surface::Surface(Mesh mesh)
-    : mesh_(std::move(mesh)),
+Surface::Surface(Mesh mesh, Solid solid)
+    : solid_(solid),
+      mesh_(std::move(mesh)),
       tree_(mesh_),
       bvh_(std::make_shared<geom::Bvh>(mesh_)),
       query_(mesh_.triangles.empty() ? nullptr : std::make_shared<geom::DistanceQuery>(mesh_)),
@@ -124,7 +170,7 @@ Surface::Surface(Mesh mesh)
 }
 
 Surface::Surface(const Surface& whole, const Vec3& point, double distance)
-    : Surface(away_from(whole.mesh(), point, distance)) {
+    : Surface(away_from(whole.mesh(), point, distance), whole.solid()) {
   whole_ = &whole;
   std::erase_if(corners_,
                 [&](std::uint32_t v) { return !((mesh_.vertices[v] - point).norm() > distance); });
@@ -145,6 +191,40 @@ Surface::Winding Surface::winding(const Vec3& point) const {
     out.any = out.any || number != 0;
   }
   return out;
+}
+
+bool Surface::sees_out(const Vec3& point, std::size_t rays) const {
+  if (whole_ != nullptr) return whole_->sees_out(point, rays);
+  // The ball round the root holds all triangles: what is not in it is far away.
+  const Cluster& root = tree_[0];
+  const Vec3 from_center = point - root.center;
+  const double reach =
+      root.reach * (1 + 0x1p-30) + 0x1p-30 * (tree_.extent() + point.cwiseAbs().maxCoeff());
+  const double far = reach + from_center.norm();
+  if (from_center.norm() > reach) return true;
+  const Vec3 away = from_center.norm() > 0 ? from_center.normalized() : Vec3::UnitZ();
+  for (std::size_t i = 0; i < rays; ++i) {
+    const Vec3 end = point + 2 * far * (i == 0 ? away : spread_direction(i));
+    if (!((end - root.center).norm() > reach)) continue;
+    bool clear = true;
+    bvh_->traverse(
+        [&](const geom::Box3& box) { return clear && may_meet(box, point, end, 0x1p-30 * far); },
+        [&](std::uint32_t t) {
+          const geom::Triangle& v = mesh_.triangles[t];
+          clear =
+              clear && is_clear(point, end,
+                                {mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]});
+        });
+    if (clear) return true;
+  }
+  return false;
+}
+
+Surface::Place Surface::place(const Vec3& point, std::size_t rays) const {
+  const Winding found = winding(point);
+  if (found.sum >= 1) return Place::Inside;
+  if (solid_ == Solid::ShutOff) return sees_out(point, rays) ? Place::Outside : Place::Unclear;
+  return found.any ? Place::Unclear : Place::Outside;
 }
 
 double Surface::distance(const Vec3& point, double least) const {
@@ -359,10 +439,12 @@ Contact::Held Contact::held(const BoxMotion& box) const {
   Held out = Held::Nothing;
   const auto look = [&](const Surface& in, const Surface& of, const Transform& to) {
     for (const std::uint32_t v : of.parts()) {
-      const Surface::Winding winding = in.winding(to * of.mesh().vertices[v]);
-      if (winding.sum >= 1)
+      // What is unclear already does not become clear by more rays.
+      const Surface::Place place =
+          in.place(to * of.mesh().vertices[v], out == Held::Nothing ? kRays : 0);
+      if (place == Surface::Place::Inside)
         out = Held::Part;
-      else if (winding.any && out == Held::Nothing)
+      else if (place == Surface::Place::Unclear && out == Held::Nothing)
         out = Held::Unclear;
     }
   };

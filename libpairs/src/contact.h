@@ -16,7 +16,12 @@ namespace kaboum::pairs::detail {
 /// A link's surface, ready to be asked.
 class Surface {
  public:
-  explicit Surface(Mesh mesh);
+  /// What is solid.
+  enum class Solid {
+    Wound,    ///< what closed parts wind about once at least
+    ShutOff,  ///< that, and perhaps more of what triangles shut off from far away
+  };
+  explicit Surface(Mesh mesh, Solid solid = Solid::Wound);
   /// The triangles of another surface that have a corner farther than a distance from a point. What
   /// is solid and how far that is, the other one says; asked are corners farther than that only.
   Surface(const Surface& whole, const Vec3& point, double distance);
@@ -35,6 +40,15 @@ class Surface {
     bool any = false;  ///< one of them does, be it a cavity's
   };
   [[nodiscard]] Winding winding(const Vec3& point) const;
+  /// Whether a point is seen not to be solid: by the winding number or, where more may be, by a
+  /// ray of some that meets no triangle. @pre it is on no triangle
+  enum class Place {
+    Outside,
+    Inside,   ///< of the solid, whatever more there is
+    Unclear,  ///< parts wind against each other, or all the rays meet triangles
+  };
+  [[nodiscard]] Place place(const Vec3& point, std::size_t rays) const;
+  [[nodiscard]] Solid solid() const { return solid_; }
   /// The distance of a point from the triangles, from below; 0 where it is seen to be no more than
   /// `least`.
   [[nodiscard]] double distance(const Vec3& point, double least) const;
@@ -42,7 +56,10 @@ class Surface {
   [[nodiscard]] const std::shared_ptr<const geom::DistanceQuery>& query() const { return query_; }
 
  private:
+  [[nodiscard]] bool sees_out(const Vec3& point, std::size_t rays) const;
+
   const Surface* whole_ = nullptr;  ///< that this was cut from
+  Solid solid_;
   Mesh mesh_;
   HullTree tree_;
   std::shared_ptr<const geom::Bvh> bvh_;
@@ -93,9 +110,10 @@ class Contact {
   /// Whether a part of one mesh is in the other one's solid; a proof together with one that the
   /// surfaces do not meet here, by more than rounding.
   enum class Held {
-    Nothing,  ///< no part of the other one winds about any
+    Nothing,  ///< no part is in the other's solid, whichever of those it may mean
     Part,     ///< one is in the solid
-    Unclear,  ///< one is where parts wind against each other: in a cavity, or a mesh is inside out
+    Unclear,  ///< one is where parts wind against each other: in a cavity, or a mesh is inside out;
+              ///< or it may be shut off
   };
   [[nodiscard]] Held held(const BoxMotion& box) const;
 

@@ -32,12 +32,13 @@ constexpr std::size_t kWorkOfUnsure = 4 * kFirstWork;  ///< after which nothing 
 constexpr std::size_t kManyJoints = 3;
 constexpr std::size_t kCoarseNodes = 50'000, kMostNodes = 3'000'000;  ///< of what links sweep
 
-Shapes shapes_of(const Mesh& outer, const std::optional<Mesh>& inner) {
+Shapes shapes_of(const LinkSurface& of) {
   Shapes out;
-  if (outer.empty()) return out;
-  out.outer = std::make_unique<Surface>(outer);
-  out.shows = !inner || !inner->empty();
-  if (inner && out.shows) out.inner_or_none = std::make_unique<Surface>(*inner);
+  if (of.outer.empty()) return out;
+  using Solid = Surface::Solid;
+  out.outer = std::make_unique<Surface>(of.outer, of.guess.empty() ? Solid::Wound : Solid::ShutOff);
+  out.shows = !of.inner || !of.inner->empty();
+  if (of.inner && out.shows) out.inner_or_none = std::make_unique<Surface>(*of.inner);
   return out;
 }
 
@@ -59,13 +60,14 @@ Shapes away_from(const Shapes& shapes, const Vec3& point, double distance) {
   return out;
 }
 
-/// Why nothing can be proved of what a pair has. Empty: it can.
-std::string unsure_of(const robot::Robot& robot, const LinkSurface& a, const LinkSurface& b) {
+/// What is said of either surface, with its link's name. Empty: nothing is.
+std::string said_of(const robot::Robot& robot, std::string LinkSurface::*what, const LinkSurface& a,
+                    const LinkSurface& b) {
   std::string out;
   for (const LinkSurface* s : {&a, &b}) {
-    if (s->unsure.empty()) continue;
+    if ((s->*what).empty()) continue;
     if (!out.empty()) out += "; ";
-    out += "link '" + robot.links[s->link].name + "': " + s->unsure;
+    out += "link '" + robot.links[s->link].name + "': " + s->*what;
   }
   return out;
 }
@@ -152,7 +154,8 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   pair.b = b.link;
   pair.relation = relation_of(robot, shaped, pair.a, pair.b);
   pair.adjacent = are_adjacent(robot, shaped, pair.a, pair.b);
-  const std::string unsure = unsure_of(robot, a, b);
+  // Why nothing can be proved of what the pair has.
+  const std::string unsure = said_of(robot, &LinkSurface::unsure, a, b);
   if (found.search == nullptr) {
     pair.why = unsure;
     return pair;
@@ -164,6 +167,8 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   pair.unfinished = pair.verdict == Verdict::Open && !found.search->decided();
   pair.q = configuration(robot, *found.search);
   if (pair.verdict != Verdict::Never) pair.away = std::move(found.away);
+  if (pair.verdict == Verdict::Open && found.search->shut_off())
+    pair.why = said_of(robot, &LinkSurface::guess, a, b);
   if (unsure.empty()) return pair;
   doubt(pair);
   if (pair.away) doubt(*pair.away);
@@ -180,10 +185,8 @@ class Pairs {
         const DecideOptions& options)
       : robot_(robot), options_(options), surfaces_(in_order(robot, given)) {
     shapes_.resize(surfaces_.size());
-    parallel_for(
-        std::size_t{0}, surfaces_.size(),
-        [&](std::size_t i) { shapes_[i] = shapes_of(surfaces_[i]->outer, surfaces_[i]->inner); },
-        {.alone = true});
+    parallel_for(std::size_t{0}, surfaces_.size(),
+                 [&](std::size_t i) { shapes_[i] = shapes_of(*surfaces_[i]); }, {.alone = true});
     shaped_.assign(robot.links.size(), 0);
     for (std::size_t l = 0; l < shaped_.size(); ++l)
       shaped_[l] = robot.links[l].collision.empty() ? 0 : 1;

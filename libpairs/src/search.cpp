@@ -24,6 +24,7 @@ constexpr std::size_t kFewSteps = 400;     ///< down the trees, until a contact 
 constexpr std::size_t kManySteps = 4'000;  ///< the same, where it matters more
 constexpr std::size_t kMostSteps = 1'000;  ///< of a search for the nearest triangles
 constexpr std::size_t kAlwaysBoxes = 3'000;
+constexpr std::size_t kPlaces = 17;  ///< at which it is asked what one solid holds of the other
 constexpr std::size_t kFewItems = 60, kMostItems = 6'000;
 constexpr std::size_t kMostFixedItems = 300'000;  ///< of links that fixed joints connect
 
@@ -189,9 +190,11 @@ Search::Target Search::target(std::size_t i) const {
   return {point(inner_.a(), 2), point(inner_.b(), 3)};
 }
 
-std::vector<double> Search::sample(std::size_t i) const {
-  const auto& [low, high] = *chain_.own_limits();
-  std::vector<double> values = within_own_limits(middle_);
+std::vector<double> Search::sample(std::size_t i, const Chain::Limits& limits) const {
+  const auto& [low, high] = limits;
+  std::vector<double> values = middle_;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    values[v] = std::clamp(values[v], low[v], high[v]);
   for (std::size_t v = 0; v < values.size() && i > 0; ++v)
     values[v] = low[v] + (high[v] - low[v]) * radical_inverse(i, kPrimes.at(v % kPrimes.size()));
   return values;
@@ -203,7 +206,7 @@ std::vector<std::vector<double>> Search::look_at_samples(const std::function<boo
   std::vector<std::pair<double, std::vector<double>>> near;
   const Cluster &a = inner_.a().tree()[0], &b = inner_.b().tree()[0];
   for (; sampled_ < samples && !stop(); ++sampled_) {
-    std::vector<double> values = sample(sampled_);
+    std::vector<double> values = sample(sampled_, *chain_.own_limits());
     motion_.set(values, still_);
     const Gap gap = inner_.gaps().at_middle(a, b, motion_, Vec3::Zero(), kInfinite);
     if (gap.lower > 0 || !shows(values, always_ ? kManySteps : kFewSteps)) {
@@ -447,7 +450,14 @@ void Search::look_at(std::vector<double> middle, std::vector<double> half, const
 void Search::end_proof() {
   // No surfaces meet anywhere; so what one solid holds of the other it holds everywhere.
   motion_.set(middle_, still_);
-  switch (outer_.held(motion_)) {
+  Contact::Held held = outer_.held(motion_);
+  // Any other configuration tells it as well.
+  for (std::size_t i = 1; held == Contact::Held::Unclear && i < kPlaces && !middle_.empty(); ++i) {
+    motion_.set(sample(i, *chain_.limits()), still_);
+    if (outer_.held(motion_) == Contact::Held::Nothing) held = Contact::Held::Nothing;
+  }
+  motion_.set(middle_, still_);
+  switch (held) {
     case Contact::Held::Nothing:
       verdict_ = Verdict::Never;
       break;
@@ -465,6 +475,7 @@ void Search::end_proof() {
       }
       [[fallthrough]];
     default:
+      shut_off_ = held == Contact::Held::Unclear;
       exhausted_ = true;
       proved_ = 0;
   }

@@ -41,6 +41,8 @@ class Search {
   [[nodiscard]] bool decided() const {
     return verdict_ != Verdict::Open || (exhausted_ && searched_);
   }
+  /// The surfaces are proved apart, but one link may be in what the other one shuts off.
+  [[nodiscard]] bool shut_off() const { return shut_off_; }
   [[nodiscard]] std::size_t boxes() const { return looked_; }
   [[nodiscard]] Verdict verdict() const { return verdict_; }
   [[nodiscard]] Bracket nearest() const;
@@ -98,7 +100,7 @@ class Search {
   /// Points of triangles, the i-th ones.
   [[nodiscard]] Target target(std::size_t i) const;
   /// Values spread over the limits; the first ones are in their middle.
-  [[nodiscard]] std::vector<double> sample(std::size_t i) const;
+  [[nodiscard]] std::vector<double> sample(std::size_t i, const Chain::Limits& limits) const;
   /// Takes values that show a contact, if these do.
   bool shows(const std::vector<double>& values, std::size_t most_steps);
   /// Looks at more samples. @return those that show no contact, the nearest ones first
@@ -132,6 +134,7 @@ class Search {
   std::priority_queue<Box> open_;
   bool begun_ = false;
   bool exhausted_ = false;  ///< no proof is possible
+  bool shut_off_ = false;
   bool searched_ = false;   ///< contacts were looked for
   std::size_t most_items_;  ///< of a box; then clusters are not cut any more
   std::uint64_t order_ = 0;

@@ -167,14 +167,49 @@ done
 carried "$(shape a '<mesh filename="sheet.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
 expect 7 '1 open' "$P" in.urdf
 carried "$(shape a '<mesh filename="no_solid.obj"/>' '0 0 0')" "$(box b 3.8 0.3 0 0.2 0.2 0.2)" >in.urdf
-shows 0 '^a b: .*, at least [0-9.]* deep' "$P" in.urdf
+shows 0 '^a b: .*, [0-9.]* to [0-9.]* deep' "$P" in.urdf
 carried "$(shape a '<mesh filename="no_solid.obj"/>' '0 0 0')" "$(box b 0 0 0 0.2 0.2 0.2)" >in.urdf
-expect 7 "link 'a': a mesh has no solid" "$P" in.urdf --json
+expect 0 '1 never touch' "$P" in.urdf
+grep -q "link 'a': a mesh has no solid .*: proofs are of its convex hull" err.txt || fail "$(cat err.txt)"
+
+# Of a mesh whose solid is a guess, never is proved of its hull if it has a border, else of what it shuts off.
+cat >guess.py <<'END'
+def write(name, corners, triangles):
+    with open(name + ".obj", "w") as out:
+        for v in corners:
+            out.write("v %g %g %g\n" % v)
+        for t in triangles:
+            out.write("f %d %d %d\n" % tuple(i + 1 for i in t))
+# Two sheets with two sides each.
+corners = [(x, y, z) for z in (-1, 1) for x, y in ((-2, -2), (2, -2), (0, 3))]
+write("sheets", corners, [(0, 1, 2), (0, 2, 1), (3, 4, 5), (3, 5, 4)])
+# A prism that crosses itself: a large part, and a small one that is inside out.
+bow = [(-3, -3), (1, 1), (1, -1), (-3, 3)]
+corners = [(x, y, z) for z in (-1, 1) for x, y in bow]
+sides = [t for i in range(4) for t in ((i, (i + 1) % 4, 4 + (i + 1) % 4), (i, 4 + (i + 1) % 4, 4 + i))]
+write("bow", corners, [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7)] + sides)
+END
+python3 guess.py || fail 'no meshes'
+guess() { # MESH X: a box in it, or beside it
+  carried "$(shape a "<mesh filename=\"$1.obj\"/>" '0 0 0')" "$(box b "$2" 0 0 0.1 0.1 0.1)" '1 0 0' -0.05 0.05 >in.urdf
+}
+for name in sheets bow; do
+  guess $name 3
+  expect 0 '1 never touch' "$P" in.urdf
+done
+guess bow 0.7
+expect 7 "link 'a': which solid a mesh means is not certain: .*: proofs are of all that its triangles shut off" "$P" in.urdf --json
 python3 - <<'END' || fail "why a pair is open: $(cat out.txt)"
 import json
 said = json.load(open("out.txt"))
-assert "no solid" in said["notes"][0] and "no solid" in said["pairs"][0]["why"], said
+pair, = said["pairs"]
+assert pair["verdict"] == "open" and "not certain" in pair["why"] and "not certain" in said["notes"][0], said
+assert pair["distance"]["at_least"] == 0 and "unfinished" not in pair, said
 END
+guess sheets 0
+expect 7 '1 open' "$P" in.urdf
+guess bow -2
+expect 0 '1 always do' "$P" in.urdf
 
 # Nor where shapes are not read, or of the other kind.
 cat >floor.xml <<'END'

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "contact.h"
 #include "robots.h"
 
 namespace kaboum::pairs {
@@ -241,6 +242,140 @@ TEST(DecidedPairs, NothingIsNeverOfALinkThatMayLackAShape) {
   EXPECT_EQ(pair.verdict, Verdict::Always);
   ASSERT_TRUE(pair.away);
   EXPECT_EQ(pair.away->verdict, Verdict::Open);
+}
+
+/// Two surfaces that slide a little against each other.
+TestRobot sliding(const geom::Mesh& a, const geom::Mesh& b) {
+  TestRobot of = two_links(robot::JointType::Prismatic, -0.01, 0.01);
+  of.surfaces = {{0, a, {}}, {1, b, {}}};
+  return of;
+}
+
+TEST(DecidedPairs, OfAGuessNeverIsProvedOfAllThatTrianglesShutOff) {
+  // A wall whose two sides are one part winds about nothing, and shuts off what is in it.
+  geom::Mesh wall = box_mesh({-1, -1, -1}, {1, 1, 1});
+  test::append(wall, box_mesh({-1, -1, -1}, {1, 1, 1}, true));
+  TestRobot of = sliding(wall, box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}));
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Never);
+  for (const std::size_t which : {0, 1}) {
+    of.surfaces[which].guess = "it crosses itself";
+    const DecidedPair pair = decide_pairs(of.robot, of.surfaces, {}).front();
+    // Of the small box it does not matter what it means.
+    EXPECT_EQ(pair.verdict, which == 0 ? Verdict::Open : Verdict::Never);
+    EXPECT_EQ(pair.why, which == 0 ? "link 'a': it crosses itself" : "");
+    EXPECT_EQ(pair.nearest.lower > 0, which == 1);
+    of.surfaces[which].guess.clear();
+  }
+  // Beside it, and in a cup that is open to one side only.
+  of.surfaces[0].guess = "it crosses itself";
+  of.surfaces[1].outer = box_mesh({1.1, -0.1, -0.1}, {1.3, 0.1, 0.1});
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Never);
+  of.surfaces[1].outer = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
+  std::erase_if(of.surfaces[0].outer.triangles, [&](const geom::Triangle& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t v) { return wall.vertices[v].y() < 0; });
+  });
+  EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict, Verdict::Never);
+}
+
+TEST(DecidedPairs, AnyConfigurationTellsWhatIsShutOff) {
+  // Deep in a tube no ray leaves it, but from nearer to its end.
+  geom::Mesh tube = box_mesh({-1, -0.5, -0.5}, {40, 0.5, 0.5});
+  std::erase_if(tube.triangles, [&](const geom::Triangle& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t v) { return tube.vertices[v].x() < 0; });
+  });
+  const geom::Mesh body = box_mesh({39, -0.1, -0.1}, {39.2, 0.1, 0.1});
+  for (const double most : {0.1, 30.0}) {
+    TestRobot of = two_links(robot::JointType::Prismatic, -most, 0.1);
+    of.surfaces = {{0, tube, {}, "", "it is open"}, {1, body, {}}};
+    EXPECT_EQ(decide_pairs(of.robot, of.surfaces, {}).front().verdict,
+              most > 1 ? Verdict::Never : Verdict::Open);
+  }
+}
+
+TEST(DecidedPairs, OfAGuessNeverIsProvedAwayFromTheJointAsWell) {
+  TestRobot of = two_links(robot::JointType::Revolute, -0.5, 0.5);
+  geom::Mesh wall = box_mesh({0.5, -1, -1}, {3, 1, 1});
+  test::append(wall, box_mesh({0.5, -1, -1}, {3, 1, 1}, true));
+  test::append(wall, box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}));
+  geom::Mesh pin = box_mesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.2});
+  of.surfaces = {{0, wall, {}, "", "it crosses itself"}, {1, pin, {}}};
+  DecidedPair pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  ASSERT_TRUE(pair.away);
+  EXPECT_EQ(pair.away->verdict, Verdict::Never);
+  test::append(of.surfaces[1].outer, box_mesh({1.6, -0.1, -0.1}, {1.8, 0.1, 0.1}));
+  pair = decide_pairs(of.robot, of.surfaces, {}).front();
+  ASSERT_TRUE(pair.away);
+  EXPECT_LT(pair.away->beyond, 0.4);
+  EXPECT_EQ(pair.away->verdict, Verdict::Open);
+  EXPECT_FALSE(is_connected(pair));
+}
+
+TEST(DecidedPairs, GuessesOfRobotsAtRandomAreDecidedAsIfTheyWereNone) {
+  std::size_t never = 0, fewer = 0;
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    TestRobot of = test::random_robot(seed);
+    const DecideOptions options{.most_boxes = 3'000, .samples = 60};
+    const std::vector<DecidedPair> sure = decide_pairs(of.robot, of.surfaces, options);
+    for (LinkSurface& s : of.surfaces) s.guess = "it crosses itself";
+    const std::vector<DecidedPair> guessed = decide_pairs(of.robot, of.surfaces, options);
+    const Oracle oracle(of);
+    Random random(seed);
+    for (int i = 0; i < 100; ++i) {
+      const auto at = oracle.places(test::random_configuration(of.robot, random));
+      for (const DecidedPair& pair : guessed) {
+        const bool is_wrong = pair.verdict == Verdict::Never && oracle.meet(at, pair);
+        ASSERT_FALSE(is_wrong) << seed << ": " << pair.a << " " << pair.b;
+      }
+    }
+    for (std::size_t i = 0; i < sure.size(); ++i) {
+      never += guessed[i].verdict == Verdict::Never ? 1 : 0;
+      fewer += guessed[i].verdict != sure[i].verdict ? 1 : 0;
+    }
+  }
+  EXPECT_GT(never, 50U);
+  EXPECT_EQ(fewer, 0U);
+}
+
+TEST(DecidedPairs, NoRayLeavesWhatTrianglesShutOff) {
+  using detail::Surface;
+  std::size_t inside = 0, seen = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    // Closed boxes whose triangles are turned at random, and loose triangles.
+    geom::Mesh mesh;
+    std::vector<geom::Box3> boxes;
+    for (int i = 0; i < 3; ++i) {
+      geom::Box3 box;
+      box.extend(test::random_vector(random, 1));
+      box.extend(test::random_vector(random, 1));
+      boxes.push_back(box);
+      test::append(mesh, box_mesh(box.min, box.max));
+    }
+    for (int i = 0; i < 10; ++i) {
+      const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (int k = 0; k < 3; ++k) mesh.vertices.push_back(test::random_vector(random, 1.2));
+      mesh.triangles.push_back({n, n + 1, n + 2});
+    }
+    for (geom::Triangle& t : mesh.triangles)
+      if (random.index(2) == 0) std::swap(t[1], t[2]);
+    const Surface surface(mesh, Surface::Solid::ShutOff);
+    for (int i = 0; i < 100; ++i) {
+      Vec3 p = test::random_vector(random, 1.3);
+      // Some in line with the corners and edges of a box.
+      for (int k = 0; k < 3; ++k)
+        if (random.index(3) == 0) p[k] = boxes[0].center()[k];
+      const bool in = std::ranges::any_of(boxes, [&](const geom::Box3& box) {
+        return (p.array() > box.min.array()).all() && (p.array() < box.max.array()).all();
+      });
+      const bool out = surface.place(p, 64) == Surface::Place::Outside;
+      ASSERT_FALSE(in && out) << seed << ": " << p.transpose();
+      inside += in ? 1 : 0;
+      seen += out ? 1 : 0;
+      all += in ? 0 : 1;
+    }
+  }
+  EXPECT_GT(inside, 300U);
+  EXPECT_GT(seen, all * 9 / 10);
 }
 
 /// An arm that turns with a slide, or with a continuous joint below it; nothing else moves.

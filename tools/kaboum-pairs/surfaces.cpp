@@ -6,10 +6,14 @@
 #include <kaboum/base/notes.h>
 #include <kaboum/geom/convex_hull.h>
 #include <kaboum/geom/prepare.h>
+#include <kaboum/geom/topology.h>
 #include <kaboum/robot/exact_shapes.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace kaboum::tools {
 namespace {
@@ -73,7 +77,7 @@ bool is_round(const Geometry& shape) {
 struct Made {
   Mesh outer, inner;
   bool same = true;  ///< inner is outer
-  std::vector<std::string> unsure;
+  std::vector<std::string> unsure, guess;
 };
 
 void add_primitive(const Geometry& shape, Made& out) {
@@ -89,8 +93,56 @@ void add_primitive(const Geometry& shape, Made& out) {
   out.same = out.same && !is_flat(shape) && !is_round(shape);
 }
 
-/// The solid of a mesh file, with all of its triangles. Nothing is proved of one whose solid is a
-/// guess.
+/// Whether a surface has a border, of which it is not known what closes it: an edge of one
+/// triangle, copies taken for one, or of an odd number of them.
+bool has_border(const Mesh& exact) {
+  const Mesh mesh = geom::weld(exact);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> across;
+  for (const geom::Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+        across[{std::min(a, b), std::max(a, b)}].push_back(t[(k + 2) % 3]);
+    }
+  return std::ranges::any_of(across, [](const auto& edge) {
+    const std::vector<std::uint32_t>& others = edge.second;
+    return others.size() % 2 != 0 ||
+           std::ranges::count(others, others.front()) == std::ssize(others);
+  });
+}
+
+/// The convex hull, a little thicker where all is in a plane. nullopt: it is too large or too
+/// small.
+std::optional<Mesh> hull_of(const Mesh& mesh) {
+  std::vector<Vec3> points = geom::weld(mesh).vertices;
+  geom::Box3 box;
+  for (const Vec3& p : points) box.extend(p);
+  const double most = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  if (!(most < 1e50)) return std::nullopt;
+  std::optional<Mesh> hull = geom::convex_hull(points);
+  if (hull) return hull;
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+    for (const double more : {-1e-6, 1e-6})
+      points.push_back(box.center() + more * (box.diagonal() + most) * axis);
+  return geom::convex_hull(points);
+}
+
+/// A mesh whose solid is a guess. What it means is no more than its triangles shut off, or than its
+/// convex hull where it is not known what closes them.
+void add_guess(const Mesh& mesh, bool bordered, const std::string& why, Made& out) {
+  const std::optional<Mesh> hull = bordered ? hull_of(mesh) : std::nullopt;
+  if (bordered && !hull) {
+    append(out.outer, mesh);
+    out.unsure.push_back(why);
+    return;
+  }
+  append(out.outer, bordered ? *hull : mesh);
+  out.guess.push_back(why + (bordered ? ": proofs are of its convex hull"
+                                      : ": proofs are of all that its triangles shut off"));
+  out.same = out.same && !bordered;
+}
+
+/// The solid of a mesh file, with all of its triangles.
 void add_mesh(const Mesh& exact, Made& out) {
   const auto prepared = [&](bool drop_sheets) {
     return geom::prepare(exact, {.drop_sheets = drop_sheets, .holes = geom::Holes::Fill});
@@ -107,27 +159,27 @@ void add_mesh(const Mesh& exact, Made& out) {
     }
   }
   if (!found) {
-    append(out.outer, exact);
     append(out.inner, exact);
-    out.unsure.push_back("a mesh has no solid (" + why + "), and only its triangles are looked at");
+    add_guess(exact, has_border(exact), "a mesh has no solid (" + why + ")", out);
     return;
   }
   const geom::PreparationReport& report = found->report;
-  if (!found->solid.closed() || report.guessed || report.hollow) {
-    std::string what = "which solid a mesh means is not certain";
-    for (const std::string& note : report.notes)
-      if (note.starts_with(kWarning)) what += ": " + note.substr(kWarning.size());
-    out.unsure.push_back(what);
-  }
   Mesh solid = found->solid.mesh();
   // What the solid is made without is not of its surface, but may still be touched.
   for (const geom::LeftOut& left : report.left_out)
     append_sheet(solid, {{left.corners.begin(), left.corners.end()}, {{0, 1, 2}}});
   if (report.dropped_sheets > 0) append_sheet(solid, exact);
-  append(out.outer, solid);
   const bool filled = found->solid.filled_triangles() > 0;
   append(out.inner, filled ? exact : solid);
   out.same = out.same && !filled;
+  if (found->solid.closed() && !report.guessed && !report.hollow) {
+    append(out.outer, solid);
+    return;
+  }
+  std::string what = "which solid a mesh means is not certain";
+  for (const std::string& note : report.notes)
+    if (note.starts_with(kWarning)) what += ": " + note.substr(kWarning.size());
+  add_guess(solid, !found->solid.closed() || report.guessed, what, out);
 }
 
 std::string joined(const std::vector<std::string>& texts) {
@@ -163,9 +215,11 @@ std::vector<pairs::LinkSurface> surfaces_of(const robot::RobotFile& file,
     for (const robot::UnreadShape& unread : link.unread)
       if (choice.visual || !unread.visual) made.unsure.push_back(unread.what + " is not looked at");
     if (made.outer.empty() && made.unsure.empty()) continue;
-    pairs::LinkSurface surface{l, std::move(made.outer), std::nullopt, joined(made.unsure)};
+    pairs::LinkSurface surface{l, std::move(made.outer), std::nullopt, joined(made.unsure),
+                               joined(made.guess)};
     if (!made.same) surface.inner = std::move(made.inner);
-    if (!surface.unsure.empty()) notes.push_back("link '" + link.name + "': " + surface.unsure);
+    for (const std::string& why : {surface.unsure, surface.guess})
+      if (!why.empty()) notes.push_back("link '" + link.name + "': " + why);
     out.push_back(std::move(surface));
   }
   return out;

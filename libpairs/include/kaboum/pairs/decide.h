@@ -17,7 +17,8 @@
 namespace kaboum::pairs {
 
 /// A link's shapes as meshes, in its frame. The solid of a mesh is all of its triangles, and what
-/// those of a closed one wind about; nothing else is asked of a mesh.
+/// those of a closed one wind about; of a guess, all that its triangles shut off. Nothing else is
+/// asked of a mesh.
 struct LinkSurface {
   std::uint32_t link = 0;
   geom::Mesh outer;  ///< holds the shapes: that pairs never touch is proved of it
@@ -26,6 +27,10 @@ struct LinkSurface {
   /// Why the outer mesh may lack something of the shapes: "a plane was not read". No pair of the
   /// link is "never" then, however far its meshes are apart; the outer mesh may be empty.
   std::string unsure = {};
+  /// Why it is not certain which solid the outer mesh means: "the surface crosses itself". Its
+  /// surface is among the mesh's triangles, so it is no more than they shut off from what is far
+  /// away. That is what "never" is proved of.
+  std::string guess = {};
 };
 
 struct DecideOptions {
