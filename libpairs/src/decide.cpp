@@ -95,29 +95,41 @@ std::vector<double> configuration(const robot::Robot& robot, const Search& searc
 }
 
 /// The parts of adjacent links that are not at their joint.
-std::optional<AwayFromJoint> look_away(const robot::Robot& robot,
-                                       std::pair<std::uint32_t, std::uint32_t> links,
-                                       const Shapes& a, const Shapes& b, const Search& whole,
-                                       const DecideOptions& options,
-                                       const std::function<bool()>& stop) {
-  const std::optional<Search::Joint> joint = whole.joint();
-  if (!joint || stop()) return std::nullopt;
-  AwayFromJoint out;
-  const double cut = joint->beyond * 1.05;
-  out.beyond = cut * (1 + 0x1p-30);  // for the rounding of the point
-  const Shapes of_a = away_from(a, joint->in_a, cut), of_b = away_from(b, joint->in_b, cut);
-  if (!of_a.outer || !of_b.outer) {
-    out.verdict = Verdict::Never;
-    return out;
+struct PartsAway {
+  double beyond = 0;
+  Shapes a, b;
+  std::unique_ptr<Search> own;
+  Search* search = nullptr;  ///< own, or that of the links; null: nothing is left of one of them
+
+  [[nodiscard]] AwayFromJoint found(const robot::Robot& robot) const {
+    if (search == nullptr) return {beyond, Verdict::Never, {}, {}};
+    return {beyond, search->verdict(), search->nearest(), configuration(robot, *search)};
   }
-  Search search(robot, links.first, links.second, of_a, of_b, options.samples);
-  search.begin(stop);
-  for (int i = 0; i < 3; ++i) search.look_for_contacts(stop);
-  search.go_on(std::min<std::size_t>(options.most_boxes, 20'000), kAwayWork, stop);
-  search.look_deeper(stop);
-  out.verdict = search.verdict();
-  out.nearest = search.nearest();
-  out.q = configuration(robot, search);
+};
+
+/// @param whole  what is sought of all of the links; all of them is away, if nothing meets where
+///   the joint is in its middle
+std::unique_ptr<PartsAway> look_away(const robot::Robot& robot,
+                                     std::pair<std::uint32_t, std::uint32_t> links, const Shapes& a,
+                                     const Shapes& b, Search& whole, const DecideOptions& options,
+                                     const std::function<bool()>& stop) {
+  const std::optional<Search::Joint> joint = whole.joint();
+  if (!joint || stop()) return nullptr;
+  auto out = std::make_unique<PartsAway>();
+  const double cut = joint->beyond * 1.05;
+  out->beyond = cut * (1 + 0x1p-30);  // for the rounding of the point
+  if (cut > 0) {
+    out->a = away_from(a, joint->in_a, cut);
+    out->b = away_from(b, joint->in_b, cut);
+    if (!out->a.outer || !out->b.outer) return out;
+    out->own =
+        std::make_unique<Search>(robot, links.first, links.second, out->a, out->b, options.samples);
+    out->own->begin(stop);
+  }
+  out->search = cut > 0 ? out->own.get() : &whole;
+  for (int i = 0; i < 3; ++i) out->search->look_for_contacts(stop);
+  out->search->go_on(std::min<std::size_t>(options.most_boxes, 20'000), kAwayWork, stop);
+  out->search->look_deeper(stop);
   return out;
 }
 
@@ -143,7 +155,7 @@ std::vector<const LinkSurface*> in_order(const robot::Robot& robot,
 struct Sought {
   std::size_t a, b;
   std::unique_ptr<Search> search;
-  std::optional<AwayFromJoint> away;
+  std::unique_ptr<PartsAway> away;
   double apart = 0;  ///< a lower bound of the distance in all configurations [length]
 };
 
@@ -166,7 +178,7 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   pair.boxes = found.search->boxes();
   pair.unfinished = pair.verdict == Verdict::Open && !found.search->decided();
   pair.q = configuration(robot, *found.search);
-  if (pair.verdict != Verdict::Never) pair.away = std::move(found.away);
+  if (pair.verdict != Verdict::Never && found.away) pair.away = found.away->found(robot);
   if (pair.verdict == Verdict::Open && found.search->shut_off())
     pair.why = said_of(robot, &LinkSurface::guess, a, b);
   if (unsure.empty()) return pair;
@@ -185,17 +197,24 @@ class Pairs {
         const DecideOptions& options)
       : robot_(robot), options_(options), surfaces_(in_order(robot, given)) {
     shapes_.resize(surfaces_.size());
+    std::vector<char> used(surfaces_.size(), 0);
+    for (std::size_t a = 0; a < surfaces_.size(); ++a)
+      for (std::size_t b = a + 1; b < surfaces_.size(); ++b) {
+        if (options.wanted && !options.wanted(surfaces_[a]->link, surfaces_[b]->link)) continue;
+        used[a] = used[b] = 1;
+        pairs_.push_back({a, b, nullptr, nullptr, 0});
+      }
     parallel_for(std::size_t{0}, surfaces_.size(),
-                 [&](std::size_t i) { shapes_[i] = shapes_of(*surfaces_[i]); }, {.alone = true});
+                 [&](std::size_t i) {
+                   if (used[i] != 0) shapes_[i] = shapes_of(*surfaces_[i]);
+                 },
+                 {.alone = true});
     shaped_.assign(robot.links.size(), 0);
     for (std::size_t l = 0; l < shaped_.size(); ++l)
       shaped_[l] = robot.links[l].collision.empty() ? 0 : 1;
     for (const LinkSurface* s : surfaces_) shaped_[s->link] = 1;
-    for (std::size_t a = 0; a < surfaces_.size(); ++a)
-      for (std::size_t b = a + 1; b < surfaces_.size(); ++b) {
-        if (shapes_[a].outer && shapes_[b].outer) left_.push_back(pairs_.size());
-        pairs_.push_back({a, b, nullptr, std::nullopt, 0});
-      }
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      if (shapes_[pairs_[i].a].outer && shapes_[pairs_[i].b].outer) left_.push_back(i);
   }
 
   std::vector<DecidedPair> decide() {
@@ -212,7 +231,7 @@ class Pairs {
     look_away_from_joints(stop);
     // More and more of each, so that what is easy is decided before the time is up.
     std::size_t nodes = kCoarseNodes;
-    for (std::size_t work = kFirstWork; !left_.empty() && !stop(); work *= 2) {
+    for (std::size_t work = kFirstWork; !(left_.empty() && away_.empty()) && !stop(); work *= 2) {
       if (work > kFirstWork) look_for_contacts(stop);
       if (nodes < kMostNodes) sweep(nodes *= 4, stop);
       round([&](Sought& pair) {
@@ -226,6 +245,7 @@ class Pairs {
         return pair.search->boxes() / 2 >= options_.most_boxes ||
                (unsure(pair) && work >= kWorkOfUnsure);
       });
+      go_on_away(work, stop);
       // How deep comes when what is easy is decided.
       look_deeper(stop);
     }
@@ -297,6 +317,27 @@ class Pairs {
                                   options_, stop);
         },
         {.alone = true});
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      if (pairs_[i].away && pairs_[i].away->own) away_.push_back(i);
+    leave_decided_away();
+  }
+  void leave_decided_away() {
+    std::erase_if(away_, [&](std::size_t i) {
+      const Search& search = *pairs_[i].away->search;
+      return search.decided() || search.boxes() / 2 >= options_.most_boxes || unsure(pairs_[i]) ||
+             pairs_[i].search->verdict() == Verdict::Never;
+    });
+  }
+  void go_on_away(std::size_t work, const std::function<bool()>& stop) {
+    parallel_for(std::size_t{0}, away_.size(),
+                 [&](std::size_t i) {
+                   Search& search = *pairs_[away_[i]].away->search;
+                   search.look_for_contacts(stop);
+                   search.go_on(options_.most_boxes - search.boxes() / 2, work, stop);
+                   search.look_deeper(stop);
+                 },
+                 {.alone = true});
+    leave_decided_away();
   }
   std::vector<DecidedPair> found() {
     std::vector<DecidedPair> out(pairs_.size());
@@ -318,6 +359,7 @@ class Pairs {
   Shaped shaped_;
   std::vector<Sought> pairs_;
   std::vector<std::size_t> left_;  ///< of the pairs
+  std::vector<std::size_t> away_;  ///< those that are open away from their joint
   std::atomic<std::size_t> decided_ = 0;
 };
 

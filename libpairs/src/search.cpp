@@ -530,6 +530,9 @@ void Search::go_on(std::size_t boxes, std::size_t work, const std::function<bool
 
 std::optional<Search::Joint> Search::joint() const {
   if (chain_.joints().size() != 1 || !chain_.joints().front().revolute) return std::nullopt;
+  // Of limits so large that rounding moves the links, nothing tells where they meet.
+  if (!chain_.limits() || !(outer_.gaps().error() < 1e-6 * outer_.gaps().reach()))
+    return std::nullopt;
   motion_.set(middle_, still_);
   Joint out{};
   out.in_a = motion_.placed().origins.front();

@@ -80,6 +80,19 @@ grep -q "line 5: the pair 'base', 'upper' is stated in line 3 already" out.txt |
 grep -q "line 6: the robot has no link 'hand'" out.txt || fail "$(cat out.txt)"
 grep -v 'fore\|hand\|upper" link2' stated.srdf | cmp -s - corrected.srdf || fail "corrected.srdf: $(cat corrected.srdf)"
 expect 0 '0 faults' "$P" arm.urdf --judge corrected.srdf --fail-on open,faults
+# Pairs that the file does not state are decided for what is written only.
+expect 1 '^3 pairs: ' "$P" arm.urdf --judge stated.srdf --json
+[ "$(grep -c '"relation"' out.txt)" = 3 ] || fail "pairs that nobody asked for: $(cat out.txt)"
+expect 1 '^6 pairs: ' "$P" arm.urdf --judge stated.srdf --json --srdf all.srdf
+cmp -s arm.srdf all.srdf || fail "all.srdf: $(cat all.srdf)"
+# What replays a contact has a name of its own for each pair.
+"$P" arm.urdf --judge stated.srdf --quiet --report judged.json
+python3 -c 'import json
+for p in json.load(open("judged.json"))["matrix"]["disabled"]:
+    if "replay" in p: print(p["replay"])' >replay.txt
+[ "$(wc -l <replay.txt)" = 1 ] || fail "replays: $(cat replay.txt)"
+expect 1 '' sh -c "PATH=$BIN:\$PATH; $(cat replay.txt)"
+[ -s replay-fore-turret.json ] || fail "no scene of its own: $(cat replay.txt)"
 python3 - <<'END' || fail 'JUnit or SARIF'
 import json
 import xml.etree.ElementTree as xml
@@ -126,6 +139,22 @@ expect 3 'no two links with shapes' "$P" arm.urdf --links base
 sed 's/collision/visual/g' arm.urdf >drawn.urdf
 expect 3 'no two links with shapes, .*; --geometry visual takes shapes that are drawn' "$P" drawn.urdf
 expect 0 '6 pairs: ' "$P" drawn.urdf --geometry visual
+expect 3 'no pair; --geometry collision takes those for collisions' "$P" arm.urdf --geometry visual
+expect 3 'no pair among those of --links' "$P" arm.urdf --links base
+echo '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>' >bare.urdf
+for geometry in collision visual; do
+  expect 3 'no two links with shapes, so there is no pair$' "$P" bare.urdf --geometry $geometry
+done
+# Links that touch exactly at their joint: open there, and decided away from it.
+{
+  echo '<robot name="r">'
+  box a 0 0 -0.5 0.2 0.2 1
+  box b 0 0 0.5 0.2 0.2 1
+  joint j a b '0 0 0' '0 0 1' 1
+  echo '</robot>'
+} >flush.urdf
+expect 7 '' "$P" flush.urdf --max-boxes 1000
+grep -q '^a b: adjacent; open at the joint, .*; farther than [0-9.]* from the joint: never;' out.txt || fail "$(cat out.txt)"
 echo '<robot><disable_collisions link1="base"/></robot>' >bad.srdf
 expect 3 "bad.srdf: line 1: <disable_collisions> has no 'link2'" "$P" arm.urdf --judge bad.srdf
 expect 3 'absent.srdf' "$P" arm.urdf --judge absent.srdf

@@ -200,6 +200,82 @@ TEST(DecidedPairs, WhatIsInsideAwayFromTheJointIsSeenAlthoughTheMeshIsCutThere) 
   EXPECT_EQ(pair.away->verdict, Verdict::Always);
 }
 
+/// A wall round the z axis between two heights; or, of inner radius 0, a solid prism.
+geom::Mesh ring(double inner, double outer, double bottom, double top, std::uint32_t sides) {
+  geom::Mesh mesh;
+  for (const double radius : {inner, outer})
+    for (const double z : {bottom, top})
+      for (std::uint32_t i = 0; i < sides; ++i)
+        mesh.vertices.emplace_back(radius * std::cos(2 * M_PI * i / sides),
+                                   radius * std::sin(2 * M_PI * i / sides), z);
+  const auto band = [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const std::uint32_t j = (i + 1) % sides;
+      mesh.triangles.push_back({from * sides + i, from * sides + j, to * sides + j});
+      mesh.triangles.push_back({from * sides + i, to * sides + j, to * sides + i});
+    }
+  };
+  band(2, 3);
+  band(3, 1);
+  band(1, 0);
+  band(0, 2);
+  return mesh;
+}
+
+TEST(DecidedPairs, WhatIsHardAwayFromTheJointIsGoneOnWith) {
+  // Links that meet at the joint, with a narrow gap all round far from it.
+  TestRobot of = two_links(robot::JointType::Revolute, -0.1, 0.1);
+  geom::Mesh shaft = box_mesh({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2});
+  geom::Mesh sleeve = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.3});
+  test::append(shaft, ring(0.5, 0.9999, 5, 5.2, 300));
+  test::append(sleeve, ring(1, 1.5, 5, 5.2, 300));
+  of.surfaces = {{0, shaft, {}}, {1, sleeve, {}}};
+  for (const std::size_t most : {5, 300'000}) {
+    const DecidedPair pair = decide_pairs(of.robot, of.surfaces, {.most_boxes = most}).front();
+    ASSERT_TRUE(pair.away);
+    EXPECT_LT(pair.away->beyond, 1);
+    EXPECT_EQ(pair.away->verdict, most > 5 ? Verdict::Never : Verdict::Open);
+  }
+  // Where nothing meets in the middle, all is away from the joint, and what is said is the same.
+  of.surfaces[1].outer = ring(1, 1.5, 5, 5.2, 300);
+  for (const std::uint32_t sides : {20, 300}) {
+    of.surfaces[0].outer = ring(0.5, sides == 300 ? 0.9999 : 0.95, 5, 5.2, sides);
+    const DecidedPair pair = decide_pairs(of.robot, of.surfaces, {.most_boxes = 5}).front();
+    EXPECT_EQ(pair.verdict, sides == 20 ? Verdict::Never : Verdict::Open);
+    EXPECT_EQ(pair.away.has_value(), sides == 300);
+    EXPECT_TRUE(!pair.away || (pair.away->verdict == Verdict::Open && pair.away->beyond == 0));
+  }
+}
+
+TEST(DecidedPairs, LimitsBeyondAllRoundingTellNothingOfTheJoint) {
+  for (const double most : {1.0, 1e12, 1e18, 1e300}) {
+    TestRobot of = two_links(robot::JointType::Revolute, -most, most);
+    geom::Mesh a = box_mesh({-0.1, -0.1, -0.1}, {1, 0.1, 0.1});
+    test::append(a, box_mesh({-1, -0.1, 0.2}, {-0.8, 0.1, 0.4}));
+    geom::Mesh b = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.2});
+    test::append(b, box_mesh({0.8, -0.1, 0.2}, {1, 0.1, 0.4}));
+    of.surfaces = {{0, a, {}}, {1, b, {}}};
+    const DecidedPair pair = decide_pairs(of.robot, of.surfaces, {.most_boxes = 3'000}).front();
+    EXPECT_NE(pair.verdict, Verdict::Never) << most;
+    EXPECT_EQ(is_connected(pair), most == 1) << most;
+  }
+}
+
+TEST(DecidedPairs, OnlyThoseThatAreWantedAreDecidedAndAsBefore) {
+  const TestRobot of = test::random_robot(7);
+  DecideOptions options{.most_boxes = 1'000, .samples = 40};
+  const auto all = decide_pairs(of.robot, of.surfaces, options);
+  options.wanted = [](std::uint32_t a, std::uint32_t b) { return a == 1 || b == 4; };
+  const auto some = decide_pairs(of.robot, of.surfaces, options);
+  ASSERT_EQ(some.size(), 7U);
+  for (const DecidedPair& pair : some) {
+    EXPECT_TRUE(options.wanted(pair.a, pair.b));
+    const DecidedPair& before = pair_of(all, pair.a, pair.b);
+    EXPECT_EQ(pair.verdict, before.verdict);
+    EXPECT_EQ(pair.relation, before.relation);
+  }
+}
+
 TEST(DecidedPairs, AlwaysNeedsInnerMeshesThatMeetEverywhere) {
   // In the outer mesh all along, but only up to 0.9 in the inner one.
   TestRobot of = two_links(robot::JointType::Prismatic, 0, 0.95);

@@ -36,7 +36,7 @@ std::string finding_of(const JudgedPair& pair) {
       return out + ": at least " + short_text(pair.found->nearest.lower) + " apart";
     case Judgement::Refuted:
       out += ": they touch at " + pairs::text_of(pair.q);
-      if (pair.found->away)
+      if (pair.found->away && pair.found->away->beyond > 0)
         out += ", farther than " + short_text(pair.found->away->beyond) + " from their joint";
       else if (pair.found->depth.lower > 0)
         out += ", " + words_of(pair.found->depth) + " deep";
@@ -89,8 +89,11 @@ std::string replay_of(const JudgedMatrix& judged, const JudgedPair& pair) {
   // Scenes take URDFs.
   const bool urdf = std::filesystem::path(judged.robot).extension() == ".urdf";
   if (pair.judgement != Judgement::Refuted || !urdf) return {};
-  return "kaboum-scene make replay.json --force --robot " + shell_word("robot=" + judged.robot) +
-         " && kaboum-check replay.json --configuration=" + pairs::text_of(pair.q);
+  std::string scene = "replay-" + pair.stated.a + "-" + pair.stated.b + ".json";
+  std::ranges::replace(scene, '/', '_');
+  return "kaboum-scene make " + shell_word(scene) + " --force --robot " +
+         shell_word("robot=" + judged.robot) + " && kaboum-check " + shell_word(scene) +
+         " --configuration=" + pairs::text_of(pair.q);
 }
 
 std::string summary_of(const JudgedMatrix& judged) {

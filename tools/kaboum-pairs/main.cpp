@@ -12,6 +12,8 @@
 #include <iterator>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "judgement.h"
 #include "options.h"
@@ -23,8 +25,52 @@ namespace {
 using namespace kaboum;  // the tool's own names are few
 using tools::PairsOptions;
 
+/// Of a robot of which no two links have shapes that are looked at.
+[[noreturn]] void refuse_no_pair(const robot::RobotFile& file, const PairsOptions& o) {
+  // Whether shapes of the other kind, or those of all links, would be two.
+  const auto two = [&](bool visual, bool all_links) {
+    return std::ranges::count_if(file.robot.links, [&](const robot::Link& link) {
+             const bool meant = all_links || o.choice.links.empty() ||
+                                std::ranges::count(o.choice.links, link.name) > 0;
+             return meant && !(visual ? link.visual : link.collision).empty();
+           }) >= 2;
+  };
+  std::string hint;
+  if (two(!o.choice.visual, false))
+    hint = o.choice.visual ? "; --geometry collision takes those for collisions"
+                           : "; --geometry visual takes shapes that are drawn";
+  else if (!o.choice.links.empty() && two(o.choice.visual, true))
+    hint = " among those of --links";
+  throw Error(ErrorCode::InvalidInput,
+              o.robot + ": there are no two links with shapes, so there is no pair" + hint);
+}
+
+/// Those of the links that a file states, first; all others then, where they are written.
+std::vector<pairs::DecidedPair> decide_stated(const robot::RobotFile& file, const PairsOptions& o,
+                                              const pairs::Matrix& matrix,
+                                              const std::vector<pairs::LinkSurface>& surfaces,
+                                              pairs::DecideOptions options) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> stated;
+  for (const pairs::DisabledPair& pair : matrix.pairs)
+    stated.insert(
+        std::minmax(file.robot.find_link(pair.a).value(), file.robot.find_link(pair.b).value()));
+  const auto begin = std::chrono::steady_clock::now();
+  options.wanted = [&](std::uint32_t a, std::uint32_t b) { return stated.contains({a, b}); };
+  std::vector<pairs::DecidedPair> out = pairs::decide_pairs(file.robot, surfaces, options);
+  if (o.srdf.empty()) return out;
+  options.wanted = [&](std::uint32_t a, std::uint32_t b) { return !stated.contains({a, b}); };
+  options.most_seconds -=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (pairs::DecidedPair& pair : pairs::decide_pairs(file.robot, surfaces, options))
+    out.push_back(std::move(pair));
+  std::ranges::sort(out, {}, [](const auto& pair) { return std::pair(pair.a, pair.b); });
+  return out;
+}
+
+/// @param matrix  null: all pairs are decided
 /// @param notes  gets what a user should know, besides being printed
 std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o,
+                                       const pairs::Matrix* matrix,
                                        std::vector<std::string>& notes) {
   notes = file.robot.notes;
   for (const std::string& note :
@@ -34,10 +80,7 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
   const std::vector<pairs::LinkSurface> surfaces =
       tools::naming(o.robot, [&] { return tools::surfaces_of(file, o.choice, notes); });
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
-  if (surfaces.size() < 2)
-    throw Error(ErrorCode::InvalidInput,
-                o.robot + ": there are no two links with shapes, so there is no pair" +
-                    (o.choice.visual ? "" : "; --geometry visual takes shapes that are drawn"));
+  if (surfaces.size() < 2) refuse_no_pair(file, o);
   tools::Progress progress(o.common.quiet);
   std::mutex one;
   std::chrono::steady_clock::time_point shown;
@@ -49,7 +92,8 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
     shown = now;
     progress.show(std::to_string(decided) + " of " + std::to_string(all) + " pairs decided");
   };
-  return pairs::decide_pairs(file.robot, surfaces, options);
+  return matrix != nullptr ? decide_stated(file, o, *matrix, surfaces, options)
+                           : pairs::decide_pairs(file.robot, surfaces, options);
 }
 
 std::string text_of(const std::string& path) {
@@ -95,7 +139,7 @@ int run(const PairsOptions& o) {
   std::vector<std::string> notes;
   const bool is_idle = matrix && matrix->pairs.empty();
   std::vector<pairs::DecidedPair> pairs;
-  if (!is_idle || !o.srdf.empty()) pairs = decide(file, o, notes);
+  if (!is_idle || !o.srdf.empty()) pairs = decide(file, o, matrix ? &*matrix : nullptr, notes);
   if (is_idle) {
     notes.push_back(o.judge + " disables no pair of links: there is nothing to judge");
     tools::log(o.common.quiet, notes.back());

@@ -25,8 +25,8 @@ void describe(CLI::App& app, PairsOptions& o) {
   CLI::Option* judge =
       app.add_option(
              "--judge", o.judge,
-             "Judge the pairs that this file disables: SRDF, MJCF (exclude), Drake's filter "
-             "groups, XRDF, cuRobo's YAML")
+             "Judge the pairs that this file disables, and decide no others but for --srdf: SRDF, "
+             "MJCF (exclude), Drake's filter groups, XRDF, cuRobo's YAML")
           ->type_name("FILE");
   app.add_option("-o,--output", o.output,
                  "Write that file without the pairs that are refuted, and without statements that "

@@ -71,14 +71,19 @@ std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
     out += pairs::name_of(pair.relation);
     out += "; ";
   }
+  // What is at the joint is open often: links that touch there exactly.
+  const bool away_only = pair.away && pair.away->beyond > 0;
+  const bool open_at_joint =
+      pair.verdict == Verdict::Open && away_only && pair.away->verdict == Verdict::Never;
   out += pairs::name_of(pair.verdict);
+  if (open_at_joint) out += " at the joint";
   if (pair.depth.lower > 0) {
     out += ", " + words_of(pair.depth) + " deep";
     if (!pair.q.empty()) out += " at " + pairs::text_of(pair.q);
   } else if (pair.verdict != Verdict::Always) {
     out += ", smallest distance " + words_of(pair.nearest);
   }
-  if (pair.away) {
+  if (away_only) {
     out += "; farther than " + number(pair.away->beyond) + " from the joint: ";
     out += pairs::name_of(pair.away->verdict);
   }

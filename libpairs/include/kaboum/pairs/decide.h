@@ -36,6 +36,8 @@ struct LinkSurface {
 struct DecideOptions {
   std::size_t most_boxes = 300'000;  ///< of joint values that are looked at for one pair
   std::size_t samples = 300;         ///< places at which contacts of a pair are looked for at first
+  /// Whether links a and b, a < b, are a pair to decide. None: all are.
+  std::function<bool(std::uint32_t a, std::uint32_t b)> wanted = {};
   /// After so long nothing more is proved. [s]
   double most_seconds = 60;
   std::function<bool()> stop = {};  ///< often called; true: nothing more is proved. May throw
@@ -90,8 +92,8 @@ struct DecidedPair {
 /// they never touch away from it. Of a joint that slides there is no such place.
 bool is_connected(const DecidedPair& pair);
 
-/// All pairs of links that have a surface or are unsure, ordered by a, then b. The same for any
-/// number of threads, unless the time is up.
+/// All pairs, of those that are wanted, of links that have a surface or are unsure, ordered by a,
+/// then b. The same for any number of threads, unless the time is up.
 /// @throws Error{InvalidArgument} for a link with two surfaces, or that the robot does not have.
 std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const std::vector<LinkSurface>& surfaces,
