@@ -77,14 +77,20 @@ class Arc {
   /// @param angle  of the arc, less than half a turn
   Arc(double radius, double angle)
       : radius_(radius),
-        angle_(angle),
         length_(2 * radius * std::sin(0.5 * angle)),
         middle_(std::cos(0.5 * angle)) {}
-  [[nodiscard]] double bound(double u, double v, double share) const {
-    const double aside = (share - 0.5) * angle_;
-    const double along = std::clamp(0.5 * (1 + std::tan(aside) / std::tan(0.5 * angle_)), 0.0, 1.0);
-    return between_two(u, v, along, length_) -
-           radius_ * (1 - middle_ / std::cos(aside)) * (1 + kRounding);
+  /// A place on arcs of some angle: the point of the chord in its direction, and how far that is,
+  /// of a radius of 1.
+  struct Place {
+    double along, below;
+    Place(double angle, double share) {
+      const double aside = (share - 0.5) * angle;
+      along = std::clamp(0.5 * (1 + std::tan(aside) / std::tan(0.5 * angle)), 0.0, 1.0);
+      below = 1 - std::cos(0.5 * angle) / std::cos(aside);
+    }
+  };
+  [[nodiscard]] double bound(double u, double v, const Place& place) const {
+    return between_two(u, v, place.along, length_) - radius_ * place.below * (1 + kRounding);
   }
   /// Of all points between two of which the lesser bound is known.
   [[nodiscard]] double bound_all(double least) const {
@@ -92,15 +98,33 @@ class Arc {
   }
 
  private:
-  double radius_, angle_, length_, middle_;
+  double radius_, length_, middle_;
+};
+
+/// The places between the ends of arcs of so many equal parts, for any number of them.
+class ArcPlaces {
+ public:
+  explicit ArcPlaces(double part) : part_(part) {}
+  const std::vector<Arc::Place>& of(std::size_t parts) {
+    if (known_.size() <= parts) known_.resize(parts + 1);
+    std::vector<Arc::Place>& out = known_[parts];
+    for (std::size_t m = out.size(); m < parts; ++m)
+      out.emplace_back(static_cast<double>(parts) * part_,
+                       static_cast<double>(m) / static_cast<double>(parts));
+    return out;
+  }
+
+ private:
+  double part_;
+  std::vector<std::vector<Arc::Place>> known_;
 };
 
 /// The least of values[i + t] for each i and all t from low to high; indices are cyclic, or else
 /// those beyond the ends are the ends.
-/// @param between  (u, v, share): the value between two neighbours
+/// @param between_at  of a share: what tells the value between two neighbours u and v
 template <typename Between>
 void least_of_shifts(std::vector<float>& values, double low, double high, bool cyclic,
-                     const Between& between) {
+                     const Between& between_at) {
   const auto n = static_cast<std::ptrdiff_t>(values.size());
   low -= 1e-9;
   high += 1e-9;
@@ -119,9 +143,9 @@ void least_of_shifts(std::vector<float>& values, double low, double high, bool c
   std::vector<float> out(values.size(), std::numeric_limits<float>::infinity());
   for (const double end : {low, high}) {
     const auto before = static_cast<std::ptrdiff_t>(std::floor(end));
-    const double share = end - std::floor(end);
+    const auto between = between_at(end - std::floor(end));
     for (std::ptrdiff_t i = 0; i < n; ++i)
-      out[i] = std::min(out[i], below(between(value(i + before), value(i + before + 1), share)));
+      out[i] = std::min(out[i], below(between(value(i + before), value(i + before + 1))));
   }
   // Of each window the least one, and those behind it that are the least of what follows.
   if (last >= first) {
@@ -207,8 +231,11 @@ void Swept::Grid::sweep_turns(double from, double to) {
     for (std::size_t b = 0; b < rises; ++b) {
       float* at_row = values.data() + at(a, b);
       row.assign(at_row, at_row + turns);
-      least_of_shifts(row, -to / turn, -from / turn, true,
-                      [&](double u, double v, double share) { return arc.bound(u, v, share); });
+      least_of_shifts(row, -to / turn, -from / turn, true, [&](double share) {
+        return [&arc, place = Arc::Place(turn, share)](double u, double v) {
+          return arc.bound(u, v, place);
+        };
+      });
       for (std::size_t m = 0; m < turns; ++m) at_row[m] = below(arc.bound_all(row[m]));
     }
   }
@@ -219,8 +246,8 @@ void Swept::Grid::sweep_rises(double from, double to) {
   for (std::size_t a = 0; a < rings; ++a)
     for (std::size_t m = 0; m < turns; ++m) {
       for (std::size_t b = 0; b < rises; ++b) row[b] = values[at(a, b) + m];
-      least_of_shifts(row, -to / rise, -from / rise, false, [&](double u, double v, double share) {
-        return between_two(u, v, share, rise);
+      least_of_shifts(row, -to / rise, -from / rise, false, [&](double share) {
+        return [this, share](double u, double v) { return between_two(u, v, share, rise); };
       });
       for (std::size_t b = 0; b < rises; ++b)
         values[at(a, b) + m] = below(between_nodes(row[b], 0.5 * rise));
@@ -286,14 +313,20 @@ void Swept::bound(const Transform& to_frame, Grid& out) const {
 bool Swept::fill(const Transform& from_frame, Grid& out, const std::function<bool()>& stop) const {
   out.values.resize(out.rings * out.rises * out.turns);
   std::vector<double> row(out.turns + 1);
+  std::vector<std::pair<double, double>> ways;  // to each node of a ring of radius 1
+  for (std::size_t m = 0; m < out.turns; ++m) {
+    const double t = static_cast<double>(m) * out.turn - kPi;
+    ways.emplace_back(std::cos(t), std::sin(t));
+  }
+  ArcPlaces places(out.turn);
   for (std::size_t a = 0; a < out.rings; ++a)
     for (std::size_t b = 0; b < out.rises; ++b) {
       if (stop()) return false;
       const double r = static_cast<double>(a) * out.ring,
                    z = out.floor + static_cast<double>(b) * out.rise;
       const auto ask = [&](std::size_t m) {
-        const double t = static_cast<double>(m) * out.turn - kPi;
-        row[m] = std::max(0.0, distance(from_frame * Vec3(r * std::cos(t), r * std::sin(t), z)));
+        row[m] =
+            std::max(0.0, distance(from_frame * Vec3(r * ways[m].first, r * ways[m].second, z)));
       };
       // Between two nodes of an arc that is short against the distances, these say enough.
       const auto between = [&](const auto& self, std::size_t i, std::size_t j) -> void {
@@ -301,10 +334,9 @@ bool Swept::fill(const Transform& from_frame, Grid& out, const std::function<boo
         const double angle = static_cast<double>(j - i) * out.turn;
         if (angle < 1 && r * angle < 0.4 * std::min(row[i], row[j])) {
           const Arc arc(r, angle);
+          const std::vector<Arc::Place>& at = places.of(j - i);
           for (std::size_t m = i + 1; m < j; ++m)
-            row[m] = std::max(
-                0.0,
-                arc.bound(row[i], row[j], static_cast<double>(m - i) / static_cast<double>(j - i)));
+            row[m] = std::max(0.0, arc.bound(row[i], row[j], at[m - i]));
           return;
         }
         const std::size_t middle = i + (j - i) / 2;
