@@ -121,6 +121,12 @@ BoxMotion::Bound BoxMotion::bound(const Vec3& center_a, double reach_a, const Ve
   return out;
 }
 
+double BoxMotion::share_along(const Vec3& direction) const {
+  const Vec3& axis = placed_.axes.front();
+  return chain_->joints().front().revolute ? direction.cross(axis).norm()
+                                           : std::abs(direction.dot(axis));
+}
+
 void BoxMotion::linear(const Vec3& direction, Split split, bool of_b, Linear& out) const {
   const auto& joints = chain_->joints();
   out.count = 0;
@@ -217,9 +223,21 @@ double Gaps::lower(const Cluster& a, const Cluster& b, const BoxMotion& box, Vec
   };
   const Gap plain = search(rests, direction, still + bound.first, enough, true);
   direction = plain.direction;
-  if (plain.lower > enough || bound.second >= bound.first ||
-      plain.upper - still - bound.second <= enough)
-    return plain.lower;
+  double best = plain.lower;
+  if (best <= enough && box.placed().axes.size() == 1) {
+    // What turns about the direction, or slides across it, does not move along it.
+    const Vec3 axis = box.placed().axes.front().normalized();
+    for (const Vec3& d : {plain.direction, axis, (-axis).eval()}) {
+      Vec3 p, q;
+      const double share = box.share_along(d) + 8 * error_ / reach_ + kRounding;
+      const double value = rests(d, p, q) - still - bound.first * std::min(1.0, share);
+      if (value <= best) continue;
+      best = value;
+      direction = d;
+    }
+  }
+  if (best > enough || bound.second >= bound.first || plain.upper - still - bound.second <= enough)
+    return best;
 
   const BoxMotion::Split split = bound.second_split;
   const auto moves = [&](const Vec3& d, Vec3& p, Vec3& q) {
@@ -245,7 +263,7 @@ double Gaps::lower(const Cluster& a, const Cluster& b, const BoxMotion& box, Vec
   // The balls round the clusters' hulls turn with them.
   const double allowed = still + (a.radius + b.radius) * box.turns() * kUp + bound.second;
   const Gap second = search(moves, direction, allowed, enough, true);
-  if (second.lower <= plain.lower) return plain.lower;
+  if (second.lower <= best) return best;
   direction = second.direction;
   return second.lower;
 }

@@ -113,5 +113,33 @@ TEST(Gaps, BoundTheDistanceAllOverTheBox) {
   EXPECT_GT(by_second, 300U);
 }
 
+TEST(Gaps, WhatTurnsInItsPlaneOrSlidesAcrossKeepsItsDistance) {
+  for (const bool turns : {true, false})
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Random random(seed);
+      test::TestRobot of;
+      of.robot.name = "flanges";
+      of.robot.links = {{"a", {}, {}}, {"b", {}, {}}};
+      robot::Joint joint;
+      joint.name = "j";
+      joint.type = turns ? robot::JointType::Revolute : robot::JointType::Prismatic;
+      joint.axis = turns ? Vec3::UnitZ() : Vec3::UnitX();
+      joint.origin = {test::random_turn(random), test::random_vector(random, 1)};
+      of.robot.joints = {joint};
+      of.robot.variables = {{"j", -3.0, 3.0}};
+      // A millimetre between their faces, square to z.
+      geom::Mesh a = test::box_mesh({-0.3, -0.2, -0.1}, {0.2, 0.4, 0});
+      for (Vec3& v : a.vertices) v = joint.origin * v;
+      const Chain chain(of.robot, 0, 1);
+      const HullTree ta(a), tb(test::box_mesh({-0.2, -0.2, 0.001}, {0.5, 0.3, 0.1}));
+      BoxMotion box(chain);
+      box.set(std::vector{0.0}, std::vector{3.0});
+      Vec3 direction = Vec3::Zero();
+      const double lower = Gaps(ta, tb, chain).lower(ta[0], tb[0], box, direction, 0);
+      EXPECT_GT(lower, 0.001 * (1 - 1e-6));
+      EXPECT_LE(lower, 0.001);
+    }
+}
+
 }  // namespace
 }  // namespace kaboum::pairs::detail
