@@ -33,8 +33,8 @@ class BoxMotion {
   [[nodiscard]] Bound bound(const Vec3& center_a, double reach_a, const Vec3& center_b,
                             double reach_b) const;
 
-  /// Of one joint: which share of its displacement is along a direction of length 1 at most, but for
-  /// rounding. @pre the chain has one joint
+  /// Of one joint: which share of its displacement is along a direction of length 1 at most, but
+  /// for rounding. @pre the chain has one joint
   [[nodiscard]] double share_along(const Vec3& direction) const;
 
   /// The displacements of a's and b's points by their first derivatives, along a direction: for
