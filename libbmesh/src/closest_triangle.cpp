@@ -51,7 +51,7 @@ ClosestTriangle::Found ClosestTriangle::walk(const Vec3& p, std::uint32_t place,
 }
 
 double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enough,
-                                std::uint64_t* steps) const {
+                                std::uint64_t* steps, const Vicinity* vicinity) const {
   if (hint >= triangles_.size()) hint = 0;
   double best = 0;
   Found near = walk(p, hint, enough, best);
@@ -62,18 +62,19 @@ double ClosestTriangle::squared(const Vec3& p, std::uint32_t& hint, double enoug
   // The walk only says how near the nearest is at most: which of several that are equally near is
   // found does not depend on it.
   float cutoff = wide_.frame().cutoff(near.squared);
-  const std::uint64_t visited = wide_.visit_near(
-      p, cutoff, [&] { return !(best > enough); },
-      [&](std::uint32_t place) {
-        const double d = squared_distance(p, corners(place));
-        if (d >= best) return;
-        best = d;
-        hint = place;
-        if (!(d < near.squared)) return;
-        near = {place, d};
-        cutoff = wide_.frame().cutoff(d);
-      });
-  constexpr std::uint64_t kNode = 30;
+  const auto done = [&] { return !(best > enough); };
+  const auto visit = [&](std::uint32_t place) {
+    const double d = squared_distance(p, corners(place));
+    if (d >= best) return;
+    best = d;
+    hint = place;
+    if (!(d < near.squared)) return;
+    near = {place, d};
+    cutoff = wide_.frame().cutoff(d);
+  };
+  const std::uint64_t visited = vicinity != nullptr && vicinity->holds(p, near.squared)
+                                    ? wide_.visit_near(*vicinity, p, cutoff, done, visit)
+                                    : wide_.visit_near(p, cutoff, done, visit);
   if (steps != nullptr) *steps += kNode * visited;
   if (near.squared < best) {  // far from all, single precision may have passed it over
     hint = near.place;

@@ -23,6 +23,8 @@ inline double squared_distance(const Vec3& p, const std::array<Vec3, 3>& t) {
 /// Fast, uncertified distances to a fixed set of triangles.
 class ClosestTriangle {
  public:
+  using Vicinity = geom::WideBvh::Vicinity;
+
   /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
   explicit ClosestTriangle(const geom::Mesh& mesh);
 
@@ -31,8 +33,28 @@ class ClosestTriangle {
   /// @param hint  a place of a triangle likely to be near (any number at first); receives the place
   ///   of the triangle found, to be the hint of the next query near by.
   /// @param steps  raised, when not null, by the nanoseconds that it takes, about.
+  /// @param vicinity  looked at instead of all, when not null and large enough.
   double squared(const Vec3& p, std::uint32_t& hint, double enough = 0,
-                 std::uint64_t* steps = nullptr) const;
+                 std::uint64_t* steps = nullptr, const Vicinity* vicinity = nullptr) const;
+
+  /// Makes the vicinity hold what is in the ball, for points there.
+  void gather(const Vec3& center, double radius, Vicinity& out,
+              std::uint64_t* steps = nullptr) const {
+    const std::uint64_t visited = wide_.gather(center, radius, out);
+    if (steps != nullptr) *steps += kNode * visited;
+  }
+
+  /// Squared distance of a triangle that is at least as near to p as all across its edges, or
+  /// within √enough, or a dozen triangles from the hint: mostly the nearest, where the hint is the
+  /// triangle that was nearest to a point near by.
+  /// @param hint  where it is looked for first; receives the place of the triangle found.
+  double squared_near(const Vec3& p, std::uint32_t& hint, double enough = 0) const {
+    if (hint >= triangles_.size()) hint = 0;
+    double first = 0;
+    const Found found = walk(p, hint, enough, first);
+    hint = found.place;
+    return found.squared;
+  }
 
   [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t place) const {
     const geom::Triangle& t = triangles_[place];
@@ -45,6 +67,8 @@ class ClosestTriangle {
   [[nodiscard]] const std::shared_ptr<const geom::Bvh>& hierarchy() const { return bvh_; }
 
  private:
+  static constexpr std::uint64_t kNode = 30;  ///< [ns] that a box or leaf takes, about
+
   void find_neighbours();
   /// A triangle by its place, and its squared distance from a point.
   struct Found {

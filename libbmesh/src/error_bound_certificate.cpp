@@ -63,13 +63,19 @@ bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
     const Entry e = stack[--size];
     if (--cells < 0) return false;
     steps_ += kCut;
-    if (!(near_.squared(e.polygon.centroid(), hint_, 0, &steps_) <= epsilon_ * epsilon_))
-      return false;
+    const auto is_covered = [&] {
+      const auto [a, b, c] = near_.corners(hint_);
+      return std::all_of(
+          e.polygon.corner.begin(), e.polygon.corner.begin() + e.polygon.size,
+          [&](const Vec3& p) { return geom::point_triangle_upper(p, a, b, c) <= epsilon_; });
+    };
+    const Vec3 middle = e.polygon.centroid();
+    const double most = epsilon_ * epsilon_;
+    if (near_.squared_near(middle, hint_) <= most && is_covered()) continue;
+    const std::uint32_t found = hint_;
+    if (!(near_.squared(middle, hint_, 0, &steps_) <= most)) return false;
+    if (hint_ != found && is_covered()) continue;
     const auto [a, b, c] = near_.corners(hint_);
-    bool covered = true;
-    for (int i = 0; i < e.polygon.size && covered; ++i)
-      covered = geom::point_triangle_upper(e.polygon.corner[i], a, b, c) <= epsilon_;
-    if (covered) continue;
     const geom::PrismCut pieces = geom::cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
     if (size + pieces.count > kStack) return false;
     for (int i = 0; i < pieces.count; ++i) stack[size++] = {pieces.piece[i], e.depth + 1};

@@ -41,9 +41,9 @@ constexpr int kLookAfter = 4;
 /// Of the way to the best place that a vertex goes in a trial: all of it would overshoot, as its
 /// neighbours move too.
 constexpr double kRelaxed = 0.5;
-/// The place that the original was near to before will do where it is that
-/// near: as a share of what the nearest may have, or of the limit.
-constexpr double kAlmost = 1.1, kClose = 0.15;
+/// A place of the original will do where it is that near: as a share of the
+/// limit.
+constexpr double kClose = 0.15;
 constexpr int kSweeps = 2;           ///< of certified moves towards what the trial has found
 constexpr int kPulls = 2;            ///< and of pulling back after them, if that is near the limit:
 constexpr double kNearLimit = 1.15;  ///< within so many times of it
@@ -132,20 +132,21 @@ void NeighbourCollapse::contract(std::uint32_t a, std::uint32_t b, const Vec3& t
   m_.update_normals_around(a);
 }
 
-/// Finds where the original is nearest to a point, or where it is nearly as
-/// near, or close: in most rounds that is where it was near in an earlier one.
-void NeighbourCollapse::follow(SampledError::Point& point, Trail& trail, double close,
-                               std::uint32_t& hint) {
-  if (trail.nearest != SampledError::kNone) {
-    const auto c = sampled_.original().corners(trail.nearest);
-    const double least = trail.distance - (point.position - trail.position).norm();
-    const double enough = std::max(kAlmost * least, close);
-    point.nearest = trail.nearest;
-    if (squared_distance(point.position, c) <= enough * enough) return;
+/// Finds where the original is near to the points of the i-th star; after the first round from
+/// where it was near before.
+void NeighbourCollapse::follow(std::size_t i, double close, std::uint32_t& hint) {
+  std::vector<std::uint32_t>& near = near_[i];
+  if (near.empty()) step_.look_around_star(step_.added.front().corner[0], hint);
+  near.resize(step_.points.size(), SampledError::kNone);
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    SampledError::Point& point = step_.points[k];
+    point.nearest = near[k];
+    if (point.nearest == SampledError::kNone)
+      sampled_.locate(point, hint, &step_.vicinity);
+    else
+      sampled_.locate_again(point, close * close);
+    near[k] = point.nearest;
   }
-  trail.distance = std::sqrt(sampled_.locate(point, hint));
-  trail.position = point.position;
-  trail.nearest = point.nearest;
 }
 
 /// Moves v, the i-th of around_, to where it deviates least, deviations on the
@@ -156,10 +157,7 @@ void NeighbourCollapse::relax_vertex(std::size_t i, double scale, double penalty
   if (!step_.gather(v)) return;
   const Vec3 from = m_.position[v];
   step_.place_star(from);
-  trails_[i].resize(step_.points.size());
-  const double close = kClose * std::sqrt(scale);
-  for (std::size_t k = 0; k < step_.points.size(); ++k)
-    follow(step_.points[k], trails_[i][k], close, notes_.hint[v]);
+  follow(i, kClose * std::sqrt(scale), notes_.hint[v]);
   step_.linearise(from, scale, penalty);
   const auto step =
       minimise(step_.objective, {step_.objective.bx, step_.objective.by, step_.objective.bz}, {},
@@ -232,8 +230,8 @@ double NeighbourCollapse::trial_collapse(std::uint32_t a, std::uint32_t b, doubl
   if (!start()) return kNoLimit;
   const double scale = limit * limit;
   const Hopes& least = options_.epsilon ? kThorough : kQuick;
-  trails_.resize(std::max(trails_.size(), around_.size()));
-  for (std::size_t i = 0; i < around_.size(); ++i) trails_[i].clear();
+  near_.resize(std::max(near_.size(), around_.size()));
+  for (std::size_t i = 0; i < around_.size(); ++i) near_[i].clear();
   for (int i = 0; i < 3; ++i) relax_vertex(0, scale, 1, 1, true);
   double deviation = 0;
   const auto hopes = [&](double share) {  // finds the limit that it would take

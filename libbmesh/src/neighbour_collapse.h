@@ -23,16 +23,9 @@ class NeighbourCollapse : private OptimiserContext {
   double collapse(std::uint32_t a, std::uint32_t b, double limit);
 
  private:
-  /// Where a point was when the original was last sought from it, how far, and where.
-  struct Trail {
-    Vec3 position;
-    double distance;
-    std::uint32_t nearest = SampledError::kNone;
-  };
-
   void neighbours(std::uint32_t v, std::vector<std::uint32_t>& out);
   void relax_vertex(std::size_t i, double scale, double penalty, double share, bool hand_over);
-  void follow(SampledError::Point& point, Trail& trail, double close, std::uint32_t& hint);
+  void follow(std::size_t i, double close, std::uint32_t& hint);
   double star_largest(std::uint32_t v, double limit);
   double region_largest(double least, double most);
   std::optional<Vec3> find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish);
@@ -47,9 +40,10 @@ class NeighbourCollapse : private OptimiserContext {
 
   std::vector<std::uint32_t> mark_;  // of vertices
   std::uint32_t mark_value_ = 0;
-  std::vector<std::uint32_t> around_;       // vertices that move with a contraction, it first
-  std::vector<Vec3> target_;                // of these
-  std::vector<std::vector<Trail>> trails_;  // of the points at which their stars are measured
+  std::vector<std::uint32_t> around_;  // vertices that move with a contraction, it first
+  std::vector<Vec3> target_;           // of these
+  // Where the original was near to the points at which their stars are measured.
+  std::vector<std::vector<std::uint32_t>> near_;
   std::vector<std::uint32_t> alive_;
 };
 

@@ -42,9 +42,12 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
   const Vec3 from = m_.position[v];
   step_.place_star(from);
   std::uint32_t& hint = notes_.hint[v];
-  const auto before = sampled_.energy(step_.removed, step_.added, step_.points, hint,
-                                      std::numeric_limits<double>::infinity());
+  step_.look_around_star(from, hint);
+  const auto before =
+      sampled_.energy(step_.removed, step_.added, step_.points, hint,
+                      std::numeric_limits<double>::infinity(), {.vicinity = &step_.vicinity});
   if (!(before.squared > 0)) return false;
+  const SampledError::Locating again{.again = true, .vicinity = &step_.vicinity};
   step_.linearise(from, before.squared);
   step_.bound_by_star();
   const double goal = (1 - kGain) * before.sum;
@@ -59,14 +62,15 @@ bool Optimiser::pull_back(std::uint32_t v, bool alone) {
     if (options_.precision == Precision::Float) to = geom::to_float32(to);
     if (to == from || !to.allFinite()) return false;
     step_.place_star(to);
-    const auto after = sampled_.energy(step_.removed, step_.added, step_.points, hint, goal);
+    const auto after = sampled_.energy(step_.removed, step_.added, step_.points, hint, goal, again);
     if (step_.folds(to) || !(after.sum < goal)) {
       // Linearised too boldly, perhaps.
       to = from + 0.5 * kDamping * *step;
       if (options_.precision == Precision::Float) to = geom::to_float32(to);
       if (to == from || step_.folds(to)) return false;
       step_.place_star(to);
-      if (!(sampled_.energy(step_.removed, step_.added, step_.points, hint, goal).sum < goal))
+      if (!(sampled_.energy(step_.removed, step_.added, step_.points, hint, goal, again).sum <
+            goal))
         return false;
     }
     if (to == refused || !step_.stays_flat(to)) return false;

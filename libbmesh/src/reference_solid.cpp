@@ -3,7 +3,10 @@
 
 #include "reference_solid.h"
 
+#include <kaboum/base/processor.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -82,6 +85,22 @@ class Separation {
   std::uint64_t* exact_calls_;
 };
 
+using detail::Double4;
+using detail::FourCorners;
+using detail::FourVectors;
+using Long4 = std::int64_t __attribute__((vector_size(32)));
+
+/// Bit i: whether the i-th is true.
+[[gnu::always_inline]] inline unsigned bits(const Long4& of) {
+  return static_cast<unsigned>((of[0] & 1) | (of[1] & 2) | (of[2] & 4) | (of[3] & 8));
+}
+
+/// Raises sizes to those of the numbers, where these are larger.
+[[gnu::always_inline]] inline void grow(Double4& size, const Double4& x) {
+  const Double4 length = x < 0 ? -x : x;
+  size = size < length ? length : size;
+}
+
 /// Where a triangle is with regard to a tetrahedron's faces, in rounded arithmetic with room for
 /// its errors: quick, and decides nearly all cases.
 class Faces {
@@ -120,6 +139,33 @@ class Faces {
     return false;
   }
 
+  /// The same of four triangles at once, each by itself and by one of the faces, or apart by its
+  /// own plane: a bit for each of which it is not certain.
+  [[nodiscard, gnu::always_inline]] unsigned not_beyond(const FourCorners& of) const {
+    if (!certain_) return of.all;
+    FourVectors x[3];
+    Double4 size{};
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        x[i].of[k] = of.corner[i].of[k] - corner_[3][k];
+        grow(size, x[i].of[k]);
+      }
+    Long4 beyond{};
+    for (const Face& f : face_) {
+      const Double4 error = f.error * (size + f.size);
+      Long4 above = error > kLeastError;
+      for (const auto& [p] : x)
+        above &=
+            (f.normal.x() * p[0] + f.normal.y() * p[1] + f.normal.z() * p[2] - f.offset) > error;
+      beyond |= above;
+    }
+    const unsigned left = of.all & ~bits(beyond);
+    if (left == 0) return 0;
+    Long4 apart;
+    apart_by_plane(x, size, apart);
+    return left & ~bits(apart);
+  }
+
   enum class Place {
     Beyond,  ///< one of the faces, all of the triangle
     Within,  ///< some of it, and so is the answer if that is wrong by rounding
@@ -152,6 +198,9 @@ class Faces {
   /// Of n·x with n = u × v, relative to |u|·|v|·|x| in the maximum norm: six products of three
   /// rounded differences, each rounded five times more at most, with room to spare.
   static constexpr double kError = 100 * 0x1p-53;
+  /// Of the difference of two heights: rounded differences, three products and two sums of either,
+  /// with room to spare.
+  static constexpr double kApart = 32 * 0x1p-53;
   static constexpr double kUnderflow = 1e-200;
   static constexpr double kLeastError = 1e-290;  // products below may have underflowed
 
@@ -194,10 +243,13 @@ class Faces {
       for (int i = 0; i < 7; ++i) h[i] = n.dot(x[i]);
       const double above = std::min({h[0], h[1], h[2], h[3]}) - std::max({h[4], h[5], h[6]});
       const double below = std::min({h[4], h[5], h[6]}) - std::max({h[0], h[1], h[2], h[3]});
-      // Of either height: rounded differences, three products and two sums, with room to spare.
-      const double error = 32 * 0x1p-53 * n.lpNorm<1>() * size;
+      const double error = kApart * n.lpNorm<1>() * size;
       return error > kLeastError && std::max(above, below) > error;
     };
+    // What has a corner in common touches, and is not certainly apart.
+    for (int i = 0; i < 4; ++i)
+      for (int k = 4; k < 7; ++k)
+        if (x[i].x() == x[k].x() && x[i] == x[k]) return false;
     std::array<Vec3, 3> edge;
     for (int i = 0; i < 3; ++i) edge[i] = x[4 + (i + 1) % 3] - x[4 + i];
     if (separates(edge[0].cross(edge[1]))) return true;
@@ -206,6 +258,39 @@ class Faces {
         for (const Vec3& e : edge)
           if (separates(e.cross(x[i] - x[j]))) return true;
     return false;
+  }
+
+  /// The same by the triangles' own planes alone, of four.
+  /// @param x  their corners, from corner 3.
+  /// @param size  the largest of their coordinates; receives that of the tetrahedron's, too.
+  /// @param apart  receives for which it is certain.
+  [[gnu::always_inline]] void apart_by_plane(const FourVectors (&x)[3], Double4& size,
+                                             Long4& apart) const {
+    FourVectors u, v, n;
+    for (int k = 0; k < 3; ++k) {
+      u.of[k] = x[1].of[k] - x[0].of[k];
+      v.of[k] = x[2].of[k] - x[0].of[k];
+    }
+    for (int k = 0; k < 3; ++k)
+      n.of[k] = u.of[(k + 1) % 3] * v.of[(k + 2) % 3] - u.of[(k + 2) % 3] * v.of[(k + 1) % 3];
+    // Of the triangle's corners, and of the tetrahedron's, of which corner 3 is at height 0.
+    Double4 low{}, high{}, least{}, most{}, longest{};
+    for (int i = 0; i < 3; ++i) {
+      const Double4 h = n.of[0] * x[i].of[0] + n.of[1] * x[i].of[1] + n.of[2] * x[i].of[2];
+      low = i == 0 || h < low ? h : low;
+      high = i == 0 || h > high ? h : high;
+      Double4 height{};
+      for (int k = 0; k < 3; ++k) {
+        const double from = corner_[i][k] - corner_[3][k];
+        height += n.of[k] * from;
+        grow(size, Double4{from, from, from, from});
+      }
+      least = height < least ? height : least;
+      most = height > most ? height : most;
+    }
+    for (int k = 0; k < 3; ++k) longest += n.of[k] < 0 ? -n.of[k] : n.of[k];
+    const Double4 error = kApart * longest * size;
+    apart = (error > kLeastError) & ((least - high > error) | (low - most > error));
   }
 
   struct Face {
@@ -254,10 +339,103 @@ bool opposed(std::span<const Vec3> normals) {
 
 namespace {
 
-/// About the nanoseconds that a box, a triangle, one that rounded arithmetic does not decide, and a
-/// winding number take.
-constexpr std::uint64_t kBox = 20, kTriangle = 200, kExact = 4000, kWinding = 1000,
+/// About the nanoseconds that a box, four triangles at once, a triangle, one that rounded
+/// arithmetic does not decide, and a winding number take.
+constexpr std::uint64_t kBox = 20, kFour = 40, kTriangle = 200, kExact = 4000, kWinding = 1000,
                         kCrossing = 1000;
+
+/// Which triangles of the original meet a tetrahedron's interior, one after the other.
+class Meeting {
+ public:
+  Meeting(const geom::Mesh& original, const Tetrahedron& tetrahedron,
+          std::vector<std::uint32_t>* met)
+      : original_(original), tetrahedron_(tetrahedron), faces_(tetrahedron), met_(met) {
+    for (const Vec3& p : tetrahedron) box_.extend(p);
+    if (met != nullptr) met->clear();
+  }
+
+  /// Boxes that only touch the open one do not overlap.
+  [[nodiscard]] bool overlaps(const geom::Box3& b) const {
+    return (b.min.array() < box_.max.array()).all() && (b.max.array() > box_.min.array()).all();
+  }
+  [[nodiscard]] bool may_meet(const geom::Box3& b) {
+    steps_ += kBox;
+    return !enough_ && overlaps(b) && !faces_.beyond(b);
+  }
+
+  void look_at(std::uint32_t t) {
+    if (enough_) return;
+    const geom::Triangle& tri = original_.triangles[t];
+    const std::array<Vec3, 3> corners{original_.vertices[tri[0]], original_.vertices[tri[1]],
+                                      original_.vertices[tri[2]]};
+    geom::Box3 own;
+    for (const Vec3& p : corners) own.extend(p);
+    steps_ += kBox;
+    if (overlaps(own)) decide(t, corners);
+  }
+
+  /// The same, of four triangles at once.
+  [[gnu::always_inline]] void look_at(const FourCorners& four) {
+    steps_ += kBox;
+    Long4 apart{};
+    for (int k = 0; k < 3; ++k)
+      apart |= (four.low.of[k] >= box_.max[k]) | (four.high.of[k] <= box_.min[k]);
+    if ((bits(apart) & four.all) == four.all) return;
+    steps_ += kFour;
+    for (unsigned left = faces_.not_beyond(four) & ~bits(apart); left != 0 && !enough_;
+         left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      std::array<Vec3, 3> corners;
+      for (std::size_t c = 0; c < 3; ++c)
+        corners[c] = {four.corner[c].of[0][i], four.corner[c].of[1][i], four.corner[c].of[2][i]};
+      decide(four.triangle[i], corners);
+    }
+  }
+
+  [[nodiscard]] bool enough() const { return enough_; }
+  /// Nothing that has been looked at meets the interior.
+  [[nodiscard]] bool clear() const { return clear_; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+
+ private:
+  void decide(std::uint32_t t, const std::array<Vec3, 3>& corners) {
+    steps_ += kTriangle;
+    // Where a step would be taken, the answer is never that of rounded arithmetic: what is beyond a
+    // face is so for certain, and what seems to be within only makes the step fail.
+    const Faces::Place place = faces_.of(corners);
+    if (place == Faces::Place::Undecided) steps_ += kExact;
+    if (place == Faces::Place::Beyond ||
+        (place == Faces::Place::Undecided && !meets_interior(tetrahedron_, corners)))
+      return;
+    clear_ = false;
+    if (met_ != nullptr) met_->push_back(t);
+    enough_ = met_ == nullptr || met_->size() == ReferenceSolid::kMostMet;
+  }
+
+  const geom::Mesh& original_;
+  const Tetrahedron& tetrahedron_;
+  geom::Box3 box_;
+  Faces faces_;
+  std::vector<std::uint32_t>* met_;
+  bool clear_ = true, enough_ = false;
+  std::uint64_t steps_ = 0;
+};
+
+/// Looks at all groups until the answer is known.
+[[gnu::always_inline]] inline void look_at_all(std::span<const FourCorners> groups,
+                                               Meeting& meeting) {
+  for (const FourCorners& four : groups) {
+    if (meeting.enough()) return;
+    meeting.look_at(four);
+  }
+}
+
+#ifdef KABOUM_AVX2
+[[gnu::target("avx2")]] void look_at_all_avx2(std::span<const FourCorners> groups,
+                                              Meeting& meeting) {
+  look_at_all(groups, meeting);
+}
+#endif
 
 }  // namespace
 
@@ -270,44 +448,64 @@ ReferenceSolid::ReferenceSolid(const geom::Mesh& original,
 
 bool ReferenceSolid::contains(const Tetrahedron& tetrahedron, bool inside,
                               std::vector<std::uint32_t>* met) const {
-  geom::Box3 box;
-  for (const Vec3& p : tetrahedron) box.extend(p);
-  bool clear = true, enough = false;
-  if (met != nullptr) met->clear();
-  // Boxes that only touch the open one are left out.
-  const Faces faces(tetrahedron);
-  const auto overlaps = [&](const geom::Box3& b) {
-    return (b.min.array() < box.max.array()).all() && (b.max.array() > box.min.array()).all();
-  };
+  Meeting meeting(original_, tetrahedron, met);
+  bvh_->traverse([&](const geom::Box3& b) { return meeting.may_meet(b); },
+                 [&](std::uint32_t t) { meeting.look_at(t); });
+  count(work_, meeting.steps());
+  return meeting.clear() && is_middle_in(tetrahedron, inside);
+}
+
+void ReferenceSolid::look_around(const geom::Box3& box, Surroundings& around) const {
+  around.box_ = box;
+  around.groups_.clear();
   std::uint64_t steps = 0;
-  const auto may_meet = [&](const geom::Box3& b) {
-    steps += kBox;
-    return !enough && overlaps(b) && !faces.beyond(b);
+  const auto meets = [&](const geom::Box3& b) {
+    return (b.min.array() <= box.max.array()).all() && (b.max.array() >= box.min.array()).all();
   };
-  bvh_->traverse(may_meet, [&](std::uint32_t t) {
-    if (enough) return;
+  const auto put = [&](std::uint32_t t) {
     const geom::Triangle& tri = original_.triangles[t];
-    const std::array<Vec3, 3> corners{original_.vertices[tri[0]], original_.vertices[tri[1]],
-                                      original_.vertices[tri[2]]};
     geom::Box3 own;
-    for (const Vec3& p : corners) own.extend(p);
-    steps += kBox;
-    if (!overlaps(own)) return;
-    steps += kTriangle;
-    // Where a step would be taken, the answer is never that of rounded arithmetic: what is beyond a
-    // face is so for certain, and what seems to be within only makes the step fail.
-    const Faces::Place place = faces.of(corners);
-    if (place == Faces::Place::Undecided) steps += kExact;
-    if (place == Faces::Place::Beyond ||
-        (place == Faces::Place::Undecided && !meets_interior(tetrahedron, corners)))
-      return;
-    clear = false;
-    if (met != nullptr) met->push_back(t);
-    enough = met == nullptr || met->size() == kMostMet;
-  });
+    for (const std::uint32_t v : tri) own.extend(original_.vertices[v]);
+    if (!meets(own)) return;
+    if (around.groups_.empty() || around.groups_.back().all == 15) around.groups_.push_back({});
+    FourCorners& to = around.groups_.back();
+    const auto i = static_cast<std::size_t>(std::popcount(to.all));
+    to.all |= 1U << i;
+    to.triangle[i] = t;
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) to.corner[c].of[k][i] = original_.vertices[tri[c]][k];
+      to.low.of[k][i] = own.min[k];
+      to.high.of[k][i] = own.max[k];
+    }
+  };
+  bvh_->traverse(
+      [&](const geom::Box3& b) {
+        steps += kBox;
+        return meets(b);
+      },
+      [&](std::uint32_t t) {
+        steps += kBox;
+        put(t);
+      });
   count(work_, steps);
-  if (!clear) return false;
-  // One point of the interior speaks for all of it, for the surface does not meet it.
+}
+
+bool ReferenceSolid::contains(const Tetrahedron& tetrahedron, bool inside,
+                              std::vector<std::uint32_t>* met, const Surroundings& around) const {
+  Meeting meeting(original_, tetrahedron, met);
+#ifdef KABOUM_AVX2
+  if (has_avx2())
+    look_at_all_avx2(around.groups_, meeting);
+  else
+#endif
+    look_at_all(around.groups_, meeting);
+  count(work_, meeting.steps());
+  return meeting.clear() && is_middle_in(tetrahedron, inside);
+}
+
+/// Whether one point of the interior has the winding number that is wanted: it speaks for all of
+/// it, where the surface does not meet it.
+bool ReferenceSolid::is_middle_in(const Tetrahedron& tetrahedron, bool inside) const {
   const Vec3 middle =
       0.25 * (tetrahedron[0] + tetrahedron[1]) + 0.25 * (tetrahedron[2] + tetrahedron[3]);
   for (int k = 0; k < 4; ++k) {

@@ -35,6 +35,24 @@ bool same_orientation(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 /// Whether two of the unit normals are nearly opposite.
 bool opposed(std::span<const Vec3> normals);
 
+namespace detail {
+
+/// Four numbers that are computed with at once.
+using Double4 = double __attribute__((vector_size(32)));
+
+struct alignas(32) FourVectors {
+  Double4 of[3];  // by axis
+};
+
+/// Corners and boxes of up to four triangles.
+struct FourCorners {
+  FourVectors corner[3], low, high;
+  std::array<std::uint32_t, 4> triangle;
+  unsigned all;  // a bit for each triangle
+};
+
+}  // namespace detail
+
 /// Exact questions about the solid of the original: the certificate of steps that give back what
 /// earlier steps have added.
 class ReferenceSolid {
@@ -55,7 +73,32 @@ class ReferenceSolid {
                               std::vector<std::uint32_t>* met = nullptr) const;
   static constexpr std::size_t kMostMet = 16;
 
+  /// The original's triangles near a box, for several tetrahedra in it, four to a group.
+  class Surroundings {
+   public:
+    /// Whether all near this box are held, and it is no small part of what is.
+    [[nodiscard]] bool hold(const geom::Box3& box) const {
+      return (box_.min.array() <= box.min.array()).all() &&
+             (box.max.array() <= box_.max.array()).all() && box_.diagonal() <= 2 * box.diagonal();
+    }
+
+   private:
+    friend class ReferenceSolid;
+    geom::Box3 box_;
+    std::vector<detail::FourCorners> groups_;  // in the hierarchy's order
+  };
+
+  /// Makes `around` hold the box. Safe to call from several threads.
+  void look_around(const geom::Box3& box, Surroundings& around) const;
+
+  /// As `contains`, of a tetrahedron in the box that `around` holds, with the same answer and the
+  /// same triangles met.
+  [[nodiscard]] bool contains(const Tetrahedron& tetrahedron, bool inside,
+                              std::vector<std::uint32_t>* met, const Surroundings& around) const;
+
  private:
+  [[nodiscard]] bool is_middle_in(const Tetrahedron& tetrahedron, bool inside) const;
+
   const geom::Mesh& original_;
   std::shared_ptr<const geom::Bvh> bvh_;
   geom::WindingNumber winding_;

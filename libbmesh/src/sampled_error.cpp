@@ -290,7 +290,7 @@ double SampledError::largest(std::span<const std::uint32_t> removed,
 SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed,
                                           std::span<const NewTriangle> added,
                                           std::span<Point> points, std::uint32_t& hint,
-                                          double limit) const {
+                                          double limit, const Locating& how) const {
   Energy e;
   const auto add = [&](double squared, double weight) {
     // In units of the diagonal: otherwise the powers would overflow.
@@ -301,7 +301,10 @@ SampledError::Energy SampledError::energy(std::span<const std::uint32_t> removed
   std::uint64_t steps = 0;
   bool within = true;
   for (std::size_t i = 0; i < points.size() && within; ++i)
-    within = add(locate(points[i], hint, steps), points[i].weight);
+    within =
+        add(how.again && points[i].nearest != kNone ? locate_again(points[i])
+                                                    : locate(points[i], hint, steps, how.vicinity),
+            points[i].weight);
   if (within) {
     NearestOf nearest(added);
     std::size_t from = 0;

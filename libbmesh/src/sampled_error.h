@@ -31,6 +31,14 @@ class SampledError {
     /// Place of the original's triangle that it is nearest to, or was when it was somewhere near.
     std::uint32_t nearest = kNone;
   };
+  /// How points are located.
+  struct Locating {
+    /// Where they have been located near by: from there, so that they may be found farther than
+    /// they are.
+    bool again = false;
+    /// Looked at instead of all of the original, where it is large enough.
+    const ClosestTriangle::Vicinity* vicinity = nullptr;
+  };
   struct Energy {
     double sum = 0;      ///< Σ weight · distance^power, in units of the diagonal
     double squared = 0;  ///< largest squared distance [length²]
@@ -65,15 +73,36 @@ class SampledError {
 
   /// The same as a sum, with the maximum besides. Stops when the sum exceeds `limit`; the points up
   /// to there are located.
+  /// @param how  the points are located.
   Energy energy(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
-                std::span<Point> points, std::uint32_t& hint, double limit) const;
+                std::span<Point> points, std::uint32_t& hint, double limit,
+                const Locating& how) const;
+  Energy energy(std::span<const std::uint32_t> removed, std::span<const NewTriangle> added,
+                std::span<Point> points, std::uint32_t& hint, double limit) const {
+    return energy(removed, added, points, hint, limit, Locating());
+  }
 
+  /// The same of a point that has been located near by, from there: nearly always right, and never
+  /// nearer than it is.
+  double locate_again(Point& point, double enough = 0) const {
+    return original_.squared_near(point.position, point.nearest, enough);
+  }
   /// Finds where the original is nearest to a point. @return the squared distance
-  double locate(Point& point, std::uint32_t& hint) const {
+  double locate(Point& point, std::uint32_t& hint) const { return locate(point, hint, nullptr); }
+  /// The same in a vicinity, where that is large enough.
+  double locate(Point& point, std::uint32_t& hint,
+                const ClosestTriangle::Vicinity* vicinity) const {
     std::uint64_t steps = 0;
-    const double squared = locate(point, hint, steps);
+    const double squared = locate(point, hint, steps, vicinity);
     count(work_, steps);
     return squared;
+  }
+
+  /// Makes the vicinity hold what is in the ball.
+  void gather(const Vec3& center, double radius, ClosestTriangle::Vicinity& out) const {
+    std::uint64_t steps = 0;
+    original_.gather(center, radius, out, &steps);
+    count(work_, steps);
   }
 
   /// Hands the samples of `removed` to the nearest of `added`.
@@ -121,9 +150,10 @@ class SampledError {
   static std::size_t place_of(std::uint32_t t, std::span<const NewTriangle> added,
                               std::size_t& from);
   void add_samples(double spacing, double most);
-  double locate(Point& point, std::uint32_t& hint, std::uint64_t& steps) const {
+  double locate(Point& point, std::uint32_t& hint, std::uint64_t& steps,
+                const ClosestTriangle::Vicinity* vicinity = nullptr) const {
     if (point.nearest != kNone) hint = point.nearest;
-    const double squared = original_.squared(point.position, hint, 0, &steps);
+    const double squared = original_.squared(point.position, hint, 0, &steps, vicinity);
     point.nearest = hint;
     return squared;
   }

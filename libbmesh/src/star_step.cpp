@@ -74,19 +74,28 @@ void StarStep::place_star(const Vec3& apex) {
   put(apex, total / 6, 1);
 }
 
+void StarStep::look_around_star(const Vec3& apex, std::uint32_t& hint) {
+  double size = 0;
+  for (const Ring& r : ring) size = std::max(size, (m_.position[r.p] - apex).squaredNorm());
+  // The other points are no farther from the apex than two thirds of that, or little more.
+  sampled_.gather(apex, std::sqrt(size) + std::sqrt(sampled_.locate(points.back(), hint)),
+                  vicinity);
+}
+
 /// Exact: no tetrahedron between a triangle that goes and `to` cuts into the
 /// original. Where one does, the parts cut off become constraints in support,
 /// whose triangle i belongs to gone[i] if `own`.
 bool StarStep::does_not_cut_original(std::span<const std::uint32_t> gone, bool own,
                                      const Vec3& to) {
-  bool all = true;
+  bool all = true, looked = false;
+  const bool inner = options_.direction == Direction::Inner;
   for (std::size_t i = 0; i < gone.size(); ++i) {
-    met_.clear();
-    if (certified(gone[i], to, &met_)) continue;
+    if (!may_cut_original(gone[i], to)) continue;
+    if (!looked) look_around(gone, to);
+    looked = true;
+    const Tetrahedron tetrahedron = between(gone[i], to);
+    if (solid_->contains(tetrahedron, inner, &met_, around_)) continue;
     all = false;
-    const geom::Triangle& c = m_.mesh[gone[i]];
-    const std::array<Vec3, 4> tetrahedron{m_.position[c[0]], m_.position[c[1]], m_.position[c[2]],
-                                          to};
     for (const std::uint32_t t : met_) {
       const geom::Triangle& tri = original_.triangles[t];
       support.keep(
@@ -184,18 +193,37 @@ bool StarStep::folds(const Vec3& to) const {
   });
 }
 
+/// The tetrahedron of triangle t and the point.
+Tetrahedron StarStep::between(std::uint32_t t, const Vec3& to) const {
+  const geom::Triangle& tri = m_.mesh[t];
+  return {m_.position[tri[0]], m_.position[tri[1]], m_.position[tri[2]], to};
+}
+
+/// Exact: whether the tetrahedron between triangle t and the point has volume and, outwards, is on
+/// the wrong side of t.
+bool StarStep::may_cut_original(std::uint32_t t, const Vec3& to) {
+  if (options_.direction == Direction::Any) return false;
+  const auto [a, b, c, d] = between(t, to);
+  ++statistics_.predicates;
+  const geom::Sign side = geom::orient3d(a, b, c, d, &statistics_.exact_fallbacks);
+  return side == geom::Sign::Negative ||
+         (side == geom::Sign::Positive && options_.direction == Direction::Inner);
+}
+
+/// around_ holds all tetrahedra between the triangles and the point, and not many times their box.
+void StarStep::look_around(std::span<const std::uint32_t> gone, const Vec3& to) {
+  geom::Box3 box;
+  box.extend(to);
+  for (const std::uint32_t t : gone)
+    for (const std::uint32_t v : m_.mesh[t]) box.extend(m_.position[v]);
+  if (!around_.hold(box)) solid_->look_around(box, around_);
+}
+
 /// Exact: the tetrahedron between triangle t and the point leaves the
 /// original's solid alone; inwards, it also lies in it.
-bool StarStep::certified(std::uint32_t t, const Vec3& to, std::vector<std::uint32_t>* met) {
-  if (options_.direction == Direction::Any) return true;
-  const geom::Triangle& tri = m_.mesh[t];
-  const Vec3 &a = m_.position[tri[0]], &b = m_.position[tri[1]], &c = m_.position[tri[2]];
-  ++statistics_.predicates;
-  const geom::Sign side = geom::orient3d(a, b, c, to, &statistics_.exact_fallbacks);
-  const bool inner = options_.direction == Direction::Inner;
-  const geom::Sign wrong = inner ? geom::Sign::Positive : geom::Sign::Negative;
-  if (side == geom::Sign::Zero || (side != wrong && !inner)) return true;
-  return solid_->contains({a, b, c, to}, inner, met);
+bool StarStep::certified(std::uint32_t t, const Vec3& to) {
+  return !may_cut_original(t, to) ||
+         solid_->contains(between(t, to), options_.direction == Direction::Inner);
 }
 
 /// Exact, for inner meshes: triangles of added, whose apex is `to`, in the

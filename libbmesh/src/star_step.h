@@ -47,6 +47,10 @@ class StarStep {
   /// before.
   void place_star(const Vec3& apex);
 
+  /// Makes vicinity hold the original near the star, of which the last point, at the apex, is
+  /// located.
+  void look_around_star(const Vec3& apex, std::uint32_t& hint);
+
   /// Fills support: the planes of the star, and the original near its triangles
   /// beyond them.
   void bound_by_star();
@@ -66,8 +70,7 @@ class StarStep {
 
   /// Exact: the tetrahedron between triangle t and the point leaves the
   /// original's solid alone; inwards, it also lies in it.
-  [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to,
-                               std::vector<std::uint32_t>* met = nullptr);
+  [[nodiscard]] bool certified(std::uint32_t t, const Vec3& to);
 
   /// Exact: no tetrahedron between a triangle that goes and `to` cuts into the
   /// original. Where one does, the parts cut off become constraints in support,
@@ -91,11 +94,16 @@ class StarStep {
   std::vector<std::uint32_t> removed;
   std::vector<NewTriangle> added;
   std::vector<SampledError::Point> points;
+  ClosestTriangle::Vicinity vicinity;  ///< of a star
   SupportPlanes support;
   std::vector<HalfSpace> planes;
   Quadric objective;  ///< of the displacement
 
  private:
+  [[nodiscard]] bool may_cut_original(std::uint32_t t, const Vec3& to);
+  [[nodiscard]] Tetrahedron between(std::uint32_t t, const Vec3& to) const;
+  void look_around(std::span<const std::uint32_t> gone, const Vec3& to);
+
   WorkingMesh& m_;
   SampledError& sampled_;
   ReferenceSolid* solid_;
@@ -105,6 +113,7 @@ class StarStep {
   std::vector<Step>* steps_;
   bool dense_ = false;
   std::vector<std::uint32_t> met_;
+  ReferenceSolid::Surroundings around_;  // of a star that was tested
   std::vector<Vec3> flat_;
   Vec3 apex_ = Vec3::Zero();  // of support, when it settles a contraction
 };

@@ -51,4 +51,47 @@ std::uint32_t WideBvh::add(const Mesh& mesh, const Bvh& bvh, std::uint32_t index
   return place;
 }
 
+std::uint64_t WideBvh::gather(const Vec3& center, double radius, Vicinity& out) const {
+  out.center_ = center;
+  out.radius_ = radius;
+  out.leaves_.clear();
+  constexpr Float4 kNone = Node::kAllFar;
+  constexpr float kFar = Node::kFar;
+  if (nodes_.empty()) {  // one leaf at most, which is taken to be everywhere
+    constexpr Float4 low{-kFar, kFar, kFar, kFar};
+    if (!leaves_.empty()) out.leaves_.push_back({{low, low, low}, {-low, -low, -low}, {}});
+    return 1;
+  }
+  const Eigen::Vector3f x = frame_(center);
+  const float cutoff = frame_.cutoff(radius * radius);
+  std::array<std::uint32_t, 3 * Bvh::kMaxDepth + 1> stack;
+  std::size_t size = 0;
+  stack[size++] = root_;
+  std::uint64_t visited = 0;
+  unsigned last = 4;  // leaves among the last four
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    ++visited;
+    const Float4 bound = squared_distance(node.low, node.high, x);
+    for (unsigned bits = bits_below(bound, cutoff); bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(bits));
+      if ((node.child[i] & kLeaf) == 0) {
+        stack[size++] = node.child[i];
+        continue;
+      }
+      if (last == 4) {
+        out.leaves_.push_back({{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}, {}});
+        last = 0;
+      }
+      Vicinity::FourLeaves& to = out.leaves_.back();
+      for (int k = 0; k < 3; ++k) {
+        to.low[k][last] = node.low[k][i];
+        to.high[k][last] = node.high[k][i];
+      }
+      to.leaf[last++] = node.child[i] & ~kLeaf;
+    }
+  }
+  return visited;
+}
+
 }  // namespace kaboum::geom

@@ -66,6 +66,59 @@ TEST(ClosestTriangle, HintsDoNotChangeTheDistance) {
   }
 }
 
+// Of points in a ball, all that is gathered there gives what all of the mesh does.
+TEST(ClosestTriangle, VicinitiesDoNotChangeTheDistance) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const auto& f : test::closed_families()) {
+    if (f.mesh.triangles.size() > 3000) continue;
+    SCOPED_TRACE(f.name);
+    const ClosestTriangle search(f.mesh);
+    const double size = geom::bounding_box(f.mesh).diagonal();
+    ClosestTriangle::Vicinity vicinity;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 center = f.mesh.vertices[random() % f.mesh.vertices.size()];
+      const double radius = size * std::pow(10.0, -1 - i % 3);
+      std::uint64_t steps = 0;
+      search.gather(center, radius, vicinity, &steps);
+      EXPECT_GT(steps, 0U);
+      for (int k = 0; k < 10; ++k) {
+        const Vec3 p = center + 0.8 * radius * Vec3(unit(random), unit(random), unit(random));
+        const auto hint = static_cast<std::uint32_t>(random() % f.mesh.triangles.size());
+        std::uint32_t of_all = hint, of_some = hint;
+        EXPECT_EQ(search.squared(p, of_all), search.squared(p, of_some, 0, nullptr, &vicinity));
+      }
+    }
+  }
+}
+
+// From anywhere on a ball, the triangles that are nearer and nearer lead to the nearest, but for a
+// limit of steps; what is found is never nearer than it is.
+TEST(ClosestTriangle, NearTheHintFindsTheNearestOfARoundBody) {
+  const geom::Mesh mesh = test::icosphere(3);
+  const ClosestTriangle search(mesh);
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int same = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = 1.2 * Vec3(unit(random), unit(random), unit(random)).normalized();
+    std::uint32_t exact = 0;
+    search.squared(p, exact);
+    // Points near by are near triangles near by.
+    std::uint32_t hint = exact;
+    const Vec3 q = p + 0.05 * Vec3(unit(random), unit(random), unit(random));
+    const double found = search.squared_near(q, hint), nearest = nearest_of_all(mesh, q);
+    EXPECT_GE(found, nearest);
+    EXPECT_EQ(squared_distance(q, search.corners(hint)), found);
+    same += found == nearest ? 1 : 0;
+    // Near enough is near enough.
+    std::uint32_t first = exact;
+    search.squared_near(q, first, 100);
+    EXPECT_EQ(first, exact);
+  }
+  EXPECT_GE(same, 295);
+}
+
 // Of a flat star whose original bulges beyond one of its triangles, that one's half-space keeps the
 // bulge inside, whatever the direction.
 TEST(SupportPlanes, KeepsPointsOfTheOriginalBehindThePlanes) {

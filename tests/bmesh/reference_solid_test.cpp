@@ -93,6 +93,46 @@ TEST(ReferenceSolid, TinyTrianglesInACornerAreNotBeyondIt) {
   EXPECT_NE(std::find(met.begin(), met.end(), 0U), met.end());
 }
 
+// Four triangles at once, of those gathered near a box, give the same answers and the same
+// triangles met as the hierarchy does, one by one.
+TEST(ReferenceSolid, SurroundingsChangeNoAnswer) {
+  std::mt19937_64 random(63);
+  std::uniform_real_distribution<double> unit(-0.5, 0.5);
+  std::size_t accepted = 0, refused = 0;
+  for (const auto& f : test::closed_families()) {
+    if (f.mesh.triangles.size() > 3000) continue;
+    const ReferenceSolid solid(f.mesh);
+    const double size = geom::bounding_box(f.mesh).diagonal();
+    ReferenceSolid::Surroundings around;
+    for (int i = 0; i < 80; ++i) {
+      // Corners at vertices of the mesh and near them.
+      const auto& tri = f.mesh.triangles[random() % f.mesh.triangles.size()];
+      Tetrahedron t;
+      for (std::size_t k = 0; k < 4; ++k) {
+        t[k] = f.mesh.vertices[tri[k % 3]];
+        if (k == 3 || i % 3 == 0)
+          t[k] += std::pow(10.0, -1 - static_cast<double>(i % 4)) * size *
+                  Vec3(unit(random), unit(random), unit(random));
+      }
+      if (!has_volume(t)) continue;
+      geom::Box3 box;
+      for (const Vec3& p : t) box.extend(p);
+      if (i % 2 == 0) box.extend(box.min - 0.2 * (box.max - box.min));
+      if (!around.hold(box)) solid.look_around(box, around);
+      ASSERT_TRUE(around.hold(box));
+      for (const bool inside : {false, true}) {
+        std::vector<std::uint32_t> met, met_around{7};
+        const bool ok = solid.contains(t, inside, &met);
+        ASSERT_EQ(solid.contains(t, inside, &met_around, around), ok) << f.name;
+        ASSERT_EQ(met_around, met) << f.name;
+        ++(ok ? accepted : refused);
+      }
+    }
+  }
+  EXPECT_GT(accepted, 300U);
+  EXPECT_GT(refused, 300U);
+}
+
 // Against the slow oracle, and the checker's own implementation: tetrahedra that are accepted lie
 // outside (inside) at every point tried, and both implementations agree.
 TEST(ReferenceSolid, AcceptsOnlyWhatLiesOutside) {

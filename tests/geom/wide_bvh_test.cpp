@@ -78,12 +78,62 @@ TEST(WideBvh, FindsWhatIsNearest) {
   }
 }
 
+// A vicinity that holds a point with what is near it gives what all of the hierarchy does; one that
+// does not says so.
+TEST(WideBvh, VicinitiesHoldWhatIsNear) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> number;
+  for (const int count : {1, 4, 5, 17, 300}) {
+    for (const double size : {1e-6, 1.0, 1e9}) {
+      const Mesh mesh = soup(random, count, size);
+      const Bvh bvh(mesh);
+      const WideBvh wide(mesh, bvh);
+      WideBvh::Vicinity vicinity;
+      std::size_t held = 0, looked_at = 0;
+      for (int trial = 0; trial < 50; ++trial) {
+        const Vec3 center = size * Vec3(number(random), number(random), number(random));
+        const double radius = size * std::abs(number(random));
+        wide.gather(center, radius, vicinity);
+        for (int k = 0; k < 8; ++k) {
+          const Vec3 p =
+              center + 0.7 * radius * Vec3(number(random), number(random), number(random));
+          std::size_t ignored = 0;
+          const double expected = nearest(mesh, bvh, wide, p, 1e100, ignored);
+          EXPECT_EQ(vicinity.holds(p, expected),
+                    (p - center).norm() + std::sqrt(expected) <= radius);
+          if (!vicinity.holds(p, expected)) continue;
+          ++held;
+          double best = std::numeric_limits<double>::infinity();
+          float cutoff = wide.frame().cutoff(expected);
+          const auto visit = [&](std::uint32_t place) {
+            ++looked_at;
+            const Triangle& t = mesh.triangles[bvh.order()[place]];
+            best = std::min(best, (p - closest_point(p, mesh.vertices[t[0]], mesh.vertices[t[1]],
+                                                     mesh.vertices[t[2]]))
+                                      .squaredNorm());
+          };
+          wide.visit_near(
+              vicinity, p, cutoff, [] { return false; }, visit);
+          EXPECT_EQ(best, expected) << count << trial;
+        }
+      }
+      if (count != 300) continue;
+      EXPECT_GT(held, 30U);
+      EXPECT_LT(looked_at, 30 * held);
+    }
+  }
+}
+
 TEST(WideBvh, OfNoTrianglesVisitsNone) {
   const WideBvh none;
   const float far = 1;
   EXPECT_EQ(none.visit_near(
                 Vec3::Zero(), far, [] { return false; }, [](std::uint32_t) { FAIL(); }),
             0U);
+  WideBvh::Vicinity vicinity;
+  none.gather(Vec3::Zero(), 1, vicinity);
+  none.visit_near(
+      vicinity, Vec3::Zero(), far, [] { return false; }, [](std::uint32_t) { FAIL(); });
 }
 
 }  // namespace

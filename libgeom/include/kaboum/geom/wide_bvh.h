@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -45,20 +46,11 @@ class WideBvh {
       if (!(entry.squared < cutoff)) continue;
       ++visited;
       if ((entry.node & kLeaf) != 0) {
-        const Leaf& leaf = leaves_[entry.node & ~kLeaf];
-        const Float4 bound = leaf.triangles.at_least(x);
-        for (unsigned bits = bits_below(bound, cutoff) & leaf.all; bits != 0; bits &= bits - 1) {
-          const auto i = static_cast<unsigned>(std::countr_zero(bits));
-          if (bound[i] < cutoff) visit(leaf.first + i);
-        }
+        visit_leaf(entry.node & ~kLeaf, x, cutoff, visit);
         continue;
       }
       const Node& node = nodes_[entry.node];
-      const auto away = [&](int k) {
-        return larger(larger(node.low[k] - x[k], x[k] - node.high[k]), Float4{});
-      };
-      const Float4 dx = away(0), dy = away(1), dz = away(2);
-      const Float4 bound = dx * dx + dy * dy + dz * dz;
+      const Float4 bound = squared_distance(node.low, node.high, x);
       // The nearest comes last.
       const std::size_t first = size;
       for (unsigned bits = bits_below(bound, cutoff); bits != 0; bits &= bits - 1) {
@@ -66,6 +58,48 @@ class WideBvh {
         std::size_t at = size++;
         for (; at > first && stack[at - 1].squared < bound[i]; --at) stack[at] = stack[at - 1];
         stack[at] = {bound[i], node.child[i]};
+      }
+    }
+    return visited;
+  }
+
+  /// The leaves near a ball, for many points in it.
+  class Vicinity {
+   public:
+    /// Whether all that is as near to p as that is held.
+    [[nodiscard]] bool holds(const Vec3& p, double squared) const {
+      return (p - center_).norm() + std::sqrt(squared) <= radius_;
+    }
+
+   private:
+    friend class WideBvh;
+    struct FourLeaves {
+      std::array<Float4, 3> low, high;
+      std::array<std::uint32_t, 4> leaf;
+    };
+    Vec3 center_ = Vec3::Zero();
+    double radius_ = -1;
+    std::vector<FourLeaves> leaves_;
+  };
+
+  /// Makes the vicinity hold all in the ball. @return boxes looked at
+  std::uint64_t gather(const Vec3& center, double radius, Vicinity& out) const;
+
+  /// As the other, of a vicinity that holds p with what `cutoff` was given for.
+  template <class Done, class Visit>
+  std::uint64_t visit_near(const Vicinity& vicinity, const Vec3& p, const float& cutoff,
+                           const Done& done, const Visit& visit) const {
+    const Eigen::Vector3f x = frame_(p);
+    std::uint64_t visited = 0;
+    for (const Vicinity::FourLeaves& four : vicinity.leaves_) {
+      ++visited;
+      const Float4 bound = squared_distance(four.low, four.high, x);
+      for (unsigned bits = bits_below(bound, cutoff); bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(bits));
+        if (!(bound[i] < cutoff)) continue;
+        ++visited;
+        visit_leaf(four.leaf[i], x, cutoff, visit);
+        if (done()) return visited;
       }
     }
     return visited;
@@ -86,6 +120,28 @@ class WideBvh {
     std::uint32_t first;  // place
     unsigned all;         // a bit for each triangle
   };
+
+  /// Of a point from four boxes.
+  static Float4 squared_distance(const std::array<Float4, 3>& low,
+                                 const std::array<Float4, 3>& high, const Eigen::Vector3f& x) {
+    const auto away = [&](int k) {
+      return larger(larger(low[k] - x[k], x[k] - high[k]), Float4{});
+    };
+    const Float4 dx = away(0), dy = away(1), dz = away(2);
+    return dx * dx + dy * dy + dz * dz;
+  }
+
+  template <class Visit>
+  void visit_leaf(std::uint32_t index, const Eigen::Vector3f& x, const float& cutoff,
+                  const Visit& visit) const {
+    const Leaf& leaf = leaves_[index];
+    const Float4 bound = leaf.triangles.at_least(x);
+    for (unsigned bits = bits_below(bound, cutoff) & leaf.all; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(bits));
+      if (bound[i] < cutoff) visit(leaf.first + i);
+    }
+  }
+
   std::uint32_t add(const Mesh& mesh, const Bvh& bvh, std::uint32_t index);
 
   UnitFrame frame_;
