@@ -158,6 +158,7 @@ class Between {
 
  private:
   static constexpr int kMostHalvings = 6;
+  static constexpr std::uint64_t kFollowed = 60;  ///< [ns] that it takes to follow a point, about
 
   struct SubTriangle {
     std::array<Vec3, 3> corner;
@@ -187,7 +188,11 @@ class Between {
     }
     const int first = (across + 1) % 3, second = (across + 2) % 3;
     SurfaceSample middle{0, 0.5 * (p.corner[first] + p.corner[second]), p.nearest[first]};
-    middle.squared = present_.squared(middle.point, middle.nearest, 0, &steps_);
+    middle.squared = present_.squared_near(middle.point, middle.nearest);
+    // What is near enough does not matter beyond that.
+    steps_ += kFollowed;
+    if (!(middle.squared <= enough_))
+      middle.squared = present_.squared(middle.point, middle.nearest, 0, &steps_);
     for (const int k : {first, second}) {
       SubTriangle half = p;
       half.corner[k] = middle.point;

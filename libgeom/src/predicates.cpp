@@ -73,6 +73,10 @@ class Differences {
 }  // namespace
 
 Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  // Most of what gets here: a point that is one of the others, and planes across axes.
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return Sign::Zero;
+  for (int k = 0; k < 3; ++k)
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return Sign::Zero;
   Differences<9> v;
   if (v.set({a.x(), a.y(), a.z(), a.x(), a.y(), a.z(), a.x(), a.y(), a.z()},
             {b.x(), b.y(), b.z(), c.x(), c.y(), c.z(), d.x(), d.y(), d.z()}, 41)) {
@@ -85,6 +89,8 @@ Sign orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
 }
 
 Sign orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy) {
+  if ((ax == bx && ax == cx) || (ay == by && ay == cy)) return Sign::Zero;
+  if ((ax == bx && ay == by) || (ax == cx && ay == cy) || (bx == cx && by == cy)) return Sign::Zero;
   Differences<4> v;
   if (v.set({ax, ay, ax, ay}, {bx, by, cx, cy}, 62)) return to_sign(v[0] * v[3] - v[1] * v[2]);
   return to_sign(
