@@ -22,6 +22,8 @@ constexpr double kSpacingOfEpsilon = 0.7, kFinest = 0.5;
 constexpr double kShallowEpsilon = 0.3, kShallowSpacing = 0.8;
 /// A neighbour's value has the rounding of a float, and this covers it.
 constexpr double kNeighbourUp = 1.001;
+/// A root of what is below a square by this factor is below the square's root.
+constexpr double kSquaredDown = 1 - 0x1p-50;
 /// Above the distance of any two points that are read, and its square is finite.
 constexpr double kFarthest = 1e100;
 
@@ -157,13 +159,14 @@ bool SolidField::triangles_near(const Box3& box, std::size_t most,
   return out.size() <= most;
 }
 
-double SolidField::rough_distance(const Vec3& p, double limit) const {
+double SolidField::rough_distance(const Vec3& p, double limit, double enough) const {
+  const double near = enough > 0 ? enough * enough * kSquaredDown : -1;
   double best = limit * limit;
   const std::vector<Parts::Corner>& corners = parts_->corners;
   const geom::WideBvh& wide = parts_->wide;
   float cutoff = wide.frame().cutoff(best);
   wide.visit_near(
-      p, cutoff, [] { return false; },
+      p, cutoff, [&] { return best < near; },
       [&](std::uint32_t i) {
         const double d = geom::squared_distance(p, corners[i].a, corners[i].ab, corners[i].ac);
         if (!(d < best)) return;
@@ -175,7 +178,7 @@ double SolidField::rough_distance(const Vec3& p, double limit) const {
 
 double SolidField::distance_above(double least, const Vec3& p, double guess) const {
   if (guess <= least) return guess;
-  const double d = rough_distance(p, guess);
+  const double d = rough_distance(p, guess, least);
   // Far from the surface the field's sign is certain.
   return d > least && d < 2 * spacing_ && contains(p) ? 0 : d;
 }

@@ -94,8 +94,9 @@ class SolidField {
 
  private:
   [[nodiscard]] float node(int x, int y, int z) const;
-  /// Distance to the surface, rounded, if it is below `limit`.
-  [[nodiscard]] double rough_distance(const Vec3& p, double limit) const;
+  /// Distance to the surface, rounded, if it is below `limit`; where it is below `enough`, any
+  /// number below that.
+  [[nodiscard]] double rough_distance(const Vec3& p, double limit, double enough = 0) const;
 
   /// Search trees of the mesh and values of its grid, which searches of the same mesh share.
   struct Parts {
