@@ -21,13 +21,19 @@ Cell Cell::of(const Box3& box) {
     cell.corners.emplace_back((i & 1) != 0 ? box.max.x() : box.min.x(),
                               (i & 2) != 0 ? box.max.y() : box.min.y(),
                               (i & 4) != 0 ? box.max.z() : box.min.z());
-  cell.faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  for (const auto& face : kFaces) {
+    for (const std::uint32_t v : face) cell.faces.add_corner(v);
+    cell.faces.end_loop();
+  }
   return cell;
 }
 
 std::vector<std::array<std::uint32_t, 2>> Cell::edges() const {
   std::vector<std::array<std::uint32_t, 2>> out;
-  for (const auto& face : faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::span<const std::uint32_t> face = faces[f];
     for (std::size_t k = 0; k < face.size(); ++k) {
       const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
       out.push_back({std::min(a, b), std::max(a, b)});
@@ -47,7 +53,8 @@ Vec3 Cell::center() const {
 std::vector<Vec3> Cell::inward(double depth) const {
   const Vec3 middle = center();
   std::vector<std::vector<Vec3>> normals(corners.size());  // inwards, of the faces at each corner
-  for (const auto& face : faces) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::span<const std::uint32_t> face = faces[f];
     Vec3 normal = Vec3::Zero();
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
       normal +=
@@ -89,72 +96,112 @@ std::vector<Cube> cubes_over(const Box3& box) {
   return out;
 }
 
-Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
-  std::vector<double> h(cell.corners.size());
-  for (std::size_t i = 0; i < h.size(); ++i) {
-    h[i] = plane.height(cell.corners[i]);
-    h[i] = (lower ? h[i] : -h[i]) - shift;  // kept where ≤ 0
-  }
-  if (std::all_of(h.begin(), h.end(), [](double x) { return x < 0; })) return cell;
-  if (std::all_of(h.begin(), h.end(), [](double x) { return x > 0; })) return {};
-  Cell out;
-  constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  std::vector<std::uint32_t> number(h.size(), kNone);
-  std::vector<std::pair<std::array<std::uint32_t, 2>, std::uint32_t>> on_edge;  // each met twice
-  const auto found = [&](const std::array<std::uint32_t, 2>& edge) {
-    for (const auto& [known, at] : on_edge)
-      if (known == edge) return at;
-    return kNone;
+namespace {
+
+constexpr std::uint32_t kNotKept = 0xFFFFFFFF;
+
+/// Grows with the angle of a vector from −x on, counter-clockwise, without its functions.
+double turn_of(double x, double y) {
+  const double size = std::abs(x) + std::abs(y), t = size > 0 ? x / size : 1;
+  return y < 0 ? t : 2 - t;
+}
+
+/// What clipping needs besides its result, kept from one cell to the next.
+struct ClipScratch {
+  std::vector<double> height;
+  std::vector<std::uint32_t> number;  // of a corner that is kept
+  struct OnEdge {
+    std::uint32_t from, to, at;
   };
+  std::vector<OnEdge> on_edge;
   std::vector<std::uint32_t> cap;
-  for (const auto& face : cell.faces) {
-    std::vector<std::uint32_t> loop;
-    loop.reserve(face.size() + 1);
+  std::vector<std::pair<double, std::uint32_t>> order;
+};
+
+ClipScratch& clip_scratch() {
+  static thread_local ClipScratch s;
+  return s;
+}
+
+/// The face in the cutting plane: its corners in order round their middle.
+void add_cap(const Plane& plane, bool lower, ClipScratch& s, Cell& out) {
+  Vec3 center = Vec3::Zero();
+  for (const std::uint32_t v : s.cap) center += out.corners[v] / static_cast<double>(s.cap.size());
+  const Vec3 u = plane.n.unitOrthogonal(), w = plane.n.cross(u);
+  s.order.clear();
+  for (const std::uint32_t v : s.cap) {
+    const Vec3 r = out.corners[v] - center;
+    s.order.emplace_back(turn_of(u.dot(r), w.dot(r)), v);
+  }
+  std::sort(s.order.begin(), s.order.end());
+  if (!lower) std::reverse(s.order.begin(), s.order.end());
+  for (const auto& [turn, v] : s.order) out.faces.add_corner(v);
+  out.faces.end_loop();
+}
+
+/// The point of an edge at height 0, which both of its faces have.
+std::uint32_t cut_edge(const Cell& cell, std::uint32_t a, std::uint32_t b, ClipScratch& s,
+                       Cell& out) {
+  const std::uint32_t from = std::min(a, b), to = std::max(a, b);
+  for (const ClipScratch::OnEdge& known : s.on_edge)
+    if (known.from == from && known.to == to) return known.at;
+  const auto at = static_cast<std::uint32_t>(out.corners.size());
+  s.on_edge.push_back({from, to, at});
+  const Vec3 &p = cell.corners[from], &q = cell.corners[to];
+  out.corners.push_back(p + (s.height[from] / (s.height[from] - s.height[to])) * (q - p));
+  s.cap.push_back(at);
+  return at;
+}
+
+}  // namespace
+
+Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift) {
+  Cell out;
+  return clip(cell, plane, lower, shift, out) ? out : cell;
+}
+
+bool clip(const Cell& cell, const Plane& plane, bool lower, double shift, Cell& out) {
+  ClipScratch& s = clip_scratch();
+  const std::size_t count = cell.corners.size();
+  s.height.resize(count);
+  bool all_below = true, all_above = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double h = plane.height(cell.corners[i]);
+    s.height[i] = (lower ? h : -h) - shift;  // kept where ≤ 0
+    all_below = all_below && s.height[i] < 0;
+    all_above = all_above && s.height[i] > 0;
+  }
+  if (all_below) return false;
+  out.corners.clear();
+  out.faces.clear();
+  if (all_above) return true;
+  s.number.assign(count, kNotKept);
+  s.on_edge.clear();
+  s.cap.clear();
+  for (std::size_t f = 0; f < cell.faces.size(); ++f) {
+    const std::span<const std::uint32_t> face = cell.faces[f];
     for (std::size_t k = 0; k < face.size(); ++k) {
-      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
-      if (h[a] <= 0) {
-        if (number[a] == kNone) {
-          number[a] = static_cast<std::uint32_t>(out.corners.size());
+      const std::uint32_t a = face[k], b = face[k + 1 < face.size() ? k + 1 : 0];
+      const double ha = s.height[a], hb = s.height[b];
+      if (ha <= 0) {
+        if (s.number[a] == kNotKept) {
+          s.number[a] = static_cast<std::uint32_t>(out.corners.size());
           out.corners.push_back(cell.corners[a]);
-          if (h[a] == 0) cap.push_back(number[a]);
+          if (ha == 0) s.cap.push_back(s.number[a]);
         }
-        loop.push_back(number[a]);
+        out.faces.add_corner(s.number[a]);
       }
-      if ((h[a] < 0 && h[b] > 0) || (h[a] > 0 && h[b] < 0)) {
-        const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
-        std::uint32_t at = found(edge);
-        if (at == kNone) {
-          at = static_cast<std::uint32_t>(out.corners.size());
-          on_edge.emplace_back(edge, at);
-          const Vec3 &p = cell.corners[edge[0]], &q = cell.corners[edge[1]];
-          out.corners.push_back(p + (h[edge[0]] / (h[edge[0]] - h[edge[1]])) * (q - p));
-          cap.push_back(at);
-        }
-        loop.push_back(at);
-      }
+      if ((ha < 0 && hb > 0) || (ha > 0 && hb < 0))
+        out.faces.add_corner(cut_edge(cell, a, b, s, out));
     }
-    if (loop.size() >= 3) out.faces.push_back(std::move(loop));
+    out.faces.end_loop();
   }
-  if (out.faces.empty()) return {};
-  if (cap.size() >= 3 && out.corners.size() > cap.size()) {
-    // In order round the cut's centre.
-    Vec3 center = Vec3::Zero();
-    for (const std::uint32_t v : cap) center += out.corners[v] / static_cast<double>(cap.size());
-    Vec3 u = plane.n.unitOrthogonal();
-    const Vec3 w = plane.n.cross(u);
-    std::vector<std::pair<double, std::uint32_t>> order;
-    for (const std::uint32_t v : cap) {
-      const Vec3 r = out.corners[v] - center;
-      order.emplace_back(std::atan2(w.dot(r), u.dot(r)), v);
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<std::uint32_t> loop;
-    loop.reserve(order.size());
-    for (const auto& [angle, v] : order) loop.push_back(v);
-    if (!lower) std::reverse(loop.begin(), loop.end());
-    out.faces.push_back(std::move(loop));
+  if (out.faces.empty()) {
+    out.corners.clear();
+  } else if (s.cap.size() >= 3 && out.corners.size() > s.cap.size()) {
+    add_cap(plane, lower, s, out);
   }
-  return out;
+  return true;
 }
 
 }  // namespace kaboum::bcd

@@ -3,6 +3,8 @@
 #include <kaboum/geom/mesh.h>
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kaboum::bcd {
@@ -17,10 +19,39 @@ struct Plane {
   [[nodiscard]] double height(const Vec3& p) const { return n.dot(p) - d; }
 };
 
+/// Loops of indices, one behind the other.
+class Loops {
+ public:
+  [[nodiscard]] std::size_t size() const { return end_.size(); }
+  [[nodiscard]] bool empty() const { return end_.empty(); }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : end_[i - 1];
+    return {corner_.data() + begin, end_[i] - begin};
+  }
+  void clear() {
+    corner_.clear();
+    end_.clear();
+  }
+  /// Of a loop that begins where the last one ends.
+  void add_corner(std::uint32_t corner) { corner_.push_back(corner); }
+  /// Ends the loop, or leaves it out where it has fewer than three corners.
+  void end_loop() {
+    const std::size_t begin = end_.empty() ? 0 : end_.back();
+    if (corner_.size() < begin + 3) {
+      corner_.resize(begin);
+    } else {
+      end_.push_back(static_cast<std::uint32_t>(corner_.size()));
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> corner_, end_;
+};
+
 /// Bounded convex polytope that space is cut into: corners and faces as loops of corners.
 struct Cell {
   std::vector<Vec3> corners;
-  std::vector<std::vector<std::uint32_t>> faces;
+  Loops faces;
 
   static Cell of(const Box3& box);
   /// Corner pairs, each edge once (from < to).
@@ -47,5 +78,7 @@ std::vector<Cube> cubes_over(const Box3& box);
 
 /// The part where height ≤ shift (lower) or height ≥ −shift (upper). Empty if there is none.
 Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift);
+/// The same, in the room that `out` has. @return whether anything is cut off; else `out` is as it was
+bool clip(const Cell& cell, const Plane& plane, bool lower, double shift, Cell& out);
 
 }  // namespace kaboum::bcd

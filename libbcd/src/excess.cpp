@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "best_first.h"
@@ -79,6 +80,10 @@ class Measure {
     double upper = 0;
     Side side = Side::Unknown;       ///< of the surface, where the centre is
     Side inherited = Side::Unknown;  ///< where the centres of its eighths are
+    /// Of the list of the body's planes, those that may cross it.
+    struct {
+      std::uint32_t first = 0, last = 0;
+    } planes{};
   };
 
   [[nodiscard]] double limit() const {
@@ -202,10 +207,12 @@ class Measure {
     if (!solid_.triangles_near(box, kMostNear, near_)) return kUnbounded;
     double out = 0;
     for (const std::uint32_t t : near_) {
-      Cell shadow = part;
+      const Cell* shadow = &part;  // then one of shadows_
       const auto keep_beyond = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-        if (const auto plane = geom::facet_plane(p, q, r))
-          shadow = clip(shadow, cut_along(*plane), false, slack_of(*plane));
+        const auto plane = geom::facet_plane(p, q, r);
+        if (!plane) return;
+        Cell& next = shadow == &shadows_[0] ? shadows_[1] : shadows_[0];
+        if (clip(*shadow, cut_along(*plane), false, slack_of(*plane), next)) shadow = &next;
       };
       const auto& [a, b, c] = solid_.surface().corners(t);
       const Vec3 ab = b - a, ac = c - a, n = ab.cross(ac);
@@ -215,8 +222,8 @@ class Measure {
       keep_beyond(a, b, c);
       if (height < -error)
         for (const auto& [p, q] : {std::tie(a, b), std::tie(b, c), std::tie(c, a)})
-          if (!shadow.corners.empty()) keep_beyond(center, p, q);
-      out = std::max(out, farthest(shadow, t));
+          if (!shadow->corners.empty()) keep_beyond(center, p, q);
+      out = std::max(out, farthest(*shadow, t));
       if (out > limit()) return kUnbounded;
     }
     return out;
@@ -232,18 +239,24 @@ class Measure {
     for (const Vec3& p : body_.vertices) box.extend(p);
     // A facet whose plane is not known keeps nothing out, which is safe.
     const geom::ConvexPolytope polytope(body_);
-    std::vector<const geom::FacetPlane*> crossing;
+    // Planes that neither keep out all of a cube nor hold all of it, one list after the other: of
+    // its eighths there are no others.
+    std::vector<std::uint32_t> lists(polytope.planes().size());
+    std::iota(lists.begin(), lists.end(), 0U);
+    std::vector<std::uint32_t> crossing;
     std::vector<Cube> first;
-    for (const bcd::Cube& cube : cubes_over(box))
-      first.push_back(
-          {cube.center, cube.half, geom::DistanceQuery::kNone, 0, Side::Unknown, Side::Unknown});
+    for (const bcd::Cube& cube : cubes_over(box)) {
+      first.push_back({cube.center, cube.half, geom::DistanceQuery::kNone});
+      first.back().planes = {0, static_cast<std::uint32_t>(lists.size())};
+    }
     const auto bound = [&](Cube& cube) {
       crossing.clear();
-      for (const geom::FacetPlane& plane : polytope.planes()) {
+      for (std::size_t k = cube.planes.first; k < cube.planes.last; ++k) {
+        const geom::FacetPlane& plane = polytope.planes()[lists[k]];
         const double h = plane.height(cube.center), slack = slack_of(plane);
         const double extent = cube.half * plane.normal.cwiseAbs().sum();
         if (h - extent > slack) return false;
-        if (h + extent > -slack) crossing.push_back(&plane);
+        if (h + extent > -slack) crossing.push_back(lists[k]);
       }
       const double radius = cube.half * kHalfDiagonal;
       const auto at = nearest(cube.center, cube.hint);
@@ -272,9 +285,14 @@ class Measure {
       }
       if (cube.upper > limit() && !crossing.empty() && crossing.size() <= kMostCrossing) {
         const Vec3 h = Vec3::Constant(cube.half);
-        Cell part = Cell::of({cube.center - h, cube.center + h});
-        for (const geom::FacetPlane* plane : crossing)
-          part = clip(part, cut_along(*plane), true, slack_of(*plane));
+        parts_[0] = Cell::of({cube.center - h, cube.center + h});
+        std::size_t now = 0;
+        for (const std::uint32_t i : crossing) {
+          const geom::FacetPlane& plane = polytope.planes()[i];
+          if (clip(parts_[now], cut_along(plane), true, slack_of(plane), parts_[1 - now]))
+            now = 1 - now;
+        }
+        const Cell& part = parts_[now];
         cube.upper = std::min(cube.upper, farthest(part, at.triangle));
         if (cube.side == Side::Inside) {
           double far = 0;
@@ -283,12 +301,18 @@ class Measure {
         }
         if (cube.upper > limit()) cube.upper = std::min(cube.upper, farthest_outside(part));
       }
+      if (cube.upper > limit() && crossing.size() < cube.planes.last - cube.planes.first) {
+        cube.planes.first = static_cast<std::uint32_t>(lists.size());
+        lists.insert(lists.end(), crossing.begin(), crossing.end());
+        cube.planes.last = static_cast<std::uint32_t>(lists.size());
+      }
       return true;
     };
     search(std::move(first), options_.max_parts, bound, [](const Cube& cube, const auto& visit) {
       const double h = 0.5 * cube.half;
       for (int i = 0; i < 8; ++i)
-        visit(Cube{cube.center + corner_of(i, h), h, cube.hint, 0, cube.inherited});
+        visit(Cube{cube.center + corner_of(i, h), h, cube.hint, 0, cube.inherited, Side::Unknown,
+                   cube.planes});
     });
   }
 
@@ -298,6 +322,7 @@ class Measure {
   const SolidField& solid_;
   const ExcessOptions& options_;
   std::vector<std::uint32_t> near_;
+  std::array<Cell, 2> parts_, shadows_;  ///< room for what is cut, in turns
   double floor_ = 0;
   double scale_ = 0, slack_ = 0;
   double decided_ = 0;

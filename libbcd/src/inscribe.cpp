@@ -50,7 +50,8 @@ constexpr double kBetter = 1.01;
 double volume_of(const Cell& cell) {
   double volume = 0;
   const Vec3 center = cell.center();
-  for (const auto& face : cell.faces) {
+  for (std::size_t f = 0; f < cell.faces.size(); ++f) {
+    const std::span<const std::uint32_t> face = cell.faces[f];
     const Vec3 a = cell.corners[face[0]] - center;
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
       volume += a.dot((cell.corners[face[k]] - center).cross(cell.corners[face[k + 1]] - center));
