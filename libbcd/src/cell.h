@@ -78,7 +78,8 @@ std::vector<Cube> cubes_over(const Box3& box);
 
 /// The part where height ≤ shift (lower) or height ≥ −shift (upper). Empty if there is none.
 Cell clip(const Cell& cell, const Plane& plane, bool lower, double shift);
-/// The same, in the room that `out` has. @return whether anything is cut off; else `out` is as it was
+/// The same, in the room that `out` has. @return whether anything is cut off; else `out` is as it
+/// was
 bool clip(const Cell& cell, const Plane& plane, bool lower, double shift, Cell& out);
 
 }  // namespace kaboum::bcd

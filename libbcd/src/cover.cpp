@@ -101,9 +101,7 @@ CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& optio
   silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {
     if (!allowance.plenty()) break;
-    Tuning quick = tuning(Effort::Fast);
-    quick.search.mirrors = mirrors;
-    Decomposer decomposer(closed, silent, allowance.left(), quick);
+    Decomposer decomposer(closed, silent, allowance.left(), quick_tuning(mirrors));
     CoverCandidate other = run(decomposer, allowance);
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))

@@ -68,9 +68,12 @@ std::vector<Finished> Decomposer::within_epsilon() {
   std::vector<Finished> bodies = within_.within(epsilon, hopeless());
   if (state_.tuning().reduce) {
     state_.begin_improving();
-    const std::size_t enough = fewest_possible(bodies);
-    if (bodies.size() <= state_.tuning().counted) within_.reduce(bodies, epsilon, enough);
-    remove_bodies(state_, finisher_, bodies, epsilon, enough);
+    remove_bodies(state_, finisher_, bodies, epsilon, fewest_possible(bodies));
+    if (bodies.size() <= state_.tuning().counted) {
+      const std::size_t enough = fewest_possible(bodies), before = bodies.size();
+      within_.reduce(bodies, epsilon, enough);
+      if (bodies.size() < before) remove_bodies(state_, finisher_, bodies, epsilon, enough);
+    }
   }
   if (state_.options().max_total_vertices) finisher_.simplify_hulls(bodies, epsilon);
   return bodies;

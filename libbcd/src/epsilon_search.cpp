@@ -48,7 +48,9 @@ std::vector<Finished> EpsilonSearch::within(double epsilon, std::size_t most) {
     std::vector<Body> parts;
     for (const int node : tree.nodes_within(kMergedFrom * threshold * aim))
       parts.push_back(body_of(tree, node));
+    std::size_t tried = 0;
     for (const double weight : state_.tuning().volume_weights) {
+      if (tried++ >= state_.tuning().first_weights) break;
       // Of many bodies, each that is needless goes in the end.
       if (!best.empty() && (best.size() > state_.tuning().counted || state_.spent(kImproving)))
         break;

@@ -151,6 +151,7 @@ struct Tuning {
   std::vector<double> multiples;       ///< of the bodies asked for, that the input is cut into
   std::vector<double> thresholds;      ///< of epsilon, that leaves are cut down to
   std::vector<double> volume_weights;  ///< of the added volume when merging, tried in turn
+  std::size_t first_weights;           ///< so many of these for the first bodies within epsilon
   int refinements;                     ///< rounds of changing the worst body
   int rounds;                          ///< of refining what measuring finds
   bool reduce = false;                 ///< look for fewer bodies within epsilon
@@ -160,5 +161,7 @@ struct Tuning {
 };
 
 Tuning tuning(Effort effort);
+/// Of a search that takes little of the time of others. @param mirrors  try planes of symmetry
+Tuning quick_tuning(bool mirrors);
 
 }  // namespace kaboum::bcd

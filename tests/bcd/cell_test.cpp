@@ -28,7 +28,7 @@ TEST(Cell, CutsKeepTheVolume) {
       // Every edge belongs to two faces: the polytope is closed.
       for (const Cell* part : {&lower, &upper}) {
         std::size_t sides = 0;
-        for (const auto& face : part->faces) sides += face.size();
+        for (std::size_t f = 0; f < part->faces.size(); ++f) sides += part->faces[f].size();
         EXPECT_EQ(sides, 2 * part->edges().size());
         EXPECT_EQ(part->corners.size() + part->faces.size(), part->edges().size() + 2);
       }

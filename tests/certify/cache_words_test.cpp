@@ -80,9 +80,9 @@ TEST_F(CacheWords, OfSets) {
                      inner = set_of(bar(), SetRequest::Direction::Inner);
   EXPECT_EQ(std::string(cache_words::kSets) + ": " + hash_of(outer.artefact()) + " " +
                 hash_of(inner.artefact()),
-            "planes 30: 7bd6711052c24501 7f71fb4b408bf883");
+            "planes 31: aeff5a557cd83f1a 7f71fb4b408bf883");
   EXPECT_EQ(std::string(cache_words::kContainers) + ": " + hash(without_version(outer.bytes())),
-            "coloured: 2f7d282531d808df");
+            "coloured: 2b2f69dff98fbbe8");
 }
 
 TEST_F(CacheWords, OfInnerBalls) {
@@ -162,7 +162,7 @@ TEST_F(CacheWords, OfDecisions) {
   add(verify::verify_inclusion(open, bar()).solid);
   add(verify::verify_inclusion(bar(), open).surface);
   EXPECT_EQ(std::string(cache_words::kDecisions) + ": " + hash(text),
-            "decisions 4: 5f75e59129b34ae7")
+            "decisions 4: 21a1b6f733975096")
       << text;
 }
 
