@@ -270,7 +270,6 @@ TEST(Cover, ASearchThatTakesOverWhatAnotherFoundGivesWhatItGivesAlone) {
   }
 }
 
-// And takes no more than twice the work where it finds no fewer, but for what is begun by then.
 TEST(Decompose, NormalEffortFindsNoMoreBodiesThanFast) {
   for (const auto& [name, mesh] : solids_to_cut()) {
     const geom::Prepared input = geom::prepare(mesh);
@@ -280,19 +279,14 @@ TEST(Decompose, NormalEffortFindsNoMoreBodiesThanFast) {
       CoverOptions options = test::quick(closed.mesh(), percent);
       constexpr double work = 1e12;
       std::array<std::size_t, 2> bodies{};
-      std::array<std::uint64_t, 2> done{};
       for (const Effort effort : {Effort::Fast, Effort::Normal}) {
         options.effort = effort;
         Decomposer decomposer(closed.mesh(), options, work);
         const std::size_t k = effort == Effort::Fast ? 0 : 1;
         bodies[k] = decomposer.run().bodies.size();
-        done[k] = decomposer.work_done();
       }
       SCOPED_TRACE(name + ' ' + std::to_string(percent));
       EXPECT_LE(bodies[1], bodies[0]);
-      if (bodies[1] == bodies[0]) {
-        EXPECT_LE(static_cast<double>(done[1]), 2.5 * static_cast<double>(done[0]));
-      }
     }
   }
 }
