@@ -4,36 +4,22 @@
 
 namespace kaboum::bcd {
 
-namespace {
-
-/// What normal effort begins with is all that fast effort does: it finds no more bodies within
-/// epsilon (Decompose.NormalEffortFindsNoMoreBodiesThanFast).
-Tuning first_search() {
-  return {.grid = 200000,
-          .search = {},
-          .multiples = {1.5},
-          .thresholds = {0.8},
-          .volume_weights = {kVolumeWeight},
-          .first_weights = 1,
-          .refinements = 12,
-          .rounds = 1};
-}
-
-}  // namespace
-
 Tuning tuning(Effort effort) {
-  Tuning out = first_search();
+  Tuning out{.grid = 200000,
+             .search = {},
+             .multiples = {1, 1.25, 1.5, 2, 3},
+             .thresholds = {0.8},
+             .volume_weights = {kVolumeWeight, 0.15, 0.02},
+             .first_weights = 1,
+             .refinements = 60,
+             .rounds = 2,
+             .reduce = true,
+             .counted = 24,
+             .patience = 1};
   switch (effort) {
     case Effort::Fast:
-      return out;
+      return quick_tuning(false);
     case Effort::Normal:
-      out.multiples = {1, 1.25, 1.5, 2, 3};
-      out.volume_weights = {kVolumeWeight, 0.15, 0.02};
-      out.refinements = 60;
-      out.rounds = 2;
-      out.reduce = true;
-      out.counted = 24;
-      out.patience = 1;
       return out;
     case Effort::Best:
       break;
@@ -50,10 +36,14 @@ Tuning tuning(Effort effort) {
 }
 
 Tuning quick_tuning(bool mirrors) {
-  Tuning out = first_search();
-  out.grid = 60000;
-  out.search = {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = mirrors};
-  return out;
+  return {.grid = 60000,
+          .search = {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = mirrors},
+          .multiples = {1.5},
+          .thresholds = {0.8},
+          .volume_weights = {kVolumeWeight},
+          .first_weights = 1,
+          .refinements = 12,
+          .rounds = 1};
 }
 
 }  // namespace kaboum::bcd

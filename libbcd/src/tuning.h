@@ -161,7 +161,8 @@ struct Tuning {
 };
 
 Tuning tuning(Effort effort);
-/// Of a search that takes little of the time of others. @param mirrors  try planes of symmetry
+/// Of a search that takes little of the time of others; fast effort is the one without mirrors.
+/// @param mirrors  try planes of symmetry
 Tuning quick_tuning(bool mirrors);
 
 }  // namespace kaboum::bcd

@@ -270,20 +270,17 @@ TEST(Cover, ASearchThatTakesOverWhatAnotherFoundGivesWhatItGivesAlone) {
   }
 }
 
-TEST(Decompose, NormalEffortFindsNoMoreBodiesThanFast) {
+TEST(Cover, NormalEffortFindsNoMoreBodiesThanFast) {
   for (const auto& [name, mesh] : solids_to_cut()) {
     const geom::Prepared input = geom::prepare(mesh);
     const geom::SolidMesh closed = geom::close_holes(input.solid);
     if (closed.mesh().triangles.size() > 600) continue;
     for (const double percent : {1., 4.}) {
       CoverOptions options = test::quick(closed.mesh(), percent);
-      constexpr double work = 1e12;
       std::array<std::size_t, 2> bodies{};
       for (const Effort effort : {Effort::Fast, Effort::Normal}) {
         options.effort = effort;
-        Decomposer decomposer(closed.mesh(), options, work);
-        const std::size_t k = effort == Effort::Fast ? 0 : 1;
-        bodies[k] = decomposer.run().bodies.size();
+        bodies[effort == Effort::Fast ? 0 : 1] = find_cover(input.solid, options).bodies.size();
       }
       SCOPED_TRACE(name + ' ' + std::to_string(percent));
       EXPECT_LE(bodies[1], bodies[0]);
