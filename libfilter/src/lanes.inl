@@ -550,7 +550,7 @@ class Pack {
   [[nodiscard]] unsigned open() const { return open_ & ~contact_; }
 
  private:
-  static constexpr int kSteps = Moving ? 8 : 8;   ///< of the search for directions
+  static constexpr int kSteps = 8;                ///< of the search for directions
   static constexpr std::uint32_t kUnknown = ~0U;  ///< not a set of lanes
   static constexpr int kFewSteps = 2;             ///< of that for whole links
 

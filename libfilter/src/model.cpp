@@ -464,6 +464,7 @@ void add_corners(const world::Checker& checker, const world::RobotModel& robot, 
     hull.ball = shape.whole;
     if (shape.corners.end - shape.corners.begin <= kMostCorners) hull.corners = shape.corners;
     hull.reach = shape.reach;
+    hull.error = HUGE_VALF;  // where hulls meet, their bodies need not
     const auto& ball = robot.shapes[s].outer.ball();
     hull.offset = rounded_up(
         (radius * (1 + 1e-8) + 1.1 * extent_error(chain, link, shape.reach,
@@ -705,6 +706,7 @@ void add_blur(const Chain& chain, Model& model) {
   double farthest = 0;  // of the links' points, from their frames
   for (const ShapeModel& shape : model.shapes)
     farthest = std::max<double>(farthest, shape.whole.length + shape.whole.radius);
+  farthest *= 1.07;  // the middle of a cluster's box: √(9/8)
   const auto joints = static_cast<double>(model.steps.size());
   const double all = 1.01 * (reach + farthest);
   const double error = translation + (rotation + 20 * kUnit) * farthest + 5 * kUnit * all;

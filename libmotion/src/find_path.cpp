@@ -35,18 +35,21 @@ class TreeSearch {
  private:
   /// Steps that samples are away from a node next to an obstacle, at most.
   static constexpr double kDomain = 2;
+  /// Of samples that are farther away, one in so many is taken.
+  static constexpr std::size_t kTaken = 16;
 
   void grow() {
     std::array<Tree, 2> trees;
     trees[0].add_root(start_);
     for (const std::size_t g : query_.order()) trees[1].add_root(goals_[g]);
-    std::size_t near = 0;
+    std::size_t near = 0, far_away = 0;
     for (;;) {
       if (const auto outcome = space_.ended()) return query_.end(*outcome);
       const Values sample = space_.sample(random_);
       const std::size_t from = trees[near].nearest(sample, space_);
       if (trees[near][from].is_next_to_obstacle &&
-          space_.distance(trees[near].at(from), sample) > kDomain * space_.range())
+          space_.distance(trees[near].at(from), sample) > kDomain * space_.range() &&
+          ++far_away % kTaken != 0)
         continue;
       const std::size_t node = step(trees[near], near == 1, from, sample, nullptr);
       if (node == Tree::kNone) trees[near].set_next_to_obstacle(from);

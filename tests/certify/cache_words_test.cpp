@@ -121,7 +121,7 @@ TEST_F(CacheWords, OfEnclosures) {
   std::string text;
   append(text, made.enclosure.artefact());
   EXPECT_EQ(std::string(cache_words::kEnclosures) + ": " + hash(text),
-            "distance 5: 0c8a5fbd2c580f2e");
+            "distance 6: cde09b876b82331d");
 }
 
 TEST_F(CacheWords, OfReaders) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <kaboum/base/error.h>
 #include <kaboum/motion/find_path.h>
+#include <kaboum/motion/path_finder.h>
 #include <kaboum/motion/trajectory.h>
 
 #include "random_scene.h"
@@ -16,6 +17,7 @@ using test::RandomScene;
 using test::SceneFiles;
 using Outcome = PathAnswer::Outcome;
 using Values = std::vector<double>;
+using geom::Vec3;
 
 PathAnswer find(const world::Checker& checker, const Values& start, const Values& goal,
                 const PathOptions& options = {}) {
@@ -70,6 +72,88 @@ TEST(FindPath, PathsOfRandomScenesAreFreeOfTheExactMeshesAt1kHz) {
 }
 
 /// Fingers that hold something stay where they are, whatever the search tries.
+/// A chain of so many links among posts, which all turn.
+world::World snake(std::size_t joints, std::mt19937_64& random) {
+  const double length = 1.5 / static_cast<double>(joints);
+  const auto capsule = [](const Vec3& a, const Vec3& b, double radius) {
+    return collide::BoundingSet({{"", {{a, b}, {}}, radius}}, collide::Direction::Outer, 0);
+  };
+  world::World out;
+  world::RobotModel arm;
+  arm.name = "arm";
+  arm.kinematics.name = "arm";
+  arm.kinematics.links.emplace_back().name = "link0";
+  for (std::uint32_t j = 0; j < joints; ++j) {
+    const std::string number = std::to_string(j + 1);
+    arm.kinematics.links.emplace_back().name = "link" + number;
+    robot::Joint joint;
+    joint.name = "joint" + number;
+    joint.parent = j;
+    joint.type = robot::JointType::Revolute;
+    joint.origin.translation = {j == 0 ? 0 : length, 0, 0};
+    joint.axis = j % 3 == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+    joint.variable = j;
+    arm.kinematics.variables.push_back({joint.name, -2.5, 2.5});
+    arm.kinematics.joints.push_back(joint);
+    arm.shapes.push_back({j + 1, capsule({0.3 * length, 0, 0}, {0.9 * length, 0, 0}, 0.02), {}});
+    if (j > 0) arm.allowed.push_back({j, j + 1, world::AllowedPair::Reason::Adjacent});
+  }
+  arm.home.assign(joints, 0.0);
+  out.robots.push_back(std::move(arm));
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; k < 6; ++k) {
+    const double angle = 3 * uniform(random), away = 0.8 + 0.5 * uniform(random);
+    world::Object post{
+        .name = "post" + std::to_string(k),
+        .pose = {Eigen::Matrix3d::Identity(), {away * std::cos(angle), away * std::sin(angle), 0}},
+        .outer = capsule({0, 0, -0.8}, {0, 0, 0.8}, 0.05),
+        .inner = {},
+        .features = {},
+        .grasps = {}};
+    out.objects.push_back(std::move(post));
+    out.attachments.emplace_back();
+  }
+  return out;
+}
+
+/// Of so many joints nearly all samples are far from a node: some are taken where it is next to an
+/// obstacle, too.
+TEST(FindPath, ManyJointsNextToAnObstacle) {
+  constexpr std::size_t kJoints = 36;
+  int searched = 0, found = 0;
+  for (std::uint32_t seed = 1; searched < 6; ++seed) {
+    std::mt19937_64 random(seed);
+    const world::World world = snake(kJoints, random);
+    const world::Checker checker(world);
+    world::WorldState state = initial_state(world);
+    world::Scratch scratch;
+    std::uniform_real_distribution<double> uniform(-1.2, 1.2);
+    const auto drawn = [&](bool free) {
+      do std::ranges::generate(state.q[0], [&] { return uniform(random); });
+      while (checker.is_free(state, scratch) != free);
+      return state.q[0];
+    };
+    const Values goal = drawn(true), blocked = drawn(false);
+    Values start = drawn(true);
+    double share = 0;
+    for (double half = 0.5; half > 1e-4; half /= 2) {
+      for (std::size_t k = 0; k < kJoints; ++k)
+        state.q[0][k] = start[k] + (share + half) * (blocked[k] - start[k]);
+      if (checker.is_free(state, scratch)) share += half;
+    }
+    for (std::size_t k = 0; k < kJoints; ++k) start[k] += share * (blocked[k] - start[k]);
+    PathOptions options;
+    options.most_work = 0.5;
+    options.seed = seed;
+    const PathAnswer answer =
+        PathFinder(checker, initial_state(world), 0).find(start, {{goal}}, options);
+    if (answer.straight) continue;
+    ++searched;
+    found += answer.outcome == Outcome::Found ? 1 : 0;
+  }
+  EXPECT_GE(found, 4);  // the others may have none
+}
+
 TEST(FindPath, WhatIsToStayStays) {
   std::size_t round = 0, moved = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
