@@ -39,6 +39,7 @@ Shapes shapes_of(const LinkSurface& of) {
   out.outer = std::make_unique<Surface>(of.outer, of.guess.empty() ? Solid::Wound : Solid::ShutOff);
   out.shows = !of.inner || !of.inner->empty();
   if (of.inner && out.shows) out.inner_or_none = std::make_unique<Surface>(*of.inner);
+  out.loose = !of.guess.empty() && out.inner_or_none != nullptr;
   return out;
 }
 

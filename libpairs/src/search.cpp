@@ -36,6 +36,7 @@ Search::Search(const robot::Robot& robot, std::uint32_t a, std::uint32_t b, cons
       outer_(*of_a.outer, *of_b.outer, chain_),
       inner_(of_a.inner(), of_b.inner(), chain_),
       shows_(of_a.shows && of_b.shows),
+      loose_(of_a.loose || of_b.loose),
       same_(shows_ && !of_a.inner_or_none && !of_b.inner_or_none),
       samples_(samples),
       tree_a_(&of_a.outer->tree()),
@@ -538,7 +539,7 @@ std::optional<Search::Joint> Search::joint() const {
   out.in_a = motion_.placed().origins.front();
   const Transform& at = motion_.placed().b;
   out.in_b = at.linear.transpose() * (out.in_a - at.translation);
-  out.beyond = outer_.farthest_meeting(motion_, out.in_a, out.in_b);
+  out.beyond = (loose_ ? inner_ : outer_).farthest_meeting(motion_, out.in_a, out.in_b);
   return out;
 }
 

@@ -14,7 +14,8 @@ namespace kaboum::pairs::detail {
 /// The shapes of one link, ready to be asked.
 struct Shapes {
   std::unique_ptr<Surface> outer, inner_or_none;
-  bool shows = true;  ///< false: nothing is known to lie in the shapes, so no contact is shown
+  bool shows = true;   ///< false: nothing is known to lie in the shapes, so no contact is shown
+  bool loose = false;  ///< outer is much more than inner: it does not tell where links meet
   [[nodiscard]] const Surface& inner() const { return inner_or_none ? *inner_or_none : *outer; }
 };
 
@@ -123,6 +124,7 @@ class Search {
   Chain chain_;
   Contact outer_, inner_;
   bool shows_;  ///< inner meshes are there, so that contacts can be shown
+  bool loose_;  ///< outer meshes do not tell where the links meet
   bool same_;   ///< the outer meshes are the inner ones
   std::size_t samples_, sampled_ = 0;
   std::size_t rounds_ = 0;  ///< of looking for contacts

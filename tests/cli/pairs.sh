@@ -203,6 +203,7 @@ grep -q "link 'a': a mesh has no solid .*: proofs are of its convex hull" err.tx
 
 # Of a mesh whose solid is a guess, never is proved of its hull if it has a border, else of what it shuts off.
 cat >guess.py <<'END'
+import math
 def write(name, corners, triangles):
     with open(name + ".obj", "w") as out:
         for v in corners:
@@ -212,6 +213,23 @@ def write(name, corners, triangles):
 # Two sheets with two sides each.
 corners = [(x, y, z) for z in (-1, 1) for x, y in ((-2, -2), (2, -2), (0, 3))]
 write("sheets", corners, [(0, 1, 2), (0, 2, 1), (3, 4, 5), (3, 5, 4)])
+# A bin and its waisted liner, both open on top, with one rim and one bottom.
+ring = [(math.cos(k * math.pi / 6), math.sin(k * math.pi / 6)) for k in range(12)]
+corners = [(r * x, r * y, z) for r, z in ((1, -1), (1, 1), (0.5, 0)) for x, y in ring] + [(0, 0, -1)]
+def wall(low, high):
+    return [t for k in range(12) for a, b in ((k, (k + 1) % 12),) for t in ((low + a, low + b, high + b), (low + a, high + b, high + a))]
+bottom = [(36, (k + 1) % 12, k) for k in range(12)]
+write("liner", corners, wall(0, 12) + bottom + wall(0, 24) + wall(24, 12) + bottom)
+# A floor and a wall at its end, of sheets with two sides, in small parts.
+def plate(p, u, v, parts):
+    at = lambda i, j: tuple(p[k] + i / parts * u[k] + j / parts * v[k] for k in range(3))
+    corners = [at(i, j) for i in range(parts + 1) for j in range(parts + 1)]
+    cells = [i * (parts + 1) + j for i in range(parts) for j in range(parts)]
+    return corners, [t for c in cells for t in ((c, c + 1, c + parts + 2), (c, c + parts + 2, c + parts + 1))]
+corners, triangles = plate((-0.3, -0.3, 0), (3, 0, 0), (0, 0.6, 0), 16)
+more, others = plate((2.7, -0.3, 0), (0, 0.6, 0), (0, 0, 1), 16)
+triangles += [tuple(len(corners) + k for k in t) for t in others]
+write("hook", corners + more, triangles + [t[::-1] for t in triangles])
 # A prism that crosses itself: a large part, and a small one that is inside out.
 bow = [(-3, -3), (1, 1), (1, -1), (-3, 3)]
 corners = [(x, y, z) for z in (-1, 1) for x, y in bow]
@@ -237,6 +255,23 @@ assert pair["distance"]["at_least"] == 0 and "unfinished" not in pair, said
 END
 guess sheets 0
 expect 7 '1 open' "$P" in.urdf
+# Two open surfaces on one rim: what is in the inner one may be in the solid.
+guess liner 0
+expect 7 "a mesh has no solid .*: proofs are of its convex hull" "$P" in.urdf --json
+# Of a hull nobody knows where it meets what hangs from it: that is looked for by the mesh.
+{
+  echo '<robot name="r">'
+  shape a '<mesh filename="hook.obj"/>' '0 0 0'
+  echo '<link name="b">'
+  for z in -0.03 0.07 0.17 0.27 0.37 0.47 0.57 0.67 0.77 0.87 0.97 1.07 1.17 1.27 1.37 1.47 1.57 1.67 1.77 1.87 1.97; do
+    echo "<collision><origin xyz=\"0 0 $z\"/><geometry><box size=\"0.06 0.06 0.1\"/></geometry></collision>"
+  done
+  echo '</link>'
+  joint j a b '0 0 0.05' '0 1 0' 1.6
+  echo '</robot>'
+} >hook.urdf
+echo '<robot name="r"><disable_collisions link1="a" link2="b" reason="Adjacent"/></robot>' >hook.srdf
+expect 1 'refuted' "$P" hook.urdf --judge hook.srdf --timeout 20
 guess bow -2
 expect 0 '1 always do' "$P" in.urdf
 

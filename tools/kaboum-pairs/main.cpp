@@ -56,10 +56,13 @@ std::vector<pairs::DecidedPair> decide_stated(const robot::RobotFile& file, cons
         std::minmax(file.robot.find_link(pair.a).value(), file.robot.find_link(pair.b).value()));
   const auto begin = std::chrono::steady_clock::now();
   options.wanted = [&](std::uint32_t a, std::uint32_t b) { return stated.contains({a, b}); };
+  const double most_seconds = options.most_seconds;
+  if (!o.srdf.empty()) options.most_seconds *= 0.5;  // the others are of use, too
   std::vector<pairs::DecidedPair> out = pairs::decide_pairs(file.robot, surfaces, options);
   if (o.srdf.empty()) return out;
   options.wanted = [&](std::uint32_t a, std::uint32_t b) { return !stated.contains({a, b}); };
-  options.most_seconds -=
+  options.most_seconds =
+      most_seconds -
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (pairs::DecidedPair& pair : pairs::decide_pairs(file.robot, surfaces, options))
     out.push_back(std::move(pair));

@@ -94,20 +94,27 @@ void add_primitive(const Geometry& shape, Made& out) {
 }
 
 /// Whether a surface has a border, of which it is not known what closes it: an edge of one
-/// triangle, copies taken for one, or of an odd number of them.
+/// triangle, copies taken for one, or one that is not walked along as often either way (two open
+/// surfaces may share a rim).
 bool has_border(const Mesh& exact) {
   const Mesh mesh = geom::weld(exact);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> across;
+  struct Across {
+    std::vector<std::uint32_t> apexes;
+    int forwards = 0;  ///< less backwards
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Across> across;
   for (const geom::Triangle& t : mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
-        across[{std::min(a, b), std::max(a, b)}].push_back(t[(k + 2) % 3]);
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      Across& edge = across[{std::min(a, b), std::max(a, b)}];
+      edge.apexes.push_back(t[(k + 2) % 3]);
+      edge.forwards += a < b ? 1 : -1;
     }
   return std::ranges::any_of(across, [](const auto& edge) {
-    const std::vector<std::uint32_t>& others = edge.second;
-    return others.size() % 2 != 0 ||
-           std::ranges::count(others, others.front()) == std::ssize(others);
+    const std::vector<std::uint32_t>& apexes = edge.second.apexes;
+    return edge.second.forwards != 0 ||
+           std::ranges::count(apexes, apexes.front()) == std::ssize(apexes);
   });
 }
 
