@@ -64,10 +64,11 @@ bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
     if (--cells < 0) return false;
     steps_ += kCut;
     const auto is_covered = [&] {
-      const auto [a, b, c] = near_.corners(hint_);
-      return std::all_of(
-          e.polygon.corner.begin(), e.polygon.corner.begin() + e.polygon.size,
-          [&](const Vec3& p) { return geom::point_triangle_upper(p, a, b, c) <= epsilon_; });
+      const std::array<Vec3, 3> t = near_.corners(hint_);
+      return std::all_of(e.polygon.corner.begin(), e.polygon.corner.begin() + e.polygon.size,
+                         [&](const Vec3& p) {
+                           return geom::point_triangle_upper(p, t[0], t[1], t[2]) <= epsilon_;
+                         });
     };
     const Vec3 middle = e.polygon.centroid();
     const double most = epsilon_ * epsilon_;
