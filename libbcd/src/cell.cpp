@@ -106,7 +106,7 @@ double turn_of(double x, double y) {
   return y < 0 ? t : 2 - t;
 }
 
-/// What clipping needs besides its result, kept from one cell to the next.
+/// Room for clipping, kept from one cell to the next.
 struct ClipScratch {
   std::vector<double> height;
   std::vector<std::uint32_t> number;  // of a corner that is kept

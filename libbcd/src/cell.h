@@ -32,7 +32,7 @@ class Loops {
     corner_.clear();
     end_.clear();
   }
-  /// Of a loop that begins where the last one ends.
+  /// Adds a corner to the loop that is open: it begins where the last one ends.
   void add_corner(std::uint32_t corner) { corner_.push_back(corner); }
   /// Ends the loop, or leaves it out where it has fewer than three corners.
   void end_loop() {

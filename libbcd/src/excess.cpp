@@ -80,7 +80,7 @@ class Measure {
     double upper = 0;
     Side side = Side::Unknown;       ///< of the surface, where the centre is
     Side inherited = Side::Unknown;  ///< where the centres of its eighths are
-    /// Of the list of the body's planes, those that may cross it.
+    /// The part of the list of planes that has those of the body which may cross it.
     struct {
       std::uint32_t first = 0, last = 0;
     } planes{};

@@ -161,7 +161,7 @@ struct Tuning {
 };
 
 Tuning tuning(Effort effort);
-/// Of a search that takes little of the time of others; fast effort is the one without mirrors.
+/// The tuning of a quick search; fast effort is the one without mirrors.
 /// @param mirrors  try planes of symmetry
 Tuning quick_tuning(bool mirrors);
 

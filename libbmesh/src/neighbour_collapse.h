@@ -42,7 +42,7 @@ class NeighbourCollapse : private OptimiserContext {
   std::uint32_t mark_value_ = 0;
   std::vector<std::uint32_t> around_;  // vertices that move with a contraction, it first
   std::vector<Vec3> target_;           // of these
-  // Where the original was near to the points at which their stars are measured.
+  // For each of these, triangles of the original that were nearest to points of its star.
   std::vector<std::vector<std::uint32_t>> near_;
   std::vector<std::uint32_t> alive_;
 };

@@ -552,7 +552,10 @@ class PairProbe {
  public:
   /// Points of clouds are left out: no pair with one may be asked for. So are directions.
   PairProbe(const Model& model, std::span<const double> rows)
-      : alone_(balls_alone(model)), memory_(alone_), rows_(rows) {}
+      : alone_(balls_alone(model)),
+        memory_(alone_),
+        answers_(rows.size() / alone_.variables),
+        blocks_(in_blocks(rows.data(), answers_.size(), alone_.variables)) {}
 
   const std::vector<BatchChecker::Answer>& look_at(const ShapePair& pair) {
     alone_.shape_pairs = {pair};
@@ -578,16 +581,15 @@ class PairProbe {
     return out;
   }
   const std::vector<BatchChecker::Answer>& look() {
-    answers_.resize(rows_.size() / alone_.variables);
-    filter_rows(alone_, instruction_sets().back(), rows_.data(), nullptr, answers_.size(), memory_,
-                answers_.data());
+    filter_blocks(alone_, instruction_sets().back(), blocks_.data(), nullptr, answers_.size(),
+                  memory_, answers_.data());
     return answers_;
   }
 
   Model alone_;
   LaneMemory memory_;
-  std::span<const double> rows_;
   std::vector<BatchChecker::Answer> answers_;
+  std::vector<double> blocks_;
 };
 
 /// Puts pairs first that are in contact in most of some rows: one contact ends the look.
