@@ -22,7 +22,6 @@ using detail::kInfinite;
 using detail::Search;
 using detail::Shapes;
 using detail::Surface;
-using geom::Mesh;
 using geom::Vec3;
 
 /// Pairs of clusters that are looked at of one pair's parts away from their joint, and of each pair

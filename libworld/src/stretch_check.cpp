@@ -24,7 +24,8 @@ struct StretchChecker::Impl {
   /// Numbers of pairs of things. @throws Error{InvalidArgument} for one that is not looked at.
   std::vector<std::size_t> numbers_of(std::span<const std::array<Item, 2>> some) const {
     std::vector<std::size_t> out;
-    for (const auto& [a, b] : some) {
+    for (const auto& pair : some) {
+      const Item &a = pair[0], &b = pair[1];
       const auto found = std::ranges::find_if(moving.all(), [&](std::size_t k) {
         const Item &x = moving.mover(moving.pairs()[k]), &y = moving.other(moving.pairs()[k]);
         return (x == a && y == b) || (x == b && y == a);
