@@ -109,11 +109,13 @@ struct PartsAway {
 
 /// @param whole  what is sought of all of the links; all of them is away, if nothing meets where
 ///   the joint is in its middle
+/// @param joint  of the two
 std::unique_ptr<PartsAway> look_away(const robot::Robot& robot,
                                      std::pair<std::uint32_t, std::uint32_t> links, const Shapes& a,
-                                     const Shapes& b, Search& whole, const DecideOptions& options,
+                                     const Shapes& b, Search& whole,
+                                     const std::optional<Search::Joint>& joint,
+                                     const DecideOptions& options,
                                      const std::function<bool()>& stop) {
-  const std::optional<Search::Joint> joint = whole.joint();
   if (!joint || stop()) return nullptr;
   auto out = std::make_unique<PartsAway>();
   const double cut = joint->beyond * 1.05;
@@ -190,12 +192,29 @@ DecidedPair found_of(const robot::Robot& robot, const Shaped& shaped, const Link
   return pair;
 }
 
+/// A robot whose limits are one configuration.
+robot::Robot standing(robot::Robot robot, const std::vector<double>& q) {
+  if (q.size() != robot.variables.size())
+    throw Error(ErrorCode::InvalidArgument, std::to_string(robot.variables.size()) +
+                                                " values are expected, not " +
+                                                std::to_string(q.size()));
+  for (std::size_t v = 0; v < q.size(); ++v)
+    robot.variables[v].lower = robot.variables[v].upper = q[v];
+  for (robot::Joint& joint : robot.joints) joint.lower = joint.upper = std::nullopt;
+  return robot;
+}
+
 /// All pairs of some surfaces' links, those that are not decided yet in rounds.
 class Pairs {
  public:
-  Pairs(const robot::Robot& robot, const std::vector<LinkSurface>& given,
+  /// @param robot  whose limits have all configurations that are meant
+  /// @param whole  the same robot, whose limits say where links meet at a joint
+  Pairs(robot::Robot robot, const robot::Robot& whole, const std::vector<LinkSurface>& given,
         const DecideOptions& options)
-      : robot_(robot), options_(options), surfaces_(in_order(robot, given)) {
+      : robot_(std::move(robot)),
+        whole_(whole),
+        options_(options),
+        surfaces_(in_order(robot_, given)) {
     shapes_.resize(surfaces_.size());
     std::vector<char> used(surfaces_.size(), 0);
     for (std::size_t a = 0; a < surfaces_.size(); ++a)
@@ -209,9 +228,9 @@ class Pairs {
                    if (used[i] != 0) shapes_[i] = shapes_of(*surfaces_[i]);
                  },
                  {.alone = true});
-    shaped_.assign(robot.links.size(), 0);
+    shaped_.assign(robot_.links.size(), 0);
     for (std::size_t l = 0; l < shaped_.size(); ++l)
-      shaped_[l] = robot.links[l].collision.empty() ? 0 : 1;
+      shaped_[l] = robot_.links[l].collision.empty() ? 0 : 1;
     for (const LinkSurface* s : surfaces_) shaped_[s->link] = 1;
     for (std::size_t i = 0; i < pairs_.size(); ++i)
       if (shapes_[pairs_[i].a].outer && shapes_[pairs_[i].b].outer) left_.push_back(i);
@@ -312,9 +331,11 @@ class Pairs {
           Sought& pair = pairs_[i];
           if (pair.search == nullptr || pair.search->verdict() == Verdict::Never) return;
           const std::pair links(surfaces_[pair.a]->link, surfaces_[pair.b]->link);
-          if (relation_of(robot_, shaped_, links.first, links.second) == Relation::Adjacent)
-            pair.away = look_away(robot_, links, shapes_[pair.a], shapes_[pair.b], *pair.search,
-                                  options_, stop);
+          if (relation_of(robot_, shaped_, links.first, links.second) != Relation::Adjacent) return;
+          const Shapes &a = shapes_[pair.a], &b = shapes_[pair.b];
+          const std::optional<Search::Joint> joint =
+              Search(whole_, links.first, links.second, a, b, 0).joint();
+          pair.away = look_away(robot_, links, a, b, *pair.search, joint, options_, stop);
         },
         {.alone = true});
     for (std::size_t i = 0; i < pairs_.size(); ++i)
@@ -352,7 +373,8 @@ class Pairs {
 
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin_ = Clock::now();
-  const robot::Robot& robot_;
+  robot::Robot robot_;
+  const robot::Robot& whole_;
   const DecideOptions& options_;
   std::vector<const LinkSurface*> surfaces_;
   std::vector<Shapes> shapes_;
@@ -397,7 +419,13 @@ std::string text_of(const std::vector<double>& q) {
 std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const std::vector<LinkSurface>& given,
                                       const DecideOptions& options) {
-  return Pairs(robot, given, options).decide();
+  return Pairs(robot, robot, given, options).decide();
+}
+
+std::vector<DecidedPair> decide_pairs_at(const robot::Robot& robot, const std::vector<double>& q,
+                                         const std::vector<LinkSurface>& given,
+                                         const DecideOptions& options) {
+  return Pairs(standing(robot, q), robot, given, options).decide();
 }
 
 }  // namespace kaboum::pairs

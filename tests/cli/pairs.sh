@@ -85,14 +85,54 @@ expect 1 '^3 pairs: ' "$P" arm.urdf --judge stated.srdf --json
 [ "$(grep -c '"relation"' out.txt)" = 3 ] || fail "pairs that nobody asked for: $(cat out.txt)"
 expect 1 '^6 pairs: ' "$P" arm.urdf --judge stated.srdf --json --srdf all.srdf
 cmp -s arm.srdf all.srdf || fail "all.srdf: $(cat all.srdf)"
-# What replays a contact has a name of its own for each pair.
+# What replays a contact decides that configuration again.
 "$P" arm.urdf --judge stated.srdf --quiet --report judged.json
 python3 -c 'import json
 for p in json.load(open("judged.json"))["matrix"]["disabled"]:
     if "replay" in p: print(p["replay"])' >replay.txt
 [ "$(wc -l <replay.txt)" = 1 ] || fail "replays: $(cat replay.txt)"
-expect 1 '' sh -c "PATH=$BIN:\$PATH; $(cat replay.txt)"
-[ -s replay-fore-turret.json ] || fail "no scene of its own: $(cat replay.txt)"
+expect 1 '1 pairs: 0 apart, .* 1 in contact, 0 open' sh -c "PATH=$BIN:\$PATH; $(cat replay.txt)"
+grep -q '^turret fore: in contact, .* deep$' out.txt || fail "$(cat out.txt)"
+
+# One configuration: contacts at joints are none; a picture shows the others.
+expect 0 '6 pairs: 3 apart, 3 touch at a joint at most, 0 in contact, 0 open' \
+  "$P" arm.urdf --configuration 0,0,0 --preview upright.png
+grep -q '^turret fore: apart, distance at least 0\.' out.txt || fail "$(cat out.txt)"
+expect 1 '' "$P" arm.urdf --configuration="$Q" --preview folded.png --report folded.json
+python3 - <<'END' || fail 'a configuration: report or picture'
+import json
+report = json.load(open("folded.json"))
+assert len(report["configuration"]) == 3
+assert [p["links"] for p in report["pairs"] if p["verdict"] in ("always", "can touch") and p["relation"] == "moving"] == [["turret", "fore"]]
+upright, folded = (open(n + ".png", "rb").read() for n in ("upright", "folded"))
+assert upright[:4] == folded[:4] == b"\x89PNG" and len(folded) > 1000 and upright != folded
+END
+expect 2 '3 values are expected, one for each of waist,shoulder,elbow, not 2' "$P" arm.urdf --configuration 0,0
+expect 2 'excludes' "$P" arm.urdf --configuration 0,0,0 --judge stated.srdf
+expect 2 'requires' "$P" arm.urdf --preview a.png
+# An arm that folds into the link it hangs from: a contact away from the joint is one, and is shown.
+shape() { # X Y Z SX SY SZ
+  echo "<collision><origin xyz=\"$1 $2 $3\"/><geometry><box size=\"$4 $5 $6\"/></geometry></collision>"
+}
+{
+  echo '<robot name="hook"><link name="stem">'
+  shape 0 0 0.9 0.05 0.05 0.1
+  shape 0 0 0.4 0.05 0.05 0.8
+  echo '</link><link name="hook">'
+  shape 0 0 0 0.06 0.06 0.06
+  shape 0.22 0 0 0.36 0.05 0.05
+  shape 0.38 0 -0.25 0.05 0.05 0.5
+  echo '</link>'
+  joint turn stem hook '0 0 0.9' '0 1 0' 1.5
+  echo '</robot>'
+} >hook.urdf
+echo '<robot name="hook"><disable_collisions link1="stem" link2="hook" reason="Adjacent"/></robot>' >hook.srdf
+expect 1 '1 refuted' "$P" hook.urdf --judge hook.srdf
+sed -n 's/^  kaboum-pairs/kaboum-pairs/p' out.txt >replay.txt
+[ "$(wc -l <replay.txt)" = 1 ] || fail "replays: $(cat out.txt)"
+expect 1 '1 in contact, 0 open' sh -c "PATH=$BIN:\$PATH; $(cat replay.txt)"
+grep -q '^stem hook: adjacent; in contact.*from the joint: in contact$' out.txt || fail "$(cat out.txt)"
+expect 0 '1 touch at a joint at most, 0 in contact, 0 open' "$P" hook.urdf --configuration 0
 python3 - <<'END' || fail 'JUnit or SARIF'
 import json
 import xml.etree.ElementTree as xml
@@ -100,7 +140,7 @@ suite = xml.parse("pairs.xml").getroot().find("testsuite")
 assert suite.get("tests") == "3" and suite.get("failures") == "1"
 failed = [c for c in suite.iter("testcase") if c.find("failure") is not None]
 assert [(c.get("name"), c.get("line")) for c in failed] == [("fore turret", "4")]
-assert "kaboum-check" in failed[0].find("failure").text
+assert "--configuration=" in failed[0].find("failure").text
 run, = json.load(open("pairs.sarif"))["runs"]
 rules = {r["id"] for r in run["tool"]["driver"]["rules"]}
 found = [(r["ruleId"], r["locations"][0]["physicalLocation"]["region"]["startLine"]) for r in run["results"]]

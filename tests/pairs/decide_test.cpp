@@ -1,6 +1,7 @@
 // Pairs decided against exact meshes by other code, in configurations at random.
 
 #include <gtest/gtest.h>
+#include <kaboum/base/error.h>
 #include <kaboum/judge/placement.h>
 #include <kaboum/judge/solid.h>
 #include <kaboum/pairs/decide.h>
@@ -88,6 +89,34 @@ TEST(DecidedPairs, AgreeWithMeshesInConfigurationsAtRandom) {
   EXPECT_GT(always, 3U);
   EXPECT_GT(touch, 50U);
   EXPECT_LT(open, 30U);
+}
+
+TEST(DecidedPairs, InOneConfigurationAgreeWithMeshesThere) {
+  std::size_t apart = 0, touch = 0, open = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const TestRobot of = test::random_robot(seed);
+    const Oracle oracle(of);
+    Random random(seed);
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<double> q = test::random_configuration(of.robot, random);
+      const auto at = oracle.places(q);
+      for (const DecidedPair& pair : decide_pairs_at(of.robot, q, of.surfaces, {.samples = 3})) {
+        EXPECT_EQ(pair.q, q);
+        if (pair.verdict == Verdict::Open) {
+          ++open;
+          continue;
+        }
+        const bool is_apart = pair.verdict == Verdict::Never;
+        ++(is_apart ? apart : touch);
+        EXPECT_EQ(oracle.meet(at, pair), !is_apart) << seed << ": " << pair.a << " " << pair.b;
+      }
+    }
+  }
+  EXPECT_GT(apart, 3'000U);
+  EXPECT_GT(touch, 300U);
+  EXPECT_LT(open, 30U);
+  const TestRobot of = test::random_robot(1);
+  EXPECT_THROW(decide_pairs_at(of.robot, {0}, of.surfaces, {}), kaboum::Error);
 }
 
 /// A box at the end of a turning arm, over a fixed box: how near it comes is known.

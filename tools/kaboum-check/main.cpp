@@ -27,27 +27,6 @@ namespace {
 
 using namespace kaboum;  // the tool's own names are few
 
-/// "0,1.5,-2": a value per variable.
-robot::Path parse_configuration(const tools::CheckOptions& o, const robot::Robot& robot) try {
-  const robot::NamedPath named = robot::parse_path_csv(o.configuration, "--configuration");
-  const std::size_t given = named.waypoints.front().size() + o.reading.fixed.size(),
-                    needed = robot.variables.size();
-  if (named.joints.empty() && (named.waypoints.size() > 1 || given != needed)) {
-    std::string names;
-    for (const robot::Variable& v : robot.variables) names += (names.empty() ? "" : ",") + v.name;
-    throw Error(ErrorCode::InvalidArgument,
-                "--configuration: " + std::to_string(needed) +
-                    " values are expected, one for each of " + names +
-                    (given == needed ? ", on one line" : ", not " + std::to_string(given)));
-  }
-  robot::Path path = robot::arrange(named, robot, "--configuration", false, o.reading.fixed);
-  if (o.reading.degrees) path = robot::from_degrees(std::move(path), robot);
-  if (o.reading.check_limits) robot::require_within_limits(path, robot, "--configuration");
-  return path;
-} catch (const Error& error) {  // the command line's fault, no file's
-  throw Error(ErrorCode::InvalidArgument, error.what());
-}
-
 /// The result: with --quiet, exit code and report have it.
 void say(const tools::CheckOptions& o, const std::string& line) {
   if (!o.common.quiet) std::cout << line << '\n';
@@ -397,8 +376,10 @@ int check(const tools::CheckOptions& o) {
     values = !o.batch.empty() ? robot::read_path(o.batch, model.kinematics, o.reading, notes)
              : !o.configurations.empty()
                  ? robot::read_path(o.configurations, model.kinematics, o.reading, notes)
-             : !o.configuration.empty() ? parse_configuration(o, model.kinematics)
-                                        : robot::Path{initial_state(scene.world).q[*robot]};
+             : !o.configuration.empty()
+                 ? robot::parse_configuration(o.configuration, "--configuration", model.kinematics,
+                                              o.reading)
+                 : robot::Path{initial_state(scene.world).q[*robot]};
   }
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   const auto tell = [&](const std::string& line) { say(o, line); };

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 
 #include "common/shell_word.h"
 #include "results.h"
@@ -86,13 +85,8 @@ std::string line_of(const JudgedPair& pair) {
 }
 
 std::string replay_of(const JudgedMatrix& judged, const JudgedPair& pair) {
-  // Scenes take URDFs.
-  const bool urdf = std::filesystem::path(judged.robot).extension() == ".urdf";
-  if (pair.judgement != Judgement::Refuted || !urdf) return {};
-  std::string scene = "replay-" + pair.stated.a + "-" + pair.stated.b + ".json";
-  std::ranges::replace(scene, '/', '_');
-  return "kaboum-scene make " + shell_word(scene) + " --force --robot " +
-         shell_word("robot=" + judged.robot) + " && kaboum-check " + shell_word(scene) +
+  if (pair.judgement != Judgement::Refuted) return {};
+  return judged.again + " --links " + shell_word(pair.stated.a + "," + pair.stated.b) +
          " --configuration=" + pairs::text_of(pair.q);
 }
 

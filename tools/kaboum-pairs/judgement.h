@@ -17,7 +17,8 @@ struct FailOn {
 
 /// A judged matrix, and what it was judged by.
 struct JudgedMatrix {
-  std::string robot, file;  ///< names of files
+  std::string again;  ///< the command that decides pairs of the same shapes of the robot
+  std::string file;   ///< name
   pairs::Matrix matrix;
   std::vector<pairs::JudgedPair> pairs;
 
@@ -27,7 +28,7 @@ struct JudgedMatrix {
 
 /// "line 12: panda_link2 panda_link6 (Never): refuted, 0.0541 to 0.0812 deep at 0,0,…".
 std::string line_of(const pairs::JudgedPair& pair);
-/// Commands that show the contact of a refuted pair by other means; empty: it is none.
+/// A command that shows the contact of a refuted pair; empty: it is none.
 std::string replay_of(const JudgedMatrix& judged, const pairs::JudgedPair& pair);
 std::string summary_of(const JudgedMatrix& judged);
 /// For reports and --json.

@@ -2,6 +2,7 @@
 
 #include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
+#include <kaboum/robot/path_file.h>
 #include <kaboum/robot/robot_file.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,7 @@
 #include <set>
 #include <utility>
 
+#include "common/shell_word.h"
 #include "judgement.h"
 #include "options.h"
 #include "results.h"
@@ -70,20 +72,26 @@ std::vector<pairs::DecidedPair> decide_stated(const robot::RobotFile& file, cons
   return out;
 }
 
-/// @param matrix  null: all pairs are decided
 /// @param notes  gets what a user should know, besides being printed
-std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o,
-                                       const pairs::Matrix* matrix,
-                                       std::vector<std::string>& notes) {
+std::vector<pairs::LinkSurface> read_surfaces(const robot::RobotFile& file, const PairsOptions& o,
+                                              std::vector<std::string>& notes) {
   notes = file.robot.notes;
   for (const std::string& note :
        robot::notes_on({{}, robot::bare_links(file.robot, o.choice.visual, o.choice.links).other},
                        o.choice.visual, ": nothing of this is looked at"))
     notes.push_back(note);
-  const std::vector<pairs::LinkSurface> surfaces =
+  std::vector<pairs::LinkSurface> surfaces =
       tools::naming(o.robot, [&] { return tools::surfaces_of(file, o.choice, notes); });
   for (const std::string& note : notes) tools::log(o.common.quiet, note);
   if (surfaces.size() < 2) refuse_no_pair(file, o);
+  return surfaces;
+}
+
+/// @param matrix  null: all pairs are decided
+/// @param q  the configuration that is meant; empty: all of them
+std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const PairsOptions& o,
+                                       const std::vector<pairs::LinkSurface>& surfaces,
+                                       const pairs::Matrix* matrix, const std::vector<double>& q) {
   tools::Progress progress(o.common.quiet);
   std::mutex one;
   std::chrono::steady_clock::time_point shown;
@@ -95,6 +103,7 @@ std::vector<pairs::DecidedPair> decide(const robot::RobotFile& file, const Pairs
     shown = now;
     progress.show(std::to_string(decided) + " of " + std::to_string(all) + " pairs decided");
   };
+  if (!q.empty()) return pairs::decide_pairs_at(file.robot, q, surfaces, options);
   return matrix != nullptr ? decide_stated(file, o, *matrix, surfaces, options)
                            : pairs::decide_pairs(file.robot, surfaces, options);
 }
@@ -123,17 +132,59 @@ void say_judgement(const tools::JudgedMatrix& judged) {
     std::cout << "line " << fault.line << ": " << fault.text << '\n';
 }
 
+/// The command that decides pairs of the same shapes of the robot.
+std::string again(const PairsOptions& o) {
+  std::string out = "kaboum-pairs " + tools::shell_file(o.robot);
+  if (o.choice.visual) out += " --geometry visual";
+  for (const std::string& folder : o.choice.packages)
+    out += " --package-path " + tools::shell_word(folder);
+  for (const std::string& argument : o.xacro_arguments)
+    out += " --xacro-args " + tools::shell_word(argument);
+  return out;
+}
+
+/// Decides pairs in one configuration.
+int run_at(const robot::RobotFile& file, const PairsOptions& o) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<double> q = robot::parse_configuration(o.configuration, "--configuration",
+                                                           file.robot, {.check_limits = false})
+                                    .front();
+  std::vector<std::string> notes;
+  const std::vector<pairs::LinkSurface> surfaces = read_surfaces(file, o, notes);
+  const std::vector<pairs::DecidedPair> pairs = decide(file, o, surfaces, nullptr, q);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const tools::Json report = {{"robot", {{"file", o.robot}, {"sha256", file.sha256}}},
+                              {"notes", notes},
+                              {"configuration", q},
+                              {"pairs", tools::pairs_json(file.robot, pairs)}};
+  if (o.json) {
+    std::cout << report.dump(2, ' ', false, tools::Json::error_handler_t::replace) << '\n';
+  } else if (!o.common.quiet) {
+    for (const pairs::DecidedPair& pair : pairs)
+      std::cout << tools::line_of(file.robot, pair, tools::Span::Configuration) << '\n';
+  }
+  tools::log(o.common.quiet, tools::summary_of(pairs, tools::Span::Configuration, seconds));
+  if (!o.preview.empty())
+    io::write_file(o.preview, tools::picture_of(file.robot, surfaces, q, pairs));
+  tools::write_report(o.common, "kaboum-pairs", report);
+  if (std::ranges::any_of(pairs, tools::is_contact)) return tools::kNo;
+  return std::ranges::any_of(pairs, tools::is_unknown) ? tools::kLimit : tools::kDone;
+}
+
 int run(const PairsOptions& o) {
   tools::require_valid(o);
   tools::require_apart({{"--srdf", o.srdf},
                         {"--output", o.output},
                         {"--junit", o.junit},
                         {"--sarif", o.sarif},
+                        {"--preview", o.preview},
                         {"--report", o.common.report}},
                        {o.robot, o.judge});
   const auto begin = std::chrono::steady_clock::now();
   const robot::RobotFile file =
       robot::read_robot(o.robot, robot::Motions::All, o.xacro_arguments, o.choice.packages);
+  if (!o.configuration.empty()) return run_at(file, o);
   std::optional<pairs::Matrix> matrix;
   if (!o.judge.empty()) {
     matrix = pairs::parse_matrix(text_of(o.judge), o.judge, file.robot);
@@ -142,7 +193,10 @@ int run(const PairsOptions& o) {
   std::vector<std::string> notes;
   const bool is_idle = matrix && matrix->pairs.empty();
   std::vector<pairs::DecidedPair> pairs;
-  if (!is_idle || !o.srdf.empty()) pairs = decide(file, o, matrix ? &*matrix : nullptr, notes);
+  if (!is_idle || !o.srdf.empty()) {
+    const std::vector<pairs::LinkSurface> surfaces = read_surfaces(file, o, notes);
+    pairs = decide(file, o, surfaces, matrix ? &*matrix : nullptr, {});
+  }
   if (is_idle) {
     notes.push_back(o.judge + " disables no pair of links: there is nothing to judge");
     tools::log(o.common.quiet, notes.back());
@@ -154,7 +208,7 @@ int run(const PairsOptions& o) {
                         {"pairs", tools::pairs_json(file.robot, pairs)}};
   std::optional<tools::JudgedMatrix> judged;
   if (matrix) {
-    judged = tools::JudgedMatrix{o.robot, o.judge, std::move(*matrix), {}};
+    judged = tools::JudgedMatrix{again(o), o.judge, std::move(*matrix), {}};
     judged->pairs = pairs::judge(judged->matrix, file.robot, pairs);
     report["matrix"] = tools::matrix_json(*judged);
   }
@@ -166,9 +220,9 @@ int run(const PairsOptions& o) {
     say_judgement(*judged);
   } else {
     for (const pairs::DecidedPair& pair : pairs)
-      std::cout << tools::line_of(file.robot, pair) << '\n';
+      std::cout << tools::line_of(file.robot, pair, tools::Span::Limits) << '\n';
   }
-  tools::log(o.common.quiet, tools::summary_of(pairs, seconds));
+  tools::log(o.common.quiet, tools::summary_of(pairs, tools::Span::Limits, seconds));
   if (judged) tools::log(o.common.quiet, tools::summary_of(*judged));
   write(o.srdf, [&] { return tools::to_srdf(file.robot, pairs); });
   if (const std::string left = tools::left_out_of_srdf(file.robot, pairs);

@@ -17,11 +17,12 @@ void describe(CLI::App& app, PairsOptions& o) {
   app.add_option("ROBOT", o.robot, "URDF, MJCF, SDF, or the Robotics Library's rlkin or rlmdl")
       ->type_name("FILE")
       ->required();
-  app.add_option(
-         "--srdf", o.srdf,
-         "Write the pairs that need no check as SRDF: those that never touch, those that fixed "
-         "joints connect, and those that one joint does that never touch away from it")
-      ->type_name("FILE");
+  CLI::Option* srdf =
+      app.add_option(
+             "--srdf", o.srdf,
+             "Write the pairs that need no check as SRDF: those that never touch, those that fixed "
+             "joints connect, and those that one joint does that never touch away from it")
+          ->type_name("FILE");
   CLI::Option* judge =
       app.add_option(
              "--judge", o.judge,
@@ -52,6 +53,17 @@ void describe(CLI::App& app, PairsOptions& o) {
       ->delimiter(',')
       ->check(CLI::IsMember({"refuted", "open", "faults"}))
       ->needs(judge);
+  CLI::Option* one =
+      app.add_option("--configuration", o.configuration,
+                     "Decide the pairs in this configuration only: a value per joint that moves, "
+                     "separated by commas, radians and metres")
+          ->type_name("Q1,Q2,…")
+          ->excludes(judge)
+          ->excludes(srdf);
+  app.add_option("--preview", o.preview,
+                 "Write a picture (PNG) of that configuration: links that touch are orange")
+      ->type_name("FILE")
+      ->needs(one);
   add_request_options(app, robot::shape_options(), o.choice, o.stated);
   add_xacro_arguments(app, o.xacro_arguments);
   add_request_options(app, pairs::decide_options(), o.decide, o.stated);
@@ -61,10 +73,10 @@ void describe(CLI::App& app, PairsOptions& o) {
       "Never and always are proved over all of the joints' limits; a contact is shown by a "
       "configuration. What is open has a bracket of the smallest distance.\n"
       "Exit codes: 0 all pairs are decided; with --judge: none that the file disables is refuted, "
-      "nor with --fail-on open left open, nor with --fail-on faults has the file any; 1 with "
-      "--judge: "
-      "one is, or it has; 2 usage; 3 bad input; 4 output "
-      "failed; 6 internal error; 7 some pairs stay open (--timeout, --max-boxes).");
+      "nor with --fail-on open left open, nor with --fail-on faults has the file any; with "
+      "--configuration: no two links touch, but where a joint connects them; 1 with --judge: one "
+      "is, or it has; with --configuration: two touch; 2 usage; 3 bad input; 4 output failed; 6 "
+      "internal error; 7 some pairs stay open (--timeout, --max-boxes).");
 }
 
 void require_valid(const PairsOptions& o) {

@@ -23,6 +23,8 @@ struct PairsOptions {
   std::string judge;                 ///< a matrix
   std::string output, junit, sarif;  ///< to write, of the judged matrix
   FailOn fail_on;
+  std::string configuration;  ///< the only one that pairs are decided in; empty: all of them
+  std::string preview;        ///< to write, of that configuration
   robot::ShapeChoice choice;
   std::vector<std::string> xacro_arguments;
   pairs::DecideOptions decide;

@@ -3,6 +3,9 @@
 #include "results.h"
 
 #include <kaboum/pairs/srdf.h>
+#include <kaboum/picture/png_file.h>
+#include <kaboum/picture/render.h>
+#include <kaboum/robot/kinematics.h>
 
 #include <algorithm>
 #include <array>
@@ -34,7 +37,22 @@ Json configuration_json(const robot::Robot& robot, const std::vector<double>& q)
   return out;
 }
 
+bool touches(Verdict verdict) { return verdict == Verdict::Always || verdict == Verdict::CanTouch; }
+
+std::string word_of(Verdict verdict, Span span) {
+  if (span == Span::Limits || verdict == Verdict::Open) return pairs::name_of(verdict);
+  return verdict == Verdict::Never ? "apart" : "in contact";
+}
+
 }  // namespace
+
+bool is_contact(const DecidedPair& pair) {
+  return touches(pair.verdict) && !pairs::is_connected(pair);
+}
+
+bool is_unknown(const DecidedPair& pair) {
+  return pair.verdict == Verdict::Open && !pairs::is_connected(pair);
+}
 
 std::string words_of(const pairs::Bracket& bracket) {
   return std::isfinite(bracket.upper) ? number(bracket.lower) + " to " + number(bracket.upper)
@@ -65,7 +83,7 @@ Json pairs_json(const robot::Robot& robot, const std::vector<DecidedPair>& pairs
   return out;
 }
 
-std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
+std::string line_of(const robot::Robot& robot, const DecidedPair& pair, Span span) {
   std::string out = robot.links[pair.a].name + " " + robot.links[pair.b].name + ": ";
   if (pair.relation != Relation::Moving) {
     out += pairs::name_of(pair.relation);
@@ -75,30 +93,67 @@ std::string line_of(const robot::Robot& robot, const DecidedPair& pair) {
   const bool away_only = pair.away && pair.away->beyond > 0;
   const bool open_at_joint =
       pair.verdict == Verdict::Open && away_only && pair.away->verdict == Verdict::Never;
-  out += pairs::name_of(pair.verdict);
+  out += word_of(pair.verdict, span);
   if (open_at_joint) out += " at the joint";
   if (pair.depth.lower > 0) {
     out += ", " + words_of(pair.depth) + " deep";
-    if (!pair.q.empty()) out += " at " + pairs::text_of(pair.q);
+    if (!pair.q.empty() && span == Span::Limits) out += " at " + pairs::text_of(pair.q);
   } else if (pair.verdict != Verdict::Always) {
-    out += ", smallest distance " + words_of(pair.nearest);
+    out += (span == Span::Limits ? ", smallest distance " : ", distance ") + words_of(pair.nearest);
   }
   if (away_only) {
     out += "; farther than " + number(pair.away->beyond) + " from the joint: ";
-    out += pairs::name_of(pair.away->verdict);
+    out += word_of(pair.away->verdict, span);
   }
   if (!pair.why.empty()) out += "; " + pair.why;
   if (pair.unfinished) out += "; a longer --timeout or more --max-boxes may decide it";
   return out;
 }
 
-std::string summary_of(const std::vector<DecidedPair>& pairs, double seconds) {
-  const auto count = [&](Verdict verdict) {
-    return std::to_string(std::ranges::count(pairs, verdict, &DecidedPair::verdict));
+std::string summary_of(const std::vector<DecidedPair>& pairs, Span span, double seconds) {
+  const auto count = [&](const auto& is) {
+    return std::to_string(std::ranges::count_if(pairs, is));
   };
-  return std::to_string(pairs.size()) + " pairs: " + count(Verdict::Never) + " never touch, " +
-         count(Verdict::Always) + " always do, " + count(Verdict::CanTouch) + " can, " +
-         count(Verdict::Open) + " open (" + number(seconds) + " s)";
+  const auto has = [&](Verdict verdict) {
+    return count([verdict](const DecidedPair& pair) { return pair.verdict == verdict; });
+  };
+  const std::string begin = std::to_string(pairs.size()) + " pairs: " + has(Verdict::Never),
+                    end = " (" + number(seconds) + " s)";
+  if (span == Span::Limits)
+    return begin + " never touch, " + has(Verdict::Always) + " always do, " +
+           has(Verdict::CanTouch) + " can, " + has(Verdict::Open) + " open" + end;
+  return begin + " apart, " + count([](const DecidedPair& pair) {
+           return pair.verdict != Verdict::Never && pairs::is_connected(pair);
+         }) +
+         " touch at a joint at most, " + count(is_contact) + " in contact, " + count(is_unknown) +
+         " open" + end;
+}
+
+std::vector<char> picture_of(const robot::Robot& robot,
+                             const std::vector<pairs::LinkSurface>& surfaces,
+                             const std::vector<double>& q, const std::vector<DecidedPair>& pairs) {
+  constexpr int kPanel = 1000;
+  constexpr picture::Colour kLink{0.66F, 0.68F, 0.71F}, kTouching{0.95F, 0.62F, 0.22F};
+  const std::vector<geom::Transform> poses = robot::forward(robot, q);
+  picture::Image image(kPanel, kPanel, picture::Colour{1, 1, 1});
+  geom::Mesh all;
+  picture::Style style;
+  for (const pairs::LinkSurface& surface : surfaces) {
+    const bool touching = std::ranges::any_of(pairs, [&](const DecidedPair& pair) {
+      return is_contact(pair) && (pair.a == surface.link || pair.b == surface.link);
+    });
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    for (const geom::Vec3& p : surface.outer.vertices)
+      all.vertices.emplace_back(poses[surface.link] * p);
+    for (const geom::Triangle& t : surface.outer.triangles)
+      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    style.of_triangle.resize(all.triangles.size(), touching ? kTouching : kLink);
+  }
+  if (!all.triangles.empty()) {
+    const picture::Camera camera(geom::bounding_box(all), {}, kPanel, kPanel);
+    picture::draw_mesh(image, 0, 0, kPanel, kPanel, all, camera, style);
+  }
+  return picture::encode_png(image);
 }
 
 std::string to_srdf(const robot::Robot& robot, const std::vector<DecidedPair>& decided) {

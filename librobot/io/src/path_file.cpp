@@ -351,6 +351,26 @@ Path read_path(const std::string& file, const Robot& robot, const PathOptions& o
   return read_arranged(file, robot, options, false, false, notes).waypoints;
 }
 
+Path parse_configuration(const std::string& text, const std::string& name, const Robot& robot,
+                         const PathOptions& options) try {
+  const NamedPath named = parse_path_csv(text, name);
+  const std::size_t given = named.waypoints.front().size() + options.fixed.size(),
+                    needed = robot.variables.size();
+  if (named.joints.empty() && (named.waypoints.size() > 1 || given != needed)) {
+    std::string names;
+    for (const Variable& v : robot.variables) names += (names.empty() ? "" : ",") + v.name;
+    throw Error(ErrorCode::InvalidArgument,
+                name + ": " + std::to_string(needed) + " values are expected, one for each of " +
+                    names + (given == needed ? ", on one line" : ", not " + std::to_string(given)));
+  }
+  Path path = arrange(named, robot, name, false, options.fixed);
+  if (options.degrees) path = from_degrees(std::move(path), robot);
+  if (options.check_limits) require_within_limits(path, robot, name);
+  return path;
+} catch (const Error& error) {  // the command line's fault, no file's
+  throw Error(ErrorCode::InvalidArgument, error.what());
+}
+
 std::string largest_move(const Path& path, const Robot& robot) {
   double largest = 0;
   std::ostringstream text;

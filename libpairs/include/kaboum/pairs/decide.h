@@ -99,6 +99,14 @@ std::vector<DecidedPair> decide_pairs(const robot::Robot& robot,
                                       const std::vector<LinkSurface>& surfaces,
                                       const DecideOptions& options);
 
+/// The same in one configuration instead of all that the limits have: those that never touch are
+/// apart there, those that always do or can touch there. What is at a joint is as in decide_pairs.
+/// @param q  a value per variable, within the limits or not
+/// @throws Error{InvalidArgument} for another number of values, and as decide_pairs
+std::vector<DecidedPair> decide_pairs_at(const robot::Robot& robot, const std::vector<double>& q,
+                                         const std::vector<LinkSurface>& surfaces,
+                                         const DecideOptions& options);
+
 /// "0.5,-1.2,0": the shortest texts that read back as the same numbers.
 std::string text_of(const std::vector<double>& q);
 

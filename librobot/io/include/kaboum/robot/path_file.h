@@ -41,6 +41,12 @@ TimedPath read_timed_path(const std::string& file, const Robot& robot, const Pat
 Path read_path(const std::string& file, const Robot& robot, const PathOptions& options,
                std::vector<std::string>& notes);
 
+/// The waypoint that an option of a program states, "0,1.5,-2": a value per variable.
+/// @param name  the option's, for messages
+/// @throws Error{InvalidArgument} for another number of values, and as arrange
+Path parse_configuration(const std::string& text, const std::string& name, const Robot& robot,
+                         const PathOptions& options);
+
 /// The largest move of a joint between two waypoints, in words; empty if none moves.
 std::string largest_move(const Path& path, const Robot& robot);
 
