@@ -7,12 +7,6 @@
 namespace kaboum::wrap {
 namespace {
 
-inline bool overlap(const geom::Box3& a, const geom::Box3& b) {
-  bool apart = false;  // without branches
-  for (int k = 0; k < 3; ++k) apart |= (a.min[k] > b.max[k]) | (b.min[k] > a.max[k]);
-  return !apart;
-}
-
 double largest(const Vec3& x) { return x.cwiseAbs().maxCoeff(); }
 
 }  // namespace

@@ -15,7 +15,9 @@ void Crowd::build(const std::vector<geom::Vec3>& points,
   const geom::Bvh bvh(part);
   nodes_.assign(bvh.nodes().size(), {});
   leaf_.assign(triangles.size(), kNone);
-  after_.assign(triangles.size(), kNone);
+  entry_.assign(triangles.size(), kNone);
+  entries_.clear();
+  entries_.reserve(number.size());
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
     const geom::Bvh::Node& from = bvh.nodes()[i];
     nodes_[i].box = from.box;
@@ -24,12 +26,15 @@ void Crowd::build(const std::vector<geom::Vec3>& points,
       nodes_[from.first].parent = nodes_[i + 1].parent = i;
       continue;
     }
-    for (const std::uint32_t entry : bvh.order().subspan(from.first, from.count)) {
-      const std::uint32_t t = number[entry];
+    nodes_[i].first = static_cast<std::uint32_t>(entries_.size());
+    for (const std::uint32_t place : bvh.order().subspan(from.first, from.count)) {
+      const std::uint32_t t = number[place];
       leaf_[t] = i;
-      after_[t] = nodes_[i].first;
-      nodes_[i].first = t;
+      entry_[t] = static_cast<std::uint32_t>(entries_.size());
+      entries_.push_back({{}, t, kNone});
+      for (const std::uint32_t v : triangles[t]) entries_.back().box.extend(points[v]);
     }
+    nodes_[i].end = static_cast<std::uint32_t>(entries_.size());
   }
   built_ = part.triangles.size();
   changes_ = 0;
@@ -46,16 +51,19 @@ void Crowd::enlarge(std::uint32_t node, const geom::Box3& box) {
 
 void Crowd::grow(std::uint32_t triangle, const geom::Box3& box) {
   ++changes_;
+  entries_[entry_[triangle]].box = box;
   enlarge(leaf_[triangle], box);
 }
 
 void Crowd::add(std::uint32_t triangle, std::uint32_t near, const geom::Box3& box) {
   ++changes_;
   leaf_.resize(triangle + 1, kNone);
-  after_.resize(triangle + 1, kNone);
+  entry_.resize(triangle + 1, kNone);
+  Node& leaf = nodes_[leaf_[near]];
   leaf_[triangle] = leaf_[near];
-  after_[triangle] = nodes_[leaf_[near]].first;
-  nodes_[leaf_[near]].first = triangle;
+  entry_[triangle] = static_cast<std::uint32_t>(entries_.size());
+  entries_.push_back({box, triangle, leaf.added});
+  leaf.added = entry_[triangle];
   enlarge(leaf_[near], box);
 }
 

@@ -7,10 +7,17 @@
 #include <limits>
 #include <span>
 
-/// Rounded arithmetic that says "apart" only where that is certain.
+/// Boxes, and rounded arithmetic that says "apart" only where that is certain.
 namespace kaboum::wrap {
 
 using geom::Vec3;
+
+/// Whether two boxes have a point in common. Without branches.
+inline bool overlap(const geom::Box3& a, const geom::Box3& b) {
+  bool apart = false;
+  for (int k = 0; k < 3; ++k) apart |= (a.min[k] > b.max[k]) | (b.min[k] > a.max[k]);
+  return !apart;
+}
 
 /// What parts ranges along n has to be larger than this.
 ///

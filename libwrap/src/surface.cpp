@@ -34,12 +34,6 @@ geom::Box3 box_of(const geom::NamedTriangle& t) {
   return box;
 }
 
-bool overlap(const geom::Box3& a, const geom::Box3& b) {
-  bool apart = false;  // without branches
-  for (int k = 0; k < 3; ++k) apart |= (a.min[k] > b.max[k]) | (b.min[k] > a.max[k]);
-  return !apart;
-}
-
 }  // namespace
 
 bool Surface::apart(std::span<const Change> changes, std::span<const std::uint32_t> removed) {
@@ -58,7 +52,7 @@ bool Surface::apart(std::span<const Change> changes, std::span<const std::uint32
     for (std::size_t k = i + 1; k < changes.size(); ++k)
       if (geom::meet_improperly(changes[i].to, changes[k].to)) return false;
   return crowd_.all_near(all, [&](std::uint32_t t) {
-    if (gone(t) || mark_[t] == check_) return true;
+    if (mark_[t] == check_) return true;
     const geom::Triangle& c = triangles_[t];
     const geom::NamedTriangle other{c, {points_[c[0]], points_[c[1]], points_[c[2]]}};
     const geom::Box3 box = box_of(other);
@@ -191,6 +185,7 @@ bool Surface::contract(std::uint32_t a, std::uint32_t b, const Vec3& p) {
     for (const std::uint32_t v : triangles_[t])
       if (v != b) leave(v, t);
     triangles_[t] = {kNone, kNone, kNone};
+    crowd_.remove(t);
   }
   for (const std::uint32_t t : stars_[b]) {
     if (gone(t)) continue;
