@@ -10,7 +10,7 @@ namespace kaboum::certify::cache_words {
 /// What libverify decides, for all that is kept with a claim.
 inline constexpr std::string_view kDecisions = "decisions 4";
 /// Bodies of sets.
-inline constexpr std::string_view kSets = "planes 31";
+inline constexpr std::string_view kSets = "planes 32";
 /// Sets of spheres, beside it.
 inline constexpr std::string_view kBalls = "parallel bodies 3";
 /// Inner sets of spheres, beside it.
@@ -20,9 +20,9 @@ inline constexpr std::string_view kSimple = "capsules and boxes 2";
 /// Bytes of their containers.
 inline constexpr std::string_view kContainers = "coloured";
 /// Polytopes of links' bodies, and the bytes of their containers.
-inline constexpr std::string_view kLinks = "2, coloured";
+inline constexpr std::string_view kLinks = "3, coloured";
 /// Meshes round the meshes of links.
-inline constexpr std::string_view kEnclosures = "distance 6";
+inline constexpr std::string_view kEnclosures = "distance 7";
 /// Triangles, notes and units that readers of libio give for the bytes of a file.
 inline constexpr std::string_view kReaders = "4";
 

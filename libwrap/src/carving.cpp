@@ -218,6 +218,13 @@ class Carver {
     return {};
   }
 
+  /// Whether all of a facet rests on the input (CarvingOptions::rest).
+  [[nodiscard]] bool rests(std::uint32_t c, std::uint32_t side) const {
+    const auto corners = facet(c, side);
+    return obstacle_.covers({corners.begin(), corners.end()}, options_.rest(),
+                            info_[c].foot.triangle);
+  }
+
   bool clear(std::uint32_t c) {
     Info& info = info_[c];
     if (info.clear == Known::No) {
@@ -246,7 +253,7 @@ class Carver {
       }
       point = on_offset(info_[c].sphere.center, info_[c].foot.triangle);
     }
-    if (!point->allFinite()) return;
+    if (!point->allFinite() || rests(c, gate.side)) return;
     add(options_.float32 ? geom::to_float32(*point) : *point, c, delaunay_.cell(c).next[gate.side]);
   }
 

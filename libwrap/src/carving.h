@@ -2,6 +2,7 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "obstacle.h"
@@ -14,6 +15,10 @@ struct CarvingOptions {
   double clearance = 0;  ///< of the outside from the input [length]
   bool float32 = true;
   std::size_t max_points = 0;
+
+  /// Facets all of whose points are nearer to the input than this are not carved: no ball's centre
+  /// passes them, and more corners would bring them little nearer. [length]
+  [[nodiscard]] double rest() const { return std::min(1.25 * offset, 0.9 * radius); }
 };
 
 /// What a ball cannot reach round an obstacle: the boundary of a union of tetrahedra.

@@ -5,6 +5,7 @@
 #include <kaboum/geom/triangle_search.h>
 
 #include <span>
+#include <vector>
 
 #include "cones.h"
 
@@ -46,6 +47,10 @@ class Obstacle {
     hint = found;
     return true;
   }
+
+  /// Whether all points of a convex polygon are within the radius of the input, rounding aside. May
+  /// say no where that takes long to tell. @param hint  a triangle
+  [[nodiscard]] bool covers(std::vector<Vec3> polygon, double radius, std::uint32_t hint) const;
 
  private:
   geom::DistanceQuery query_;

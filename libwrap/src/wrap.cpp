@@ -72,11 +72,12 @@ void require_fine(const geom::Box3& box, const WrapOptions& o) {
     throw Error(ErrorCode::InvalidInput, too_coarse(box, o));
 }
 
-/// Refuses at once what carving would refuse after minutes. The triangles that carving ends with
-/// have circumradii of at most half the seal, so areas of at most 1.3 times its square; above and
-/// below the input's largest triangle they cover its area; and they have about half as many
-/// corners.
-void require_few_points(const geom::Mesh& input, const WrapOptions& o) {
+/// Refuses at once what carving would refuse after minutes. Where no facet can rest, the triangles
+/// that carving ends with have circumradii of at most half the seal, so areas of at most 1.3 times
+/// its square; above and below the input's largest triangle they cover its area; and they have
+/// about half as many corners.
+void require_few_points(const geom::Mesh& input, const CarvingOptions& o) {
+  if (o.rest() >= o.offset) return;
   double largest = 0;
   for (const auto& [a, b, c] : input.triangles)
     largest = std::max(largest, (input.vertices[b] - input.vertices[a])
@@ -84,8 +85,7 @@ void require_few_points(const geom::Mesh& input, const WrapOptions& o) {
                                         .norm() /
                                     2);
   constexpr double kShare = 0.5;  // 0.77, with room for the few larger ones
-  const double radius = o.seal / 2;
-  if (kShare * (largest / radius / radius) > static_cast<double>(o.max_points))
+  if (kShare * (largest / o.radius / o.radius) > static_cast<double>(o.max_points))
     throw_too_fine(o.max_points);
 }
 
@@ -111,7 +111,6 @@ Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   };
   const geom::Box3 box = geom::bounding_box(input);
   require_fine(box, options);
-  require_few_points(input, options);
   const double clearance = options.clearance;
   const Obstacle obstacle(input, clearance);
   CarvingOptions carving;
@@ -121,6 +120,7 @@ Wrap wrap(const geom::Mesh& input, const WrapOptions& options) {
   carving.clearance = clearance;
   carving.float32 = options.float32;
   carving.max_points = options.max_points;
+  require_few_points(input, carving);
   say("carving");
   Carving carved = carve(input, obstacle, carving);
   Wrap result;

@@ -80,7 +80,7 @@ TEST_F(CacheWords, OfSets) {
                      inner = set_of(bar(), SetRequest::Direction::Inner);
   EXPECT_EQ(std::string(cache_words::kSets) + ": " + hash_of(outer.artefact()) + " " +
                 hash_of(inner.artefact()),
-            "planes 31: aeff5a557cd83f1a 7f71fb4b408bf883");
+            "planes 32: aeff5a557cd83f1a 7f71fb4b408bf883");
   EXPECT_EQ(std::string(cache_words::kContainers) + ": " + hash(without_version(outer.bytes())),
             "coloured: 2b2f69dff98fbbe8");
 }
@@ -110,7 +110,7 @@ TEST_F(CacheWords, OfLinks) {
   const CertifiedRobot made =
       certify_robot(robot::read_robot((folder_ / "arm.urdf").string()), request);
   EXPECT_EQ(std::string(cache_words::kLinks) + ": " + hash_of(made.links.at(0).artefact()),
-            "2, coloured: 812fd72cdf0aa258");
+            "3, coloured: 812fd72cdf0aa258");
 }
 
 TEST_F(CacheWords, OfEnclosures) {
@@ -121,7 +121,7 @@ TEST_F(CacheWords, OfEnclosures) {
   std::string text;
   append(text, made.enclosure.artefact());
   EXPECT_EQ(std::string(cache_words::kEnclosures) + ": " + hash(text),
-            "distance 6: cde09b876b82331d");
+            "distance 7: cde09b876b82331d");
 }
 
 TEST_F(CacheWords, OfReaders) {

@@ -360,14 +360,56 @@ TEST(Wrap, RefusesWhatCannotBe) {
   EXPECT_EQ(code(cube, options), ErrorCode::InvalidInput);
 }
 
+/// The farthest distance of a wrap's points from the input, rounded up.
+double far_from(const Mesh& mesh, const Mesh& wrap) {
+  return geom::directed_distance(wrap, geom::DistanceQuery(mesh), {.relative_gap = 0.01}).max_upper;
+}
+
+/// Faces need no more points the finer a wrap is, edges hardly any: facets rest.
+TEST(Wrap, OfFacesNeedsFewPoints) {
+  const Mesh plate{{{0, 0, 0}, {1, 0, 0}, {0.2, 0.9, 0.1}}, {{0, 1, 2}}};
+  for (const Mesh& mesh : {plate, test::box({1, 1, 1}, 1), test::box({1, 1, 0.01}, 7)}) {
+    for (const double offset : {1e-3, 1e-4}) {
+      WrapOptions options;
+      options.offset = offset;
+      options.seal = 10 * offset;
+      const Wrap made = wrap(mesh, options);
+      EXPECT_LT(made.points, 3'000U) << offset;
+      expect_inside(mesh, made.mesh, std::to_string(offset));
+      EXPECT_LT(far_from(mesh, made.mesh), 4 * offset) << offset;
+    }
+  }
+}
+
+/// A facet over the mouth of a slot does not rest, however narrow the slot is beside the facet.
+TEST(Wrap, GoesIntoSlotsInLargeFaces) {
+  // Two blocks with a gap between them, wider than what is sealed.
+  Mesh blocks = test::box({1, 1, 0.5}, 1);
+  const Mesh other = test::translated(blocks, {1.012, 0, 0});
+  const auto count = static_cast<std::uint32_t>(blocks.vertices.size());
+  blocks.vertices.insert(blocks.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles)
+    blocks.triangles.push_back({a + count, b + count, c + count});
+  WrapOptions options;
+  options.offset = 1e-3;
+  options.seal = 0.01;
+  const Wrap made = wrap(blocks, options);
+  expect_inside(blocks, made.mesh, "blocks");
+  // In the middle of the gap one would be 6 mm away.
+  EXPECT_LT(far_from(blocks, made.mesh), 4e-3);
+  options.seal = 0.014;
+  EXPECT_GT(far_from(blocks, wrap(blocks, options).mesh), 5e-3);
+}
+
 TEST(Wrap, WhatIsMuchTooFineIsRefusedAtOnce) {
-  // What the refusal counts on: points of the tetrahedra by area over the square of the radius.
+  // What the refusal counts on where no facet can rest: points of the tetrahedra by area over the
+  // square of the radius.
   const Mesh plate{{{0, 0, 0}, {1, 0, 0}, {0.2, 0.9, 0.1}}, {{0, 1, 2}}};
   for (const Mesh& mesh : {plate, test::box({1, 1, 1}, 1), test::box({1, 1, 0.01}, 1)}) {
     for (const double seal : {0.2, 0.1, 0.05}) {
       WrapOptions options;
       options.seal = seal;
-      options.offset = seal / 20;
+      options.offset = seal / 2;
       double area = 0;
       for (const auto& [u, v, w] : mesh.triangles)
         area = std::max(area, (mesh.vertices[v] - mesh.vertices[u])
@@ -380,7 +422,7 @@ TEST(Wrap, WhatIsMuchTooFineIsRefusedAtOnce) {
   WrapOptions options;
   options.float32 = false;
   options.seal = 1e-7;
-  options.offset = 1e-8;
+  options.offset = 5e-8;
   try {
     wrap(plate, options);  // for minutes, without the refusal
     ADD_FAILURE();
