@@ -3,10 +3,11 @@
 
 #include "error_bound_certificate.h"
 
-#include <kaboum/geom/point_triangle.h>
+#include <kaboum/geom/points_near.h>
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace kaboum::bmesh {
 namespace {
@@ -18,29 +19,36 @@ constexpr std::uint32_t kMaxTotalCuts = 1000;
 /// About the nanoseconds that it takes to look whether a triangle carries a piece, and to cut one.
 constexpr std::uint64_t kCarry = 50, kCut = 300;
 
+/// Instead of how many pieces of a triangle are left: it has been cut anew, or could not be.
+constexpr std::uint32_t kPlaced = ~0U, kPieceByPiece = ~0U - 1;
+
 /// Pieces that a new triangle may fall into: large ones along an edge of the original need many.
 constexpr int kMaxCells = 4000;
+
+std::span<const Vec3> corners_of(const geom::ConvexPolygon& polygon) {
+  return {polygon.corner.data(), static_cast<std::size_t>(polygon.size)};
+}
 
 }  // namespace
 
 ErrorBoundCertificate::ErrorBoundCertificate(const geom::Mesh& original, double epsilon, Work* work)
-    : near_(original),
+    : original_(original),
+      near_(original),
       magnitude_(geom::bounding_box(original)
                      .min.cwiseAbs()
                      .cwiseMax(geom::bounding_box(original).max.cwiseAbs())
                      .maxCoeff()),
-      head_(original.triangles.size(), kNone),
+      head_(original.triangles.size()),
+      next_(original.triangles.size(), kNone),
+      pieces_(original.triangles.size(), 1),
       work_(work) {
   raise(epsilon);
-  pieces_.reserve(original.triangles.size());
-  for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
-    const geom::Triangle& tri = original.triangles[t];
-    head_[t] = static_cast<std::uint32_t>(pieces_.size());
-    pieces_.push_back(
-        {{original.vertices[tri[0]], original.vertices[tri[1]], original.vertices[tri[2]]},
-         0,
-         kNone});
-  }
+  std::iota(head_.begin(), head_.end(), 0U);
+}
+
+std::array<Vec3, 3> ErrorBoundCertificate::corners(std::uint32_t triangle) const {
+  const geom::Triangle& t = original_.triangles[triangle];
+  return {original_.vertices[t[0]], original_.vertices[t[1]], original_.vertices[t[2]]};
 }
 
 void ErrorBoundCertificate::raise(double epsilon) {
@@ -64,18 +72,15 @@ bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
     if (--cells < 0) return false;
     steps_ += kCut;
     const auto is_covered = [&] {
-      const std::array<Vec3, 3> t = near_.corners(hint_);
-      return std::all_of(e.polygon.corner.begin(), e.polygon.corner.begin() + e.polygon.size,
-                         [&](const Vec3& p) {
-                           return geom::point_triangle_upper(p, t[0], t[1], t[2]) <= epsilon_;
-                         });
+      const auto [a, b, c] = near_.corners(hint_);
+      return geom::all_within(corners_of(e.polygon), a, b, c, epsilon_);
     };
     const Vec3 middle = e.polygon.centroid();
     const double most = epsilon_ * epsilon_;
-    if (near_.squared_near(middle, hint_) <= most && is_covered()) continue;
-    const std::uint32_t found = hint_;
-    if (!(near_.squared(middle, hint_, 0, &steps_) <= most)) return false;
-    if (hint_ != found && is_covered()) continue;
+    if (near_.squared_near(middle, hint_) > most) {
+      if (!(near_.squared(middle, hint_, 0, &steps_) <= most)) return false;
+    }
+    if (is_covered()) continue;
     const auto [a, b, c] = near_.corners(hint_);
     const geom::PrismCut pieces = geom::cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
     if (size + pieces.count > kStack) return false;
@@ -84,48 +89,50 @@ bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
   return true;
 }
 
+std::size_t ErrorBoundCertificate::pieces() const {
+  return std::accumulate(pieces_.begin(), pieces_.end(), std::size_t{0});
+}
+
 std::uint32_t ErrorBoundCertificate::allocate() {
   if (free_ == kNone) {
-    pieces_.emplace_back();
-    return static_cast<std::uint32_t>(pieces_.size() - 1);
+    parts_.emplace_back();
+    return static_cast<std::uint32_t>(parts_.size() - 1);
   }
   const std::uint32_t p = free_;
-  free_ = pieces_[p].next;
+  free_ = parts_[p].next;
   return p;
 }
 
 bool ErrorBoundCertificate::carries(const NewTriangle& triangle,
                                     const geom::ConvexPolygon& piece) const {
   const auto& [a, b, c] = triangle.corner;
-  for (int i = 0; i < piece.size; ++i)
-    if (!(geom::point_triangle_upper(piece.corner[i], a, b, c) <= epsilon_)) return false;
-  return true;
+  return geom::all_within(corners_of(piece), a, b, c, epsilon_);
 }
 
 void ErrorBoundCertificate::put(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                                std::uint32_t carrier) {
+                                std::uint32_t of, std::uint32_t carrier) {
   for (int i = 2; i < piece.size; ++i)
-    placed_.push_back({{piece.corner[0], piece.corner[i - 1], piece.corner[i]}, cuts, carrier});
+    placed_.push_back({{piece.corner[0], piece.corner[i - 1], piece.corner[i]}, of, cuts, carrier});
 }
 
 bool ErrorBoundCertificate::place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                                  std::span<const NewTriangle> added, NearestOf& nearest_of,
-                                  int cuts_left) {
+                                  Placing& placing, int cuts_left) {
+  const std::span<const NewTriangle> added = placing.added;
   const auto is_carried_by = [&](std::size_t k) {
     if (!carries(added[k], piece)) return false;
     last_carrier_ = k;
-    put(piece, cuts, added[k].index);
+    put(piece, cuts, placing.of, added[k].index);
     return true;
   };
   const std::size_t last = last_carrier_;
   steps_ += kCarry;
   if (is_carried_by(last)) return true;
-  steps_ += piece.size * nearest_of.steps();
+  steps_ += piece.size * placing.nearest.steps();
   // Most are too far from some corner by bounds that cost little.
   may_carry_.assign(added.size(), 1);
   may_carry_[last] = 0;
   for (int i = 0; i < piece.size; ++i)
-    nearest_of.within(piece.corner[i], epsilon_ * epsilon_, may_carry_);
+    placing.nearest.within(piece.corner[i], epsilon_ * epsilon_, may_carry_);
   for (std::size_t i = 1; i < added.size(); ++i) {
     const std::size_t k = (last + i) % added.size();
     if (may_carry_[k] == 0) continue;
@@ -138,13 +145,47 @@ bool ErrorBoundCertificate::place(const geom::ConvexPolygon& piece, std::uint32_
   steps_ += kCut;
   const Vec3 center = piece.centroid();
   std::size_t nearest = last;
-  const double distance = nearest_of.squared(center, nearest);
+  const double distance = placing.nearest.squared(center, nearest);
   if (!(distance <= epsilon_ * epsilon_)) return false;
   const auto& [a, b, c] = added[nearest].corner;
   const geom::PrismCut pieces = geom::cut_by_prism(piece, a, b, c, cuts_left % 3 == 0);
   last_carrier_ = nearest;
   for (int i = 0; i < pieces.count; ++i)
-    if (!place(pieces.piece[i], cuts + 1, added, nearest_of, cuts_left - 1)) return false;
+    if (!place(pieces.piece[i], cuts + 1, placing, cuts_left - 1)) return false;
+  return true;
+}
+
+/// Places a whole triangle of the original, or nothing.
+bool ErrorBoundCertificate::place_anew(std::uint32_t triangle, Placing& placing) {
+  const std::size_t before = placed_.size();
+  const auto [a, b, c] = corners(triangle);
+  placing.of = triangle;
+  if (place({a, b, c}, 0, placing, kMaxCuts)) return true;
+  placed_.resize(before);
+  return false;
+}
+
+/// Places all that the triangles carry. @pre pieces_ has what the others carry
+bool ErrorBoundCertificate::places_all(std::span<const std::uint32_t> removed, Placing& placing) {
+  for (const std::uint32_t t : removed) {
+    for (std::size_t i = 0; i < placing.added.size(); ++i)
+      if (placing.added[i].index == t) last_carrier_ = i;
+    bool all = true;
+    for_each_piece(t, [&](std::uint32_t p) {
+      if (!all) return;
+      placing.of = triangle_of(p);
+      std::uint32_t& left = pieces_[placing.of];
+      if (left == 0) left = place_anew(placing.of, placing) ? kPlaced : kPieceByPiece;
+      if (left == kPlaced) return;
+      if (p < next_.size()) {
+        all = false;
+        return;
+      }
+      const Part& q = part(p);
+      all = place({q.corner[0], q.corner[1], q.corner[2]}, q.cuts, placing, kMaxCuts);
+    });
+    if (!all) return false;
+  }
   return true;
 }
 
@@ -154,39 +195,48 @@ bool ErrorBoundCertificate::admits(std::span<const std::uint32_t> removed,
   last_carrier_ = 0;
   pieces_left_ = kMaxPieces;
   if (added.empty() || !(epsilon_ > 0)) return false;
-  NearestOf nearest(added);
   steps_ = 0;
-  const auto is_placed = [&](std::uint32_t t) {
-    for (std::size_t i = 0; i < added.size(); ++i)
-      if (added[i].index == t) last_carrier_ = i;
-    for (std::uint32_t p = head_[t]; p != kNone; p = pieces_[p].next)
-      if (const auto& [a, b, c] = pieces_[p].corner;
-          !place({a, b, c}, pieces_[p].cuts, added, nearest, kMaxCuts))
-        return false;
-    return true;
-  };
-  const bool admitted = std::all_of(removed.begin(), removed.end(), is_placed) &&
-                        std::all_of(added.begin(), added.end(),
-                                    [&](const NewTriangle& t) { return is_near(t.corner); });
+  for (const std::uint32_t t : removed)
+    for_each_piece(t, [&](std::uint32_t p) { --pieces_[triangle_of(p)]; });
+  Placing placing{added, NearestOf(added), kNone};
+  const bool placed = places_all(removed, placing);
+  for (const std::uint32_t t : removed)
+    for_each_piece(t, [&](std::uint32_t p) {
+      std::uint32_t& left = pieces_[triangle_of(p)];
+      if (left == kPlaced || left == kPieceByPiece) left = 0;
+      ++left;
+    });
+  const bool admitted = placed && std::all_of(added.begin(), added.end(),
+                                              [&](const auto& t) { return is_near(t.corner); });
   count(work_, steps_);
   return admitted;
 }
 
 void ErrorBoundCertificate::commit(std::span<const std::uint32_t> removed) {
+  const auto wholes = static_cast<std::uint32_t>(next_.size());
   for (const std::uint32_t t : removed) {
     std::uint32_t p = head_[t];
     head_[t] = kNone;
     while (p != kNone) {
-      const std::uint32_t next = pieces_[p].next;
-      pieces_[p].next = free_;
-      free_ = p;
+      --pieces_[triangle_of(p)];
+      std::uint32_t& link = p < wholes ? next_[p] : parts_[p - wholes].next;
+      const std::uint32_t next = link;
+      link = p < wholes ? kNone : free_;
+      if (p >= wholes) free_ = p - wholes;
       p = next;
     }
   }
   for (const CarriedTriangle& placed : placed_) {
+    std::uint32_t& head = head_[placed.carrier];
+    ++pieces_[placed.of];
+    if (placed.cuts == 0) {
+      next_[placed.of] = head;
+      head = placed.of;
+      continue;
+    }
     const std::uint32_t p = allocate();
-    pieces_[p] = {placed.corner, placed.cuts, head_[placed.carrier]};
-    head_[placed.carrier] = p;
+    parts_[p] = {placed.corner, placed.of, placed.cuts, head};
+    head = wholes + p;
   }
 }
 

@@ -22,7 +22,8 @@ using geom::Vec3;
 /// within ε of one and the same original triangle; the distance to one triangle is convex, so the
 /// whole piece is. From the original: every original triangle is covered by pieces, each carried by
 /// a current triangle within ε of its corners. A change is admitted only if all pieces carried by
-/// the triangles it removes, cut further where need be, find a new carrier.
+/// the triangles it removes, cut further where need be, find a new carrier. Where these are all
+/// pieces of an original triangle, it is cut anew.
 /// docs/algorithms/bounding-mesh.md, "The error bound".
 class ErrorBoundCertificate {
  public:
@@ -42,35 +43,65 @@ class ErrorBoundCertificate {
   /// Carries out the change that `admits` has just accepted.
   void commit(std::span<const std::uint32_t> removed);
 
+  /// Into how many pieces the original is cut.
+  [[nodiscard]] std::size_t pieces() const;
+
  private:
   static constexpr std::uint32_t kNone = ~0U;
   static constexpr int kMaxCuts = 9;       ///< of one piece in one change
   static constexpr int kMaxPieces = 2000;  ///< tried in one change
 
-  struct PolygonPart {
+  /// A piece that is no whole triangle of the original.
+  struct Part {
     std::array<Vec3, 3> corner;
-    std::uint32_t cuts;  ///< that led to it, since the beginning
+    std::uint32_t of;    ///< the triangle
+    std::uint32_t cuts;  ///< that led to it
     std::uint32_t next;
   };
+  /// A piece, whole or a part, and what carries it.
   struct CarriedTriangle {
     std::array<Vec3, 3> corner;
-    std::uint32_t cuts;
-    std::uint32_t carrier;
+    std::uint32_t of, cuts, carrier;
+  };
+  /// A piece that is to be placed.
+  struct Placing {
+    std::span<const NewTriangle> added;
+    NearestOf nearest;
+    std::uint32_t of;
   };
 
-  [[nodiscard]] bool place(const geom::ConvexPolygon& piece, std::uint32_t cuts,
-                           std::span<const NewTriangle> added, NearestOf& nearest, int cuts_left);
-  void put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t carrier);
+  /// Calls visit(piece) for all that triangle t carries.
+  template <class Visit>
+  void for_each_piece(std::uint32_t t, Visit&& visit) const {
+    for (std::uint32_t p = head_[t]; p != kNone; p = p < next_.size() ? next_[p] : part(p).next)
+      visit(p);
+  }
+  [[nodiscard]] const Part& part(std::uint32_t piece) const { return parts_[piece - next_.size()]; }
+  [[nodiscard]] std::uint32_t triangle_of(std::uint32_t piece) const {
+    return piece < next_.size() ? piece : part(piece).of;
+  }
+  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const;
+
+  [[nodiscard]] bool places_all(std::span<const std::uint32_t> removed, Placing& placing);
+  [[nodiscard]] bool place_anew(std::uint32_t triangle, Placing& placing);
+  [[nodiscard]] bool place(const geom::ConvexPolygon& piece, std::uint32_t cuts, Placing& placing,
+                           int cuts_left);
+  void put(const geom::ConvexPolygon& piece, std::uint32_t cuts, std::uint32_t of,
+           std::uint32_t carrier);
   [[nodiscard]] bool carries(const NewTriangle& triangle, const geom::ConvexPolygon& piece) const;
   std::uint32_t allocate();
 
   [[nodiscard]] bool is_near(const std::array<Vec3, 3>& triangle);
 
+  const geom::Mesh& original_;
   ClosestTriangle near_;
   double magnitude_;  // of the original's coordinates
   double epsilon_;
-  std::vector<PolygonPart> pieces_;
-  std::vector<std::uint32_t> head_;  // per current triangle
+  // Pieces by numbers: whole triangles of the original have their own, then come parts.
+  std::vector<std::uint32_t> head_;    // per current triangle
+  std::vector<std::uint32_t> next_;    // per triangle of the original, where it is carried whole
+  std::vector<std::uint32_t> pieces_;  // how many there are of it
+  std::vector<Part> parts_;
   std::uint32_t free_ = kNone;
   std::vector<CarriedTriangle> placed_;  // of the change under consideration
   std::vector<char> may_carry_;          // of the new triangles

@@ -290,6 +290,27 @@ std::optional<Vec3> NeighbourCollapse::find_position(std::uint32_t a, std::uint3
   return to.allFinite() && holds(to) ? std::optional<Vec3>(to) : std::nullopt;
 }
 
+/// Moves the vertices towards where the trial has them, by certified steps, and pulls them back
+/// where the deviation is little beyond the limit then. @return the deviation where that is above
+/// the limit, or something above it; else less.
+double NeighbourCollapse::settle(double limit) {
+  const double most = kNearLimit * limit;
+  double deviation = 0;
+  for (int k = 0; k < kSweeps && !(deviation > most); ++k) {
+    for (std::size_t i = 0; i < around_.size(); ++i)
+      optimiser_.move_towards(around_[i], target_[i], false);
+    deviation = region_largest(limit, most);
+  }
+  for (int k = 0; k < kPulls && deviation > limit && !(deviation > most); ++k) {
+    for (const std::uint32_t v : around_) {
+      notes_.movable[v] = 1;
+      optimiser_.pull_back(v, false);
+    }
+    deviation = region_largest(limit, most);
+  }
+  return deviation;
+}
+
 double NeighbourCollapse::collapse(std::uint32_t a, std::uint32_t b, double limit) {
   if (!satisfies_link_condition(a, b)) return kNoLimit;
   // The vertices that may move, and b.
@@ -319,19 +340,8 @@ double NeighbourCollapse::collapse(std::uint32_t a, std::uint32_t b, double limi
   }
   contract(a, b, *place);
   if (steps_ != nullptr) steps_->push_back({a, b, *place});
-  for (int k = 0; k < kSweeps; ++k)
-    for (std::size_t i = 0; i < around_.size(); ++i)
-      optimiser_.move_towards(around_[i], target_[i], false);
-  deviation = region_largest(limit, kNearLimit * limit);
-  if (deviation > limit && deviation <= kNearLimit * limit) {
-    for (int k = 0; k < kPulls; ++k) {
-      for (const std::uint32_t v : around_) {
-        notes_.movable[v] = 1;
-        optimiser_.pull_back(v, false);
-      }
-    }
-  }
-  if (region_largest(limit, limit) > limit) {
+  deviation = settle(limit);
+  if (deviation > limit) {
     give_up(statistics_.rejected_distance);
     return deviation;
   }

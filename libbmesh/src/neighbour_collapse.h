@@ -30,6 +30,7 @@ class NeighbourCollapse : private OptimiserContext {
   double region_largest(double least, double most);
   std::optional<Vec3> find_position(std::uint32_t a, std::uint32_t b, const Vec3& wish);
   double trial_collapse(std::uint32_t a, std::uint32_t b, double limit);
+  double settle(double limit);
   bool satisfies_link_condition(std::uint32_t a, std::uint32_t b);
   bool gather_edge(std::uint32_t a, std::uint32_t b, const Vec3& to);
   void contract(std::uint32_t a, std::uint32_t b, const Vec3& to);

@@ -64,4 +64,39 @@ TEST(ErrorBoundCertificate, SplitsPiecesBetweenCarriers) {
   EXPECT_TRUE(tolerance.admits(two, other));
 }
 
+// Where all pieces of a triangle come together again, it is cut anew, or is one again; where some
+// are carried by others, it stays in pieces.
+TEST(ErrorBoundCertificate, MergesPiecesOfOneTriangle) {
+  const auto& v = kSquare.vertices;
+  const std::vector<std::uint32_t> four{0, 1, 2, 3}, two{0, 1}, one{0};
+  const std::vector<ErrorBoundCertificate::NewTriangle> halves{{0, {v[0], v[1], v[2]}},
+                                                               {1, {v[0], v[2], v[3]}}},
+      other{{0, {v[0], v[1], v[3]}}, {1, {v[1], v[2], v[3]}}}, lifted{{0, {v[0], v[1], {1, 1, 1}}}};
+  ErrorBoundCertificate tolerance(kSquare, 0.01);
+  EXPECT_EQ(tolerance.pieces(), 4);
+  ASSERT_TRUE(tolerance.admits(four, halves));
+  tolerance.commit(four);
+  EXPECT_EQ(tolerance.pieces(), 4) << "each of the halves has two";
+  ASSERT_TRUE(tolerance.admits(two, other));
+  tolerance.commit(two);
+  EXPECT_EQ(tolerance.pieces(), 4) << "no more by the other diagonal";
+  // Two triangles of other shapes: pieces.
+  const Vec3 p(0.5, -1, 0);
+  const std::vector<ErrorBoundCertificate::NewTriangle> slanted{
+      {0, {v[0], p, v[3]}}, {1, {p, v[2], v[3]}}, {2, {p, v[1], v[2]}}};
+  ASSERT_TRUE(tolerance.admits(two, slanted));
+  tolerance.commit(two);
+  const std::size_t cut = tolerance.pieces();
+  EXPECT_GT(cut, 4);
+  EXPECT_FALSE(tolerance.admits(one, lifted)) << "and nothing changes";
+  ASSERT_TRUE(tolerance.admits(one, std::vector{slanted[0]}));
+  tolerance.commit(one);
+  EXPECT_EQ(tolerance.pieces(), cut);
+  const std::vector<std::uint32_t> three{0, 1, 2};
+  EXPECT_FALSE(tolerance.admits(three, raised(0.02)));
+  ASSERT_TRUE(tolerance.admits(three, raised(0)));
+  tolerance.commit(three);
+  EXPECT_EQ(tolerance.pieces(), 4);
+}
+
 }  // namespace

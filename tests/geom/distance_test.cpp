@@ -1,4 +1,5 @@
 #include <kaboum/geom/directed_distance.h>
+#include <kaboum/geom/points_near.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -62,6 +63,43 @@ TEST(PointTriangle, BracketsTheDistanceAlsoOfSlivers) {
       ASSERT_LE(d.upper - d.lower, 1e-9 * d.upper + 1e-12) << i;
     }
   }
+}
+
+// Never true where a point is farther, by however little, and true where rounding is no matter.
+TEST(PointTriangle, SeveralPointsAreWithinAsEachIs) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  std::array<int, 2> seen{0, 0};
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 far = i % 4 == 0 ? Vec3(1000 * point()) : Vec3::Zero();
+    const Vec3 a = far + point(), b = far + point();
+    const bool sliver = i % 3 == 1;
+    const Vec3 c = i % 17 == 0 ? b
+                   : sliver
+                       ? Vec3(a + unit(random) * (b - a) + std::pow(10.0, -4 - i % 12) * point())
+                       : Vec3(far + point());
+    std::vector<Vec3> points;
+    Real farthest = 0;
+    for (int k = 0; k <= i % 8; ++k) {
+      points.emplace_back(far + (i % 5 == 0 ? 100 : 1) * point());
+      if (i % 7 == 0) points.back() = a + 0.3 * (b - a) + 0.2 * (c - a) + 1e-9 * point();
+      farthest = std::max(farthest, slow_distance(points.back(), a, b, c));
+    }
+    const auto nearest = static_cast<double>(farthest);
+    for (const double share : {-1e-9, -1e-13, -1e-14, -1e-15, -1e-16, 0.0, 1e-15, 1e-14, 1e-13}) {
+      const double radius = nearest * (1 + share);
+      const bool within = kaboum::geom::all_within(points, a, b, c, radius);
+      ASSERT_TRUE(!within || farthest <= Real(radius)) << i << ' ' << share;
+      ++seen[within ? 1 : 0];
+    }
+    if (sliver || i % 17 == 0 || i % 7 == 0) continue;
+    ASSERT_TRUE(kaboum::geom::all_within(points, a, b, c, nearest * (1 + 1e-9))) << i;
+    std::swap(points.front(), points.back());
+    ASSERT_FALSE(kaboum::geom::all_within(points, a, b, c, nearest * (1 - 1e-9))) << i;
+  }
+  EXPECT_GT(seen[0], 1000);
+  EXPECT_GT(seen[1], 1000);
 }
 
 TEST(DistanceQuery, FindsTheNearestTriangle) {
