@@ -52,7 +52,7 @@ constexpr std::size_t kBoundVertices = 4000, kBoundShare = 3;
 /// where contractions move the vertices around.
 constexpr double kSpacing = 0.7;
 /// But no more than so many are added; fewer where the error bound rises: it is no promise there.
-constexpr double kSamples = 4000, kSamplesRising = 2500;
+constexpr double kSamples = 4000, kSamplesRising = 1500;
 
 /// Rounds of optimisation, at most: in the end, and at each stage before.
 constexpr int kFinalPasses = 6, kFinalPassesBest = 12, kStagePasses = 3;
