@@ -383,6 +383,7 @@ class Preparation {
   void find_inverted() {
     if (!closed_ || options_.keep_orientation) return;
     const Guesses guesses = find_guesses(edges_, part_, report_.source, agreed_, opened_);
+    std::vector<EdgeUse>().swap(edges_);  // no longer needed, and what follows takes room
     if (guesses.ambiguous)
       guess("the part with input triangle " + std::to_string(*guesses.ambiguous) +
             " was open, and its triangles were turned to agree: which solid it bounds is a guess");
@@ -405,9 +406,15 @@ class Preparation {
     std::optional<Hollow> found =
         geom::find_inverted(mesh_, winding, some_of(guesses.triangles, part_), part_);
     if (!found) {
-      std::vector<std::uint32_t> all(part_.size());
-      std::iota(all.begin(), all.end(), 0U);
-      found = geom::find_pocket(mesh_, winding, some_of(all, {}), part_);
+      // What bounds a pocket has w < 0 on one side: only loose triangles do.
+      std::vector<std::uint32_t> beside;
+      if (report_.loose) {
+        beside = *report_.loose;
+      } else {
+        beside.resize(part_.size());
+        std::iota(beside.begin(), beside.end(), 0U);
+      }
+      found = geom::find_pocket(mesh_, winding, some_of(beside, {}), part_);
     }
     if (!found) return;
     report_.hollow = found->at;
