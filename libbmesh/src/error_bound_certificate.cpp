@@ -33,7 +33,7 @@ std::span<const Vec3> corners_of(const geom::ConvexPolygon& polygon) {
 
 ErrorBoundCertificate::ErrorBoundCertificate(const geom::Mesh& original, double epsilon, Work* work)
     : original_(original),
-      near_(original),
+      near_(std::make_shared<const ClosestTriangle>(original)),
       magnitude_(geom::bounding_box(original)
                      .min.cwiseAbs()
                      .cwiseMax(geom::bounding_box(original).max.cwiseAbs())
@@ -72,16 +72,16 @@ bool ErrorBoundCertificate::is_near(const std::array<Vec3, 3>& triangle) {
     if (--cells < 0) return false;
     steps_ += kCut;
     const auto is_covered = [&] {
-      const auto [a, b, c] = near_.corners(hint_);
+      const auto [a, b, c] = near_->corners(hint_);
       return geom::all_within(corners_of(e.polygon), a, b, c, epsilon_);
     };
     const Vec3 middle = e.polygon.centroid();
     const double most = epsilon_ * epsilon_;
-    if (near_.squared_near(middle, hint_) > most) {
-      if (!(near_.squared(middle, hint_, 0, &steps_) <= most)) return false;
+    if (near_->squared_near(middle, hint_) > most) {
+      if (!(near_->squared(middle, hint_, 0, &steps_) <= most)) return false;
     }
     if (is_covered()) continue;
-    const auto [a, b, c] = near_.corners(hint_);
+    const auto [a, b, c] = near_->corners(hint_);
     const geom::PrismCut pieces = geom::cut_by_prism(e.polygon, a, b, c, e.depth % 3 == 2);
     if (size + pieces.count > kStack) return false;
     for (int i = 0; i < pieces.count; ++i) stack[size++] = {pieces.piece[i], e.depth + 1};

@@ -4,6 +4,7 @@
 #include <kaboum/geom/mesh.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,9 @@ class ErrorBoundCertificate {
   ///   triangle i of the original. It must outlive this object.
   /// @param work  counts what is done, if not null.
   ErrorBoundCertificate(const geom::Mesh& original, double epsilon, Work* work = nullptr);
+
+  /// Distances to the original, for others to ask, too.
+  [[nodiscard]] const std::shared_ptr<const ClosestTriangle>& closest() const { return near_; }
 
   /// Lets ε be larger from now on.
   void raise(double epsilon);
@@ -94,7 +98,7 @@ class ErrorBoundCertificate {
   [[nodiscard]] bool is_near(const std::array<Vec3, 3>& triangle);
 
   const geom::Mesh& original_;
-  ClosestTriangle near_;
+  std::shared_ptr<const ClosestTriangle> near_;
   double magnitude_;  // of the original's coordinates
   double epsilon_;
   // Pieces by numbers: whole triangles of the original have their own, then come parts.

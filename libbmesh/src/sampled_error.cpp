@@ -13,9 +13,9 @@
 namespace kaboum::bmesh {
 
 SampledError::SampledError(const geom::Mesh& original, int power, double spacing, double most,
-                           Work* work)
+                           Work* work, std::shared_ptr<const ClosestTriangle> closest)
     : mesh_(original),
-      original_(original),
+      original_(closest ? std::move(closest) : std::make_shared<const ClosestTriangle>(original)),
       power_(power),
       work_(work),
       point_(original.vertices),
@@ -273,7 +273,7 @@ double SampledError::largest(std::span<const std::uint32_t> removed,
   double worst = range.least;
   std::uint64_t steps = 0;
   for (const Point& p : points) {
-    worst = std::max(worst, original_.squared(p.position, hint, worst, &steps));
+    worst = std::max(worst, original_->squared(p.position, hint, worst, &steps));
     if (worst > limit) break;
   }
   count(work_, steps);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -50,8 +51,10 @@ class SampledError {
   ///   them.
   /// @param most  so many samples, about, are added for that.
   /// @param work  counts what is done, if not null.
+  /// @param closest  distances to the original, where others have them already.
   explicit SampledError(const geom::Mesh& original, int power = 4, double spacing = 0,
-                        double most = 6000, Work* work = nullptr);
+                        double most = 6000, Work* work = nullptr,
+                        std::shared_ptr<const ClosestTriangle> closest = nullptr);
   [[nodiscard]] int power() const { return power_; }
   [[nodiscard]] std::size_t samples() const { return point_.size(); }
 
@@ -85,7 +88,7 @@ class SampledError {
   /// The same of a point that has been located near by, from there: nearly always right, and never
   /// nearer than it is.
   double locate_again(Point& point, double enough = 0) const {
-    return original_.squared_near(point.position, point.nearest, enough);
+    return original_->squared_near(point.position, point.nearest, enough);
   }
   /// Finds where the original is nearest to a point. @return the squared distance
   double locate(Point& point, std::uint32_t& hint) const { return locate(point, hint, nullptr); }
@@ -101,7 +104,7 @@ class SampledError {
   /// Makes the vicinity hold what is in the ball.
   void gather(const Vec3& center, double radius, ClosestTriangle::Vicinity& out) const {
     std::uint64_t steps = 0;
-    original_.gather(center, radius, out, &steps);
+    original_->gather(center, radius, out, &steps);
     count(work_, steps);
   }
 
@@ -142,7 +145,7 @@ class SampledError {
     count(work_, found * nearest.steps());
   }
 
-  [[nodiscard]] const ClosestTriangle& original() const { return original_; }
+  [[nodiscard]] const ClosestTriangle& original() const { return *original_; }
 
  private:
   /// Where triangle t stays among the new ones; the first, if it vanishes.
@@ -153,13 +156,13 @@ class SampledError {
   double locate(Point& point, std::uint32_t& hint, std::uint64_t& steps,
                 const ClosestTriangle::Vicinity* vicinity = nullptr) const {
     if (point.nearest != kNone) hint = point.nearest;
-    const double squared = original_.squared(point.position, hint, 0, &steps, vicinity);
+    const double squared = original_->squared(point.position, hint, 0, &steps, vicinity);
     point.nearest = hint;
     return squared;
   }
 
   const geom::Mesh& mesh_;
-  ClosestTriangle original_;
+  std::shared_ptr<const ClosestTriangle> original_;
   int power_;
   Work* work_;
   double unit_;  // 1 / diagonal²

@@ -31,7 +31,7 @@ class WideBvh {
   template <class Done, class Visit>
   std::uint64_t visit_near(const Vec3& p, const float& cutoff, const Done& done,
                            const Visit& visit) const {
-    if (nodes_.empty() && leaves_.empty()) return 0;
+    if (packs_.empty()) return 0;
     const Eigen::Vector3f x = frame_(p);
     struct Entry {
       float squared;
@@ -106,7 +106,8 @@ class WideBvh {
   }
 
  private:
-  static constexpr std::uint32_t kLeaf = 1U << 31;
+  // A leaf is the place of its first triangle, with the number of the others from bit 29 on.
+  static constexpr std::uint32_t kLeaf = 1U << 31, kOthers = 29, kMostTriangles = 1U << kOthers;
   /// Boxes of four nodes; those that are not there are nowhere.
   struct Node {
     static constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -115,12 +116,6 @@ class WideBvh {
     std::array<Float4, 3> high{-kAllFar, -kAllFar, -kAllFar};
     std::array<std::uint32_t, 4> child{};
   };
-  struct Leaf {
-    FourTriangles triangles;
-    std::uint32_t first;  // place
-    unsigned all;         // a bit for each triangle
-  };
-
   /// Of a point from four boxes.
   static Float4 squared_distance(const std::array<Float4, 3>& low,
                                  const std::array<Float4, 3>& high, const Eigen::Vector3f& x) {
@@ -132,21 +127,26 @@ class WideBvh {
   }
 
   template <class Visit>
-  void visit_leaf(std::uint32_t index, const Eigen::Vector3f& x, const float& cutoff,
+  void visit_leaf(std::uint32_t leaf, const Eigen::Vector3f& x, const float& cutoff,
                   const Visit& visit) const {
-    const Leaf& leaf = leaves_[index];
-    const Float4 bound = leaf.triangles.at_least(x);
-    for (unsigned bits = bits_below(bound, cutoff) & leaf.all; bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<unsigned>(std::countr_zero(bits));
-      if (bound[i] < cutoff) visit(leaf.first + i);
+    const std::uint32_t first = leaf & (kMostTriangles - 1), last = first + (leaf >> kOthers);
+    unsigned left = 15U << first % 4;
+    for (std::uint32_t pack = first / 4; pack <= last / 4; ++pack, left = 15) {
+      if (pack == last / 4) left &= 15U >> (3 - last % 4);
+      const Float4 bound = packs_[pack].at_least(x);
+      for (unsigned bits = bits_below(bound, cutoff) & left; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(bits));
+        if (bound[i] < cutoff) visit(4 * pack + i);
+      }
     }
   }
 
-  std::uint32_t add(const Mesh& mesh, const Bvh& bvh, std::uint32_t index);
+  static std::size_t wide_nodes(const Bvh& bvh, std::uint32_t index);
+  std::uint32_t add(const Bvh& bvh, std::uint32_t index);
 
   UnitFrame frame_;
   std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;
+  std::vector<FourTriangles> packs_;  // by place
   std::uint32_t root_ = kLeaf;
 };
 
