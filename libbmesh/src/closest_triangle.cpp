@@ -8,12 +8,14 @@
 
 namespace kaboum::bmesh {
 
-ClosestTriangle::ClosestTriangle(const geom::Mesh& mesh)
+ClosestTriangle::ClosestTriangle(const geom::Mesh& mesh, bool keeps_hierarchy)
     : mesh_(mesh), bvh_(std::make_shared<const geom::Bvh>(mesh)) {
-  triangles_.reserve(mesh.triangles.size());
-  for (const std::uint32_t i : bvh_->order()) triangles_.push_back(mesh.triangles[i]);
-  find_neighbours();  // first, for it takes room for a while
+  order_.assign(bvh_->order().begin(), bvh_->order().end());
   wide_ = geom::WideBvh(mesh, *bvh_);
+  if (!keeps_hierarchy) bvh_.reset();
+  triangles_.reserve(mesh.triangles.size());
+  for (const std::uint32_t i : order_) triangles_.push_back(mesh.triangles[i]);
+  find_neighbours();
 }
 
 /// Places of the triangles across edges that two have.

@@ -26,7 +26,8 @@ class ClosestTriangle {
   using Vicinity = geom::WideBvh::Vicinity;
 
   /// Keeps a reference to the mesh, which must outlive this object. @pre it has triangles.
-  explicit ClosestTriangle(const geom::Mesh& mesh);
+  /// @param keeps_hierarchy  for others.
+  explicit ClosestTriangle(const geom::Mesh& mesh, bool keeps_hierarchy = true);
 
   /// Squared distance of p from the set, or of any triangle that is within √enough.
   ///
@@ -61,9 +62,9 @@ class ClosestTriangle {
     return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
   }
   /// The triangle's index in the mesh.
-  [[nodiscard]] std::uint32_t triangle(std::uint32_t place) const { return bvh_->order()[place]; }
+  [[nodiscard]] std::uint32_t triangle(std::uint32_t place) const { return order_[place]; }
 
-  /// The hierarchy over the mesh, for others to search it, too.
+  /// The hierarchy over the mesh, for others to search it, too; null if it is not kept.
   [[nodiscard]] const std::shared_ptr<const geom::Bvh>& hierarchy() const { return bvh_; }
 
  private:
@@ -82,6 +83,7 @@ class ClosestTriangle {
 
   const geom::Mesh& mesh_;
   std::shared_ptr<const geom::Bvh> bvh_;
+  std::vector<std::uint32_t> order_;
   std::vector<geom::Triangle> triangles_;             // in the tree's order
   std::vector<std::array<std::uint32_t, 3>> across_;  // their edges; itself where there is none
   geom::WideBvh wide_;

@@ -32,10 +32,11 @@ bool DecimationState::spent(double share) {
 }
 
 void DecimationState::start_measuring() {
-  sampled.emplace(original, options.cost == Cost::Mean ? 2 : 4,
-                  in_clusters ? kSpacing * *epsilon : 0,
-                  most_epsilon > 0 ? kSamplesRising : kSamples, context.work,
-                  carried ? carried->closest() : nullptr);
+  sampled.emplace(
+      original, options.cost == Cost::Mean ? 2 : 4, in_clusters ? kSpacing * *epsilon : 0,
+      most_epsilon > 0 ? kSamplesRising : kSamples, context.work,
+      carried ? carried->closest()
+              : std::make_shared<const ClosestTriangle>(original, options.effort != Effort::Fast));
   sampled->assign(mesh().position, mesh().mesh);
   measuring = true;
 }

@@ -104,7 +104,7 @@ void SampledError::assign(std::span<const Vec3> position, const Connectivity& me
   const std::vector<std::uint32_t>& index = present.index;
   std::fill(head_.begin(), head_.end(), kNone);
   if (current.empty()) return;
-  const ClosestTriangle proximity(current);
+  const ClosestTriangle proximity(current, false);
   // Runs of samples, each with hints of its own: the result does not depend on the threads.
   constexpr std::size_t kRun = 1024;
   std::vector<std::uint32_t> nearest(point_.size());
@@ -214,7 +214,7 @@ class Between {
 void SampledError::refine(std::span<const Vec3> position, const Connectivity& mesh, double enough) {
   const Present present(position, mesh);
   if (present.mesh.empty()) return;
-  const ClosestTriangle proximity(present.mesh);
+  const ClosestTriangle proximity(present.mesh, false);
   std::vector<std::uint32_t> place(mesh.size());  // of a triangle
   for (std::uint32_t i = 0; i < present.index.size(); ++i)
     place[present.index[proximity.triangle(i)]] = i;

@@ -12,11 +12,11 @@ namespace {
 /// Four numbers that are computed with at once. Operations round as those of single numbers do.
 using Double4 = double __attribute__((vector_size(32)));
 struct FourVectors {
-  Double4 x, y, z;
+  Double4 of[3];  // by axis
 };
 
-[[gnu::always_inline]] inline Double4 dot(const Vec3& a, const FourVectors& b) {
-  return a.x() * b.x + a.y() * b.y + a.z() * b.z;
+[[gnu::always_inline]] inline void minus_dot(const Vec3& a, const FourVectors& b, Double4& out) {
+  out = -(a.x() * b.of[0] + a.y() * b.of[1] + a.z() * b.of[2]);
 }
 
 /// What closest_weights gives for four points at once, whose weights are the quotients: c is what
@@ -27,7 +27,9 @@ struct FourWeights {
   /// @param x  the triangle's first corner, from the points.
   [[gnu::always_inline]] FourWeights(const FourVectors& x, const Vec3& ab, const Vec3& ac) {
     const double bb = ab.squaredNorm(), bc = ab.dot(ac), cc = ac.squaredNorm();
-    const Double4 d1 = -dot(ab, x), d2 = -dot(ac, x);
+    Double4 d1, d2;
+    minus_dot(ab, x, d1);
+    minus_dot(ac, x, d2);
     const Double4 d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc;
     const Double4 va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     const Double4 zero{}, one = zero + 1;
@@ -49,12 +51,9 @@ struct FourWeights {
 /// @param first  of four points.
 [[gnu::always_inline]] inline bool four_within(const Vec3* const (&point)[4], const Vec3& a,
                                                const Vec3& ab, const Vec3& ac, double radius) {
-  FourVectors x;
-  for (int i = 0; i < 4; ++i) {
-    x.x[i] = a.x() - point[i]->x();
-    x.y[i] = a.y() - point[i]->y();
-    x.z[i] = a.z() - point[i]->z();
-  }
+  FourVectors x{};
+  for (int k = 0; k < 3; ++k)
+    x.of[k] = a[k] - Double4{(*point[0])[k], (*point[1])[k], (*point[2])[k], (*point[3])[k]};
   const FourWeights w(x, ab, ac);
   const Double4 zero{}, one = zero + 1;
   Double4 s = w.of > 0 ? w.s / w.of : zero, t = w.of > 0 ? w.t / w.of : zero;
@@ -71,9 +70,9 @@ struct FourWeights {
       size = size < length ? length : size;
     }
   };
-  add(x.x, ab.x(), ac.x());
-  add(x.y, ab.y(), ac.y());
-  add(x.z, ab.z(), ac.z());
+  add(x.of[0], ab.x(), ac.x());
+  add(x.of[1], ab.y(), ac.y());
+  add(x.of[2], ab.z(), ac.z());
   const Double4 left = radius - kDistanceRounding * size;
   const auto within = (left > 0) & (squared * (1 + 4 * kDistanceRounding) <= left * left);
   return (within[0] & within[1] & within[2] & within[3]) != 0;
