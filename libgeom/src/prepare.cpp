@@ -406,15 +406,15 @@ class Preparation {
     std::optional<Hollow> found =
         geom::find_inverted(mesh_, winding, some_of(guesses.triangles, part_), part_);
     if (!found) {
-      // What bounds a pocket has w < 0 on one side: only loose triangles do.
-      std::vector<std::uint32_t> beside;
-      if (report_.loose) {
-        beside = *report_.loose;
-      } else {
-        beside.resize(part_.size());
-        std::iota(beside.begin(), beside.end(), 0U);
-      }
-      found = geom::find_pocket(mesh_, winding, some_of(beside, {}), part_);
+      std::vector<std::uint32_t> all(part_.size());
+      std::iota(all.begin(), all.end(), 0U);
+      std::vector<std::uint32_t> beside = some_of(all, {});
+      // What bounds a pocket has w < 0 on one side: of a whole, only loose triangles do.
+      if (report_.loose)
+        std::erase_if(beside, [&](std::uint32_t t) {
+          return !std::binary_search(report_.loose->begin(), report_.loose->end(), t);
+        });
+      found = geom::find_pocket(mesh_, winding, beside, part_);
     }
     if (!found) return;
     report_.hollow = found->at;
