@@ -73,20 +73,24 @@ class Sector {
   int turn_;
 };
 
-/// Whether one can walk from f over its edge k to `other` without crossing the chains of `mask`.
-bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, std::uint32_t other,
-              int other_edge, OperandMask mask, Side side) {
+/// Whether one can walk from f over its edge k to its neighbour without crossing the chains of
+/// `mask`.
+bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, const Neighbour& next,
+              OperandMask mask, Side side) {
   const MeshPair& meshes = arrangement.meshes();
   const Face& face = meshes.face(f);
-  const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
+  const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3], other = next.face;
+  const int other_edge = next.edge;
 
   // What lies along the edge: triangles that have it as an edge, and those in contact with it.
   thread_local std::vector<std::uint32_t> touching;
   touching.clear();
-  for (const std::uint32_t g : meshes.around_edge(u, v)) {
-    const Face& by = meshes.face(g);
-    if (g == f || g == other || by.axis < 0 || (mask & mask_of(by.chain)) == 0) continue;
-    if (by.place_of(u) >= 0 && by.place_of(v) >= 0) touching.push_back(g);
+  if (!next.alone) {
+    for (const std::uint32_t g : meshes.around_edge(u, v)) {
+      const Face& by = meshes.face(g);
+      if (g == f || g == other || by.axis < 0 || (mask & mask_of(by.chain)) == 0) continue;
+      if (by.place_of(u) >= 0 && by.place_of(v) >= 0) touching.push_back(g);
+    }
   }
   for (int chain = 0; chain < 2; ++chain) {
     if ((mask & mask_of(chain)) == 0) continue;
@@ -133,23 +137,10 @@ std::vector<std::uint32_t> patches(const Arrangement& arrangement, int chain, Op
     const Face& face = meshes.face(f);
     if (face.axis < 0 || !arrangement.uncut(f, mask)) return;
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t u = face.v[k], v = face.v[(k + 1) % 3];
-      std::uint32_t other = kNone;
-      int others = 0, other_edge = 0;
-      for (const std::uint32_t g : meshes.around_edge(u, v)) {
-        const Face& by = meshes.face(g);
-        if (g == f || by.chain != chain) continue;
-        const int at = by.place_of(v);
-        if (at < 0 || by.place_of(u) < 0) continue;
-        ++others;
-        other = g;
-        other_edge = at;  // opposite direction: from v to u
-      }
-      if (others != 1 || other < f) continue;
-      const Face& neighbour = meshes.face(other);
-      if (neighbour.axis < 0 || neighbour.v[(other_edge + 1) % 3] != u) continue;
-      if (!arrangement.uncut(other, mask)) continue;
-      if (walkable(arrangement, f, k, other, other_edge, mask, side)) next[i][k] = other - begin;
+      const Neighbour& next_to = meshes.neighbour(f, k);
+      if (next_to.face == Neighbour::kNone || next_to.face < f) continue;
+      if (meshes.face(next_to.face).axis < 0 || !arrangement.uncut(next_to.face, mask)) continue;
+      if (walkable(arrangement, f, k, next_to, mask, side)) next[i][k] = next_to.face - begin;
     }
   });
 

@@ -1,54 +1,69 @@
-// Building a binary tree of boxes: items are halved along the longest axis of their box.
+// Building a binary tree of boxes along a curve through their middles.
 #include "box_tree.h"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
+
+#include "curve.h"
 
 namespace kaboum::verify {
 namespace {
 constexpr std::uint32_t kLeaf = 4;
+
+/// Where the highest bit in which places differ changes; the middle where none does.
+std::uint32_t cut_of(std::span<const std::uint64_t> places, std::uint32_t first,
+                     std::uint32_t last) {
+  const std::uint64_t differ = places[first] ^ places[last - 1];
+  if (differ == 0) return first + (last - first) / 2;
+  const std::uint64_t bit = std::bit_floor(differ);
+  const auto begin = places.begin() + first, end = places.begin() + last;
+  return static_cast<std::uint32_t>(
+      std::partition_point(begin, end, [&](std::uint64_t p) { return (p & bit) == 0; }) -
+      places.begin());
 }
+}  // namespace
 
 BoxTree::BoxTree(std::vector<Bounds> boxes, std::vector<std::uint32_t> items) {
-  if (items.empty()) return;
-  const auto count = static_cast<std::uint32_t>(items.size());
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  nodes_.reserve(2 * (count / (kLeaf / 2) + 1));
-  build(order, boxes, 0, count);
-  boxes_.reserve(count);
-  items_.reserve(count);
-  for (const std::uint32_t i : order) {
+  std::vector<geom::Vec3> middles;
+  middles.reserve(boxes.size());
+  for (const Bounds& box : boxes) middles.push_back(middle_of(box));
+  const std::vector<std::uint64_t> places = places_on_curve(middles);
+  std::vector<std::uint64_t> sorted;
+  sorted.reserve(places.size());
+  boxes_.reserve(boxes.size());
+  items_.reserve(boxes.size());
+  for (const std::uint32_t i : ordered_by(places)) {
+    sorted.push_back(places[i]);
     boxes_.push_back(boxes[i]);
     items_.push_back(items[i]);
   }
+  *this = BoxTree(std::move(boxes_), std::move(items_), sorted);
 }
 
-void BoxTree::build(std::vector<std::uint32_t>& order, const std::vector<Bounds>& boxes,
-                    std::uint32_t first, std::uint32_t last) {
-  const std::size_t index = nodes_.size();
-  Bounds box = boxes[order[first]];
-  for (std::uint32_t i = first + 1; i < last; ++i) box.include(boxes[order[i]]);
-  nodes_.push_back({box, first, last - first});
-  if (last - first <= kLeaf) return;
+BoxTree::BoxTree(std::vector<Bounds> boxes, std::vector<std::uint32_t> items,
+                 std::span<const std::uint64_t> places)
+    : boxes_(std::move(boxes)), items_(std::move(items)) {
+  if (items_.empty()) return;
+  nodes_.reserve(items_.size());
+  build(places, 0, static_cast<std::uint32_t>(items_.size()));
+}
 
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
+Bounds BoxTree::build(std::span<const std::uint64_t> places, std::uint32_t first,
+                      std::uint32_t last) {
+  const std::size_t index = nodes_.size();
+  nodes_.push_back({boxes_[first], first, last - first});
+  Bounds box = boxes_[first];
+  if (last - first <= kLeaf) {
+    for (std::uint32_t i = first + 1; i < last; ++i) box.include(boxes_[i]);
+  } else {
+    const std::uint32_t middle = cut_of(places, first, last);
+    box = build(places, first, middle);
+    nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].count = 0;
+    box.include(build(places, middle, last));
   }
-  const auto centre = [&](std::uint32_t i) {
-    return 0.5 * boxes[i].low[axis] + 0.5 * boxes[i].high[axis];
-  };
-  const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
-                   [&](std::uint32_t i, std::uint32_t j) {
-                     const double x = centre(i), y = centre(j);
-                     return x != y ? x < y : i < j;
-                   });
-  nodes_[index].count = 0;
-  build(order, boxes, first, middle);
-  nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-  build(order, boxes, middle, last);
+  nodes_[index].box = box;
+  return box;
 }
 
 std::vector<std::uint32_t> subtrees(const BoxTree& tree, std::size_t wanted) {

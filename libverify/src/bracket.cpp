@@ -260,9 +260,8 @@ Bracket bracket_distance(const geom::Mesh& from, std::span<const std::uint32_t> 
   const MeshPair meshes(part, to);
   const std::optional<Pieces> target = measurable(meshes, to_solid, effort.max_work);
   if (!target) return {};
-  std::vector<Face> faces = meshes.repeated(kInside);  // segments and points are measured as well
-  faces.insert(faces.end(), meshes.faces().begin() + meshes.begin(kInside),
-               meshes.faces().begin() + meshes.end(kInside));
+  // Segments and points are measured as well.
+  const std::vector<Face> faces = meshes.in_order_of_sources(kInside);
   Bracket result = outside_of(meshes, bracket_faces(meshes, faces, to_solid, *target, effort));
   if (!triangles.empty()) result.triangle = triangles[result.triangle];
   return result;

@@ -8,6 +8,7 @@
 #include <atomic>
 
 #include "classifier.h"
+#include "graph_vertex.h"
 #include "parallel.h"
 #include "parallel_sort.h"
 
@@ -132,17 +133,48 @@ MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& lim
                    std::move(of_outside.alongs))};
 }
 
+namespace {
+
+/// Per vertex whether the chain's star there is a graph over a plane.
+std::vector<char> graph_vertices(const MeshPair& meshes, int chain) {
+  std::vector<char> graph(meshes.vertex_count(), 0);
+  verify::parallel_ranges(graph.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<Spoke> star;
+    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
+      star.clear();
+      for (const std::uint32_t f : meshes.around(v)) {
+        const Face& face = meshes.face(f);
+        if (face.chain != chain) continue;
+        const int k = face.v[0] == v ? 0 : face.v[1] == v ? 1 : 2;
+        star.push_back({face.v[(k + 1) % 3], face.v[(k + 2) % 3], f});
+      }
+      if (!is_one_fan(star)) continue;
+      graph[v] = static_cast<char>(is_graph(
+          star, meshes.point(v), [&](std::uint32_t f) { return meshes.face(f).directions; },
+          [&](std::uint32_t w) -> const Vec3& { return meshes.point(w); }));
+    }
+  });
+  return graph;
+}
+
+}  // namespace
+
 Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits& limits) {
   const BoxTree& tree = meshes.tree(chain);
+  const std::vector<char> graph = graph_vertices(meshes, chain);
+  // Parts of one graph have nothing in common but an edge or the vertex.
+  const auto parts_of_graph = [&](const Face& f, const Face& g) {
+    return std::any_of(f.v.begin(), f.v.end(),
+                       [&](std::uint32_t v) { return g.place_of(v) >= 0 && graph[v] != 0; });
+  };
   const std::vector<std::uint32_t> roots = subtrees(tree, kTasks);
   std::vector<FoundContacts> found(roots.size());
   Counter counter(limits);
   verify::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
     Classifier classify(meshes, found[i], found[i]);
     Counter::Task task(counter);
-    meeting_pairs(tree, roots[i], tree, [&](std::uint32_t f, std::uint32_t g) {
-      if (f >= g) return;  // each pair once
-      classify(f, g);
+    meeting_pairs_within(tree, roots[i], [&](std::uint32_t f, std::uint32_t g) {
+      if (!parts_of_graph(meshes.face(f), meshes.face(g))) classify(std::min(f, g), std::max(f, g));
       task.looked_at(found[i], {});
     });
     task.share(found[i], {});

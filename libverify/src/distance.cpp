@@ -206,9 +206,7 @@ DistanceClaim verify_distance(const geom::Mesh& from, const geom::Mesh& to, doub
   const double slack = rounding_of_distances(meshes.largest_coordinate());
   const Judge judge(meshes, epsilon * meshes.scale(), slack, options);
   // Segments and points are measured as what they are.
-  std::vector<Face> faces = meshes.repeated(kInside);
-  faces.insert(faces.end(), meshes.faces().begin() + meshes.begin(kInside),
-               meshes.faces().begin() + meshes.end(kInside));
+  const std::vector<Face> faces = meshes.in_order_of_sources(kInside);
   const auto count = static_cast<std::uint32_t>(faces.size());
   DistanceClaim result;
   if (count == 0) {

@@ -377,8 +377,10 @@ class Decision {
   void conclude(Claim& claim, Offences& offences, bool on_surface, bool relative,
                 const char* reason) {
     if (claim.answer != Answer::Verified) return;
-    std::sort(offences.list.begin(), offences.list.end(),
-              [](const Offence& a, const Offence& b) { return a.face < b.face; });
+    std::sort(offences.list.begin(), offences.list.end(), [&](const Offence& a, const Offence& b) {
+      const Face &f = meshes_.face(a.face), &g = meshes_.face(b.face);
+      return f.chain != g.chain ? f.chain < g.chain : f.source < g.source;
+    });
     for (const Offence& offence : offences.list) {
       const Face& face = meshes_.face(offence.face);
       (face.chain == kInside ? claim.inner_triangles : claim.outer_triangles)
@@ -444,8 +446,8 @@ Inclusion verify_inclusion(const geom::Mesh& inner, const geom::Mesh& outer,
     throw Error(ErrorCode::InvalidArgument, "max_work must be positive");
   const MeshPair meshes(inner, outer);
   Inclusion result;
-  result.inner_open_edges = meshes.unbalanced(mask_of(kInside), false);
-  result.outer_open_edges = meshes.unbalanced(mask_of(kOutside), false);
+  result.inner_open_edges = meshes.unbalanced(kInside);
+  result.outer_open_edges = meshes.unbalanced(kOutside);
   result.inner_closed = result.inner_open_edges == 0;
   result.outer_closed = result.outer_open_edges == 0;
   result.triangles_without_area = meshes.without_area(kInside) + meshes.without_area(kOutside) +

@@ -377,7 +377,7 @@ Inclusion verify_balls_within(const geom::ConvexSet& set, const geom::Mesh& orig
                               const InclusionOptions& options) {
   const MeshPair meshes(original, geom::Mesh{});
   Inclusion out;
-  out.outer_open_edges = meshes.unbalanced(mask_of(kInside), false);
+  out.outer_open_edges = meshes.unbalanced(kInside);
   out.outer_closed = out.outer_open_edges == 0;
   out.triangles_without_area = meshes.without_area(kInside) + meshes.repeated(kInside).size();
   if (!out.outer_closed) {

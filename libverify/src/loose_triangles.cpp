@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "classifier.h"
+#include "graph_vertex.h"
 #include "number.h"
 #include "parallel.h"
 
@@ -61,32 +62,6 @@ class Faces {
   const geom::Mesh& mesh_;
   std::vector<Face> faces_;
 };
-
-/// Directions ±x, ±y, ±z that a triangle certainly faces, as bits, and its axis.
-std::uint8_t look_at(Face& face, const Vec3& a, const Vec3& b, const Vec3& c) {
-  std::uint8_t faces = 0;
-  double largest = 0;
-  face.axis = -1;
-  for (int k = 0; k < 3; ++k) {
-    const int u = (k + 1) % 3, v = (k + 2) % 3;
-    const double l = (a[u] - c[u]) * (b[v] - c[v]), r = (a[v] - c[v]) * (b[u] - c[u]);
-    const double size = std::abs(l) + std::abs(r), value = l - r;
-    if (!(size > 1e-280) || !(std::abs(value) > 4.5e-16 * size)) continue;
-    faces |= static_cast<std::uint8_t>(1U << (2 * k + (value > 0 ? 0 : 1)));
-    if (std::abs(value) <= largest) continue;
-    largest = std::abs(value);
-    face.axis = k;
-    face.upward = value > 0;
-  }
-  if (face.axis >= 0) return faces;
-  for (int k = 0; k < 3 && face.axis < 0; ++k) {
-    const Sign sign = orient2d(k, a, b, c);
-    if (sign == Sign::Zero) continue;
-    face.axis = k;
-    face.upward = sign == Sign::Positive;
-  }
-  return 0;
-}
 
 /// Boxes of triangles in an order that keeps neighbours together, four to a leaf, and a binary
 /// tree over these: level by level, each box that of two of the level below.
@@ -286,78 +261,15 @@ class Search {
       const bool collapsed =
           face.v[0] == face.v[1] || face.v[1] == face.v[2] || face.v[2] == face.v[0];
       face.axis = -1;
-      mask_[f] = collapsed
-                     ? 0
-                     : look_at(face, faces_.corner(f, 0), faces_.corner(f, 1), faces_.corner(f, 2));
+      mask_[f] =
+          collapsed ? 0
+                    : set_axis(face, faces_.corner(f, 0), faces_.corner(f, 1), faces_.corner(f, 2));
       if (face.axis < 0) free_[f] = 0;
     }
   }
 
-  /// A triangle at a vertex: the vertices after and before it.
-  struct Spoke {
-    std::uint32_t next, prev, face;
-  };
   [[nodiscard]] std::span<const Spoke> star(std::uint32_t v) const {
     return {spokes_.data() + first_[v], spokes_.data() + first_[v + 1]};
-  }
-
-  /// Whether the triangles round a vertex are one closed fan, in which every edge has two.
-  [[nodiscard]] static bool is_one_fan(std::span<const Spoke> star) {
-    constexpr std::size_t kFew = 24;
-    if (star.size() < 3) return false;
-    if (star.size() > kFew) return is_one_large_fan(star);
-    std::size_t at = 0, steps = 0;
-    do {
-      const std::uint32_t wanted = star[at].prev;
-      std::size_t found = star.size();
-      for (std::size_t i = 0; i < star.size(); ++i) {
-        if (star[i].next != wanted) continue;
-        if (found != star.size()) return false;  // an edge of more than two triangles
-        found = i;
-      }
-      if (found == star.size()) return false;
-      at = found;
-      ++steps;
-    } while (at != 0 && steps <= star.size());
-    return steps == star.size();
-  }
-
-  /// The same by sorting.
-  [[nodiscard]] static bool is_one_large_fan(std::span<const Spoke> star) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> after(star.size());
-    for (std::size_t i = 0; i < star.size(); ++i) after[i] = {star[i].next, star[i].prev};
-    std::sort(after.begin(), after.end());
-    std::uint32_t at = after.front().first;
-    for (std::size_t i = 0; i < after.size(); ++i) {
-      if (i > 0 && after[i].first == after[i - 1].first) return false;
-      const auto next =
-          std::lower_bound(after.begin(), after.end(), std::pair{at, std::uint32_t{0}});
-      if (next == after.end() || next->first != at) return false;
-      at = next->second;
-      if (at == after.front().first) return i + 1 == after.size();
-    }
-    return false;
-  }
-
-  /// Whether the star is a graph over the plane across one of the directions that it faces: its
-  /// triangles, seen against the direction, run counter-clockwise and once round the vertex.
-  [[nodiscard]] bool is_graph(std::uint32_t v, std::span<const Spoke> star) const {
-    unsigned mask = 0x3F;
-    for (const Spoke& s : star) mask &= mask_[s.face];
-    if (mask == 0) return false;
-    int bit = 0;
-    while (((mask >> static_cast<unsigned>(bit)) & 1U) == 0) ++bit;
-    const int axis = bit / 2;
-    int x = (axis + 1) % 3, y = (axis + 2) % 3;
-    if (bit % 2 == 1) std::swap(x, y);
-    const Vec3& at = faces_.point(v);
-    const auto upper = [&](std::uint32_t w) {
-      const Vec3& p = faces_.point(w);
-      return p[y] != at[y] ? p[y] > at[y] : p[x] > at[x];
-    };
-    int turns = 0;
-    for (const Spoke& s : star) turns += static_cast<int>(!upper(s.next) && upper(s.prev));
-    return turns == 1;
   }
 
   /// @return whether every directed edge is cancelled by its opposite
@@ -393,7 +305,9 @@ class Search {
       for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
         const std::span<const Spoke> s = star(v);
         if (is_one_fan(s)) {
-          graph_[v] = static_cast<char>(is_graph(v, s));
+          graph_[v] = static_cast<char>(is_graph(
+              s, faces_.point(v), [&](std::uint32_t f) { return mask_[f]; },
+              [&](std::uint32_t w) -> const Vec3& { return faces_.point(w); }));
         } else if (!is_balanced(s, next, prev)) {
           closed = false;
         }

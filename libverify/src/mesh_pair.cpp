@@ -5,53 +5,44 @@
 #include <kaboum/base/error.h>
 
 #include <algorithm>
-#include <bit>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "curve.h"
+#include "graph_vertex.h"
 #include "parallel.h"
 
 namespace kaboum::verify {
 namespace {
 
-/// Smallest number of each point among equal ones.
-std::vector<std::uint32_t> merge_equal(const std::vector<Vec3>& points) {
-  // A hash table with open addressing; equal coordinates have equal bits once −0 is gone.
-  std::size_t capacity = 64;
-  while (capacity < 2 * points.size()) capacity *= 2;
-  constexpr std::uint32_t kEmpty = 0xFFFFFFFF;
-  std::vector<std::uint32_t> table(capacity, kEmpty), same(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    std::uint64_t hash = 0;
-    for (int k = 0; k < 3; ++k) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(points[i][k])) * 0x9E3779B97F4A7C15U;
-      hash ^= hash >> 29U;
+/// Of points in the order of their places: number of each one among those that differ, in an order
+/// along the curve; `points` becomes those.
+std::vector<std::uint32_t> merge_equal(std::vector<Vec3>& points) {
+  const std::vector<std::uint64_t> places = places_on_curve(points);
+  std::vector<std::uint32_t> order = ordered_by(places);
+  const auto less = [&](std::uint32_t i, std::uint32_t j) {
+    return std::lexicographical_compare(points[i].begin(), points[i].end(), points[j].begin(),
+                                        points[j].end());
+  };
+  std::vector<std::uint32_t> number(points.size());
+  std::vector<Vec3> distinct;
+  distinct.reserve(points.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && places[order[end]] == places[order[i]]) ++end;
+    if (end - i > 1)
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(i),
+                order.begin() + static_cast<std::ptrdiff_t>(end), less);
+    for (std::size_t first = i; i < end; ++i) {
+      if (i == first || points[order[i]] != points[order[i - 1]])
+        distinct.push_back(points[order[i]]);
+      number[order[i]] = static_cast<std::uint32_t>(distinct.size() - 1);
     }
-    std::size_t slot = hash & (capacity - 1);
-    while (table[slot] != kEmpty && points[table[slot]] != points[i])
-      slot = (slot + 1) & (capacity - 1);
-    if (table[slot] == kEmpty) table[slot] = i;
-    same[i] = table[slot];
   }
-  return same;
-}
-
-/// The axis along which the face's projection is largest, by rounded arithmetic; another one if
-/// that turns out to be exactly zero.
-void find_axis(Face& face, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = (b - a).cross(c - a);
-  std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(),
-                   [&](int i, int j) { return std::abs(normal[i]) > std::abs(normal[j]); });
-  face.axis = -1;
-  for (const int axis : axes) {
-    const Sign sign = orient2d(axis, a, b, c);
-    if (sign == Sign::Zero) continue;
-    face.axis = axis;
-    face.upward = sign == Sign::Positive;
-    return;
-  }
+  points = std::move(distinct);
+  return number;
 }
 
 Bounds bounds_of(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -72,26 +63,32 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
       inside.triangles.size() + outside.triangles.size() >= 0xFFFFFFFF / 3) {
     throw Error(ErrorCode::LimitReached, "more than 2^32 / 3 triangles");
   }
+  // Points of no triangle count for nothing, least of all for the scale.
+  constexpr std::uint32_t kUnused = 0xFFFFFFFF;
+  std::array<std::vector<std::uint32_t>, 2> number;
   points_.reserve(inside.vertices.size() + outside.vertices.size());
-  for (const geom::Mesh* mesh : meshes) {
-    // Points of no triangle count for nothing, least of all for the scale.
-    std::vector<char> used(mesh->vertices.size(), 0);
-    for (const geom::Triangle& t : mesh->triangles)
-      for (const std::uint32_t v : t) used[v] = 1;
-    for (std::size_t v = 0; v < used.size(); ++v)
-      points_.push_back(used[v] != 0 ? Vec3(mesh->vertices[v] + Vec3::Zero())  // −0 becomes +0
-                                     : Vec3(Vec3::Zero()));
+  for (int chain = 0; chain < 2; ++chain) {
+    const geom::Mesh& mesh = *meshes[chain];
+    number[chain].assign(mesh.vertices.size(), kUnused);
+    for (const geom::Triangle& t : mesh.triangles)
+      for (const std::uint32_t v : t) number[chain][v] = 0;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      if (number[chain][v] == kUnused) continue;
+      number[chain][v] = static_cast<std::uint32_t>(points_.size());
+      points_.push_back(Vec3(mesh.vertices[v] + Vec3::Zero()));  // −0 becomes +0
+    }
   }
   rescale();
   const std::vector<std::uint32_t> same = merge_equal(points_);
 
-  std::uint32_t offset = 0;
   faces_.reserve(inside.triangles.size() + outside.triangles.size());
   for (int chain = 0; chain < 2; ++chain) {
     const geom::Mesh& mesh = *meshes[chain];
+    std::vector<Face> faces;
+    faces.reserve(mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       Face face{};
-      for (int k = 0; k < 3; ++k) face.v[k] = same[offset + mesh.triangles[t][k]];
+      for (int k = 0; k < 3; ++k) face.v[k] = same[number[chain][mesh.triangles[t][k]]];
       face.chain = static_cast<std::uint8_t>(chain);
       face.source = t;
       if (face.v[0] == face.v[1] || face.v[1] == face.v[2] || face.v[2] == face.v[0]) {
@@ -99,41 +96,118 @@ MeshPair::MeshPair(const geom::Mesh& inside, const geom::Mesh& outside) {
         repeated_[chain].push_back(face);
         continue;
       }
-      faces_.push_back(face);
+      faces.push_back(face);
     }
-    offset += static_cast<std::uint32_t>(mesh.vertices.size());
+    add_faces(chain, faces);
     if (chain == kInside) split_ = static_cast<std::uint32_t>(faces_.size());
   }
-  verify::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t f) {
-    Face& face = faces_[f];
-    find_axis(face, points_[face.v[0]], points_[face.v[1]], points_[face.v[2]]);
-  });
+  list_incidences();
+  find_neighbours();
+}
 
-  first_.assign(points_.size() + 1, 0);
-  for (const Face& face : faces_) {
-    for (const std::uint32_t v : face.v) ++first_[v + 1];
-    if (face.axis < 0) ++without_area_[face.chain];
+void MeshPair::add_faces(int chain, std::span<Face> faces) {
+  std::vector<Bounds> boxes(faces.size());
+  std::vector<Vec3> middles(faces.size());
+  verify::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
+    const auto& [a, b, c] = faces[f].v;
+    faces[f].directions = set_axis(faces[f], points_[a], points_[b], points_[c]);
+    boxes[f] = bounds_of(points_[a], points_[b], points_[c]);
+    middles[f] = middle_of(boxes[f]);
+  });
+  const std::vector<std::uint64_t> places = places_on_curve(middles);
+  std::vector<std::uint64_t> places_in_tree;
+  std::vector<Bounds> boxes_in_tree;
+  std::vector<std::uint32_t> items;
+  places_in_tree.reserve(faces.size());
+  boxes_in_tree.reserve(faces.size());
+  items.reserve(faces.size());
+  for (const std::uint32_t f : ordered_by(places)) {
+    if (faces[f].axis < 0) {
+      ++without_area_[chain];
+    } else {
+      places_in_tree.push_back(places[f]);
+      boxes_in_tree.push_back(boxes[f]);
+      items.push_back(static_cast<std::uint32_t>(faces_.size()));
+    }
+    faces_.push_back(faces[f]);
   }
+  tree_[chain] = BoxTree(std::move(boxes_in_tree), std::move(items), places_in_tree);
+}
+
+void MeshPair::list_incidences() {
+  first_.assign(points_.size() + 1, 0);
+  for (const Face& face : faces_)
+    for (const std::uint32_t v : face.v) ++first_[v + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   incident_.resize(3 * faces_.size());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::uint32_t f = 0; f < faces_.size(); ++f) {
     for (const std::uint32_t v : faces_[f].v) incident_[next[v]++] = f;
   }
+}
 
-  const auto build_tree = [&](int chain) {
-    std::vector<Bounds> boxes;
-    std::vector<std::uint32_t> items;
-    boxes.reserve(count(chain));
-    items.reserve(count(chain));
-    for (std::uint32_t f = begin(chain); f < end(chain); ++f) {
-      if (faces_[f].axis < 0) continue;
-      boxes.push_back(bounds_of(corner(f, 0), corner(f, 1), corner(f, 2)));
-      items.push_back(f);
+namespace {
+
+/// A face's edge, seen from its lower vertex.
+struct HalfEdge {
+  std::uint32_t to, face;
+  std::uint8_t edge;
+  std::int8_t flow;  ///< 1: runs to `to`; −1: from there
+};
+
+/// The edges that go from a vertex to higher ones, those to the same vertex together.
+void list_edges(const MeshPair& meshes, std::uint32_t v, std::vector<HalfEdge>& edges) {
+  edges.clear();
+  for (const std::uint32_t f : meshes.around(v)) {
+    const Face& face = meshes.face(f);
+    const int k = face.v[0] == v ? 0 : face.v[1] == v ? 1 : 2, before = (k + 2) % 3;
+    const std::uint32_t to = face.v[(k + 1) % 3], from = face.v[before];
+    if (to > v) edges.push_back({to, f, static_cast<std::uint8_t>(k), 1});
+    if (from > v) edges.push_back({from, f, static_cast<std::uint8_t>(before), -1});
+  }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.to != b.to ? a.to < b.to : a.face < b.face;
+  });
+}
+
+}  // namespace
+
+void MeshPair::find_neighbours() {
+  neighbours_.resize(faces_.size());
+  std::array<std::atomic<std::size_t>, 3> open{};
+  // One edge's faces, which are in the order of their numbers: the inside chain's come first.
+  const auto look_at = [&](std::span<const HalfEdge> edge, std::array<std::size_t, 3>& unbalanced) {
+    const HalfEdge* split = edge.data();
+    std::array<int, 2> flow{};
+    for (const HalfEdge& h : edge) {
+      flow[faces_[h.face].chain] += h.flow;
+      if (faces_[h.face].chain == kInside) ++split;
     }
-    tree_[chain] = BoxTree(std::move(boxes), std::move(items));
+    for (int c = 0; c < 2; ++c) unbalanced[c] += flow[c] != 0 ? 1 : 0;
+    unbalanced[2] += flow[0] != flow[1] ? 1 : 0;
+    const HalfEdge* last = edge.data() + edge.size();
+    for (const auto& [begin, end] : {std::pair{edge.data(), split}, {split, last}}) {
+      if (end - begin != 2 || begin[0].flow == begin[1].flow) continue;
+      for (int i = 0; i < 2; ++i)
+        neighbours_[begin[i].face][begin[i].edge] = {begin[1 - i].face, begin[1 - i].edge,
+                                                     edge.size() == 2};
+    }
   };
-  verify::parallel_invoke([&] { build_tree(kInside); }, [&] { build_tree(kOutside); });
+  verify::parallel_ranges(points_.size(), [&](std::size_t first, std::size_t last) {
+    std::vector<HalfEdge> edges;
+    std::array<std::size_t, 3> unbalanced{};
+    for (std::size_t v = first; v < last; ++v) {
+      list_edges(*this, static_cast<std::uint32_t>(v), edges);
+      for (std::size_t i = 0; i < edges.size();) {
+        std::size_t end = i + 1;
+        while (end < edges.size() && edges[end].to == edges[i].to) ++end;
+        look_at({edges.data() + i, end - i}, unbalanced);
+        i = end;
+      }
+    }
+    for (int k = 0; k < 3; ++k) open[k] += unbalanced[k];
+  });
+  for (int k = 0; k < 3; ++k) unbalanced_[k] = open[k];
 }
 
 void MeshPair::rescale() {
@@ -157,29 +231,12 @@ void MeshPair::rescale() {
   scaled_ = true;
 }
 
-std::size_t MeshPair::unbalanced(OperandMask chains, bool difference) const {
-  std::size_t result = 0;
-  std::vector<std::pair<std::uint32_t, int>> sums;  // per vertex: upper neighbour, flow
-  for (std::uint32_t v = 0; v < points_.size(); ++v) {
-    sums.clear();
-    for (const std::uint32_t f : around(v)) {
-      const Face& face = faces_[f];
-      if ((chains & mask_of(face.chain)) == 0) continue;
-      const int weight = difference && face.chain == kInside ? -1 : 1;
-      const int k = face.v[0] == v ? 0 : face.v[1] == v ? 1 : 2;
-      const std::uint32_t to = face.v[(k + 1) % 3], from = face.v[(k + 2) % 3];
-      if (to > v) sums.emplace_back(to, weight);
-      if (from > v) sums.emplace_back(from, -weight);
-    }
-    std::sort(sums.begin(), sums.end());
-    for (std::size_t i = 0; i < sums.size();) {
-      int sum = 0;
-      const std::uint32_t other = sums[i].first;
-      for (; i < sums.size() && sums[i].first == other; ++i) sum += sums[i].second;
-      if (sum != 0) ++result;
-    }
-  }
-  return result;
+std::vector<Face> MeshPair::in_order_of_sources(int chain) const {
+  std::vector<Face> faces(faces_.begin() + begin(chain), faces_.begin() + end(chain));
+  std::sort(faces.begin(), faces.end(),
+            [](const Face& a, const Face& b) { return a.source < b.source; });
+  faces.insert(faces.begin(), repeated_[chain].begin(), repeated_[chain].end());
+  return faces;
 }
 
 double MeshPair::largest_coordinate() const {

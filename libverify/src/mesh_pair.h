@@ -21,10 +21,11 @@ inline constexpr OperandMask mask_of(int chain) { return 1U << chain; }
 
 struct Face {
   std::array<std::uint32_t, 3> v;
-  int axis;              ///< a projection along it does not collapse the face; −1: no area
-  bool upward;           ///< the projection along `axis` is counter-clockwise
-  std::uint8_t chain;    ///< Chain
-  std::uint32_t source;  ///< index in the mesh it comes from
+  int axis;                 ///< a projection along it does not collapse the face; −1: no area
+  bool upward;              ///< the projection along `axis` is counter-clockwise
+  std::uint8_t chain;       ///< Chain
+  std::uint8_t directions;  ///< that it certainly faces: set_axis
+  std::uint32_t source;     ///< index in the mesh it comes from
 
   /// Which corner a vertex is; −1: none.
   [[nodiscard]] int place_of(std::uint32_t vertex) const {
@@ -35,9 +36,20 @@ struct Face {
   }
 };
 
+/// The face of the same chain across an edge.
+struct Neighbour {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::uint32_t face = kNone;  ///< kNone: the edge has not just two faces of the chain, or they run
+                               ///< through it the same way
+  std::uint8_t edge = 0;       ///< there; it runs the other way
+  bool alone = false;          ///< nor has the edge a face of the other chain
+};
+
 /// Both meshes with one set of vertices, equal coordinates merged (−0 = +0): faces of the inside
-/// chain first. Faces with repeated corners are kept apart; faces without area stay among the
-/// others, as they count in the balance of edges, but are marked.
+/// chain first. Vertices and each chain's faces are numbered along a curve through space, so that
+/// what is near is near in memory, whatever the files' order. Faces with repeated corners are kept
+/// apart; faces without area stay among the others, as they count in the balance of edges, but are
+/// marked.
 ///
 /// Coordinates are the meshes' times one power of two that brings the largest to about 1, so that
 /// products neither overflow nor underflow; if some coordinate would not survive that exactly, they
@@ -74,14 +86,21 @@ class MeshPair {
     return {incident_.data() + first_[vertex], incident_.data() + first_[vertex + 1]};
   }
 
+  /// The face across an edge from corner k to the next.
+  [[nodiscard]] const Neighbour& neighbour(std::uint32_t f, int k) const {
+    return neighbours_[f][k];
+  }
+
   /// Every directed edge of the chain is cancelled by its opposite.
-  [[nodiscard]] bool closed(int chain) const { return unbalanced(mask_of(chain), false) == 0; }
+  [[nodiscard]] bool closed(int chain) const { return unbalanced(chain) == 0; }
   /// Outside minus inside is a closed chain.
-  [[nodiscard]] bool same_border() const { return unbalanced(3, true) == 0; }
-  /// Number of edges that are not balanced.
-  [[nodiscard]] std::size_t unbalanced(OperandMask chains, bool difference) const;
+  [[nodiscard]] bool same_border() const { return unbalanced_[2] == 0; }
+  /// Number of the chain's edges that are not balanced.
+  [[nodiscard]] std::size_t unbalanced(int chain) const { return unbalanced_[chain]; }
 
   [[nodiscard]] std::size_t without_area(int chain) const { return without_area_[chain]; }
+  /// All of a chain's faces, those with repeated corners first, else as the mesh has them.
+  [[nodiscard]] std::vector<Face> in_order_of_sources(int chain) const;
   /// The faces with repeated corners.
   [[nodiscard]] const std::vector<Face>& repeated(int chain) const { return repeated_[chain]; }
 
@@ -95,6 +114,9 @@ class MeshPair {
 
  private:
   void rescale();
+  void add_faces(int chain, std::span<Face> faces);
+  void list_incidences();
+  void find_neighbours();
 
   std::vector<Vec3> points_;
   double scale_ = 1;
@@ -102,6 +124,8 @@ class MeshPair {
   std::vector<Face> faces_;
   std::uint32_t split_ = 0;
   std::vector<std::uint32_t> first_, incident_;
+  std::vector<std::array<Neighbour, 3>> neighbours_;
+  std::array<std::size_t, 3> unbalanced_{};  // edges of either chain, and of their difference
   std::array<std::size_t, 2> without_area_{};
   std::array<std::vector<Face>, 2> repeated_;
   std::array<BoxTree, 2> tree_;

@@ -70,7 +70,7 @@ NearestTriangle::Hit NearestTriangle::nearest(const Vec3& p, std::uint32_t guess
     std::uint32_t node;
     double distance;
   };
-  std::array<Entry, 96> stack;
+  std::array<Entry, BoxTree::kMostLevels + 2> stack;
   std::size_t size = 0;
   stack[size++] = {0, squared_distance(p, tree_.nodes()[0].box)};
   while (size > 0) {

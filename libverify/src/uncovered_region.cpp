@@ -225,9 +225,13 @@ std::vector<std::uint32_t> offending_faces(const MeshPair& meshes, const Claim& 
   for (const int chain : {kInside, kOutside}) {
     const std::vector<std::uint32_t>& named =
         chain == kInside ? claim.inner_triangles : claim.outer_triangles;
+    const auto first = static_cast<std::ptrdiff_t>(faces.size());
     for (std::uint32_t f = meshes.begin(chain); f < meshes.end(chain); ++f) {
       if (std::binary_search(named.begin(), named.end(), meshes.face(f).source)) faces.push_back(f);
     }
+    std::sort(faces.begin() + first, faces.end(), [&](std::uint32_t f, std::uint32_t g) {
+      return meshes.face(f).source < meshes.face(g).source;
+    });
   }
   return faces;
 }

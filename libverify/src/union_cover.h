@@ -384,7 +384,7 @@ Inclusion decide(const geom::Mesh& original, const geom::ConvexSet& set, const B
   const std::string many = Bodies::kMany;
   const MeshPair meshes(geom::Mesh{}, original);
   Inclusion out;
-  out.inner_open_edges = meshes.unbalanced(mask_of(kOutside), false);
+  out.inner_open_edges = meshes.unbalanced(kOutside);
   out.inner_closed = out.inner_open_edges == 0;
   out.triangles_without_area = meshes.without_area(kOutside) + meshes.repeated(kOutside).size();
   if (original.triangles.empty()) {

@@ -1,0 +1,188 @@
+// Two meshes as one: numbers along a curve, neighbours, boxes that meet, contacts within a chain.
+#include "mesh_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "box_tree.h"
+#include "classifier.h"
+#include "contacts.h"
+#include "pairs.h"
+
+namespace {
+
+using namespace kaboum;
+using verify::Bounds;
+using verify::BoxTree;
+using verify::Contacts;
+using verify::kInside;
+using verify::kOutside;
+using verify::Neighbour;
+
+using PairOfItems = std::pair<std::uint32_t, std::uint32_t>;
+
+std::vector<Bounds> random_boxes(std::uint64_t seed, std::size_t count) {
+  std::mt19937_64 random(seed);
+  const int cells = 1 + static_cast<int>(random() % 40);
+  std::vector<Bounds> boxes(count);
+  for (Bounds& box : boxes)
+    for (int k = 0; k < 3; ++k) {
+      box.low[k] = static_cast<double>(random() % cells);
+      box.high[k] = box.low[k] + static_cast<double>(random() % 3);
+    }
+  return boxes;
+}
+
+TEST(BoxTree, FindsEachPairOnce) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const std::size_t count = 1 + seed * seed % 600;
+    const std::vector<Bounds> boxes = random_boxes(seed, count);
+    std::vector<std::uint32_t> items;
+    for (std::uint32_t i = 0; i < count; ++i) items.push_back(i);
+    const BoxTree tree(boxes, items);
+    std::vector<PairOfItems> found, wanted;
+    for (const std::uint32_t root : verify::subtrees(tree, 1 + seed % 9))
+      verify::meeting_pairs_within(tree, root, [&](std::uint32_t i, std::uint32_t j) {
+        found.emplace_back(std::min(i, j), std::max(i, j));
+      });
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (std::uint32_t j = i + 1; j < count; ++j)
+        if (boxes[i].meets(boxes[j])) wanted.emplace_back(i, j);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, wanted) << seed;
+  }
+}
+
+TEST(BoxTree, EveryNodeHoldsItsItems) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const std::vector<Bounds> boxes = random_boxes(seed, 500);
+    std::vector<std::uint32_t> items(500);
+    for (std::uint32_t i = 0; i < 500; ++i) items[i] = 1000 + i;
+    const BoxTree tree(boxes, items);
+    const Bounds wanted = boxes[seed];
+    std::set<std::uint32_t> found;
+    tree.query([&](const Bounds& box) { return box.meets(wanted); },
+               [&](std::uint32_t item) { found.insert(item); });
+    for (std::uint32_t i = 0; i < 500; ++i)
+      EXPECT_EQ(found.contains(1000 + i), boxes[i].meets(wanted)) << seed;
+  }
+}
+
+/// What the constructor says of a face's edge, from all faces.
+Neighbour neighbour_of(const verify::MeshPair& meshes, std::uint32_t f, int k) {
+  const verify::Face& face = meshes.face(f);
+  const std::uint32_t from = face.v[k], to = face.v[(k + 1) % 3];
+  Neighbour result;
+  int same = 0, others = 0;
+  for (std::uint32_t g = 0; g < meshes.faces().size(); ++g) {
+    const verify::Face& by = meshes.face(g);
+    if (g == f || by.place_of(from) < 0 || by.place_of(to) < 0) continue;
+    if (by.chain != face.chain) {
+      ++others;
+      continue;
+    }
+    ++same;
+    if (by.v[(by.place_of(to) + 1) % 3] == from) {
+      result.face = g;
+      result.edge = static_cast<std::uint8_t>(by.place_of(to));
+    }
+  }
+  if (same != 1 || result.face == Neighbour::kNone) return {};
+  result.alone = others == 0;
+  return result;
+}
+
+TEST(MeshPair, NeighboursAndBalance) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const test::MeshPair pair = seed % 2 == 0 ? test::lattice_pair(seed) : test::open_pair(seed);
+    const verify::MeshPair meshes(pair.inner, pair.outer);
+    if (meshes.faces().size() > 400) continue;
+    std::map<PairOfItems, std::array<int, 2>> flow;
+    for (std::uint32_t f = 0; f < meshes.faces().size(); ++f) {
+      const verify::Face& face = meshes.face(f);
+      for (int k = 0; k < 3; ++k) {
+        const Neighbour is = meshes.neighbour(f, k), should = neighbour_of(meshes, f, k);
+        EXPECT_EQ(is.face, should.face) << pair.name;
+        EXPECT_EQ(is.edge, should.edge) << pair.name;
+        EXPECT_EQ(is.alone, should.alone) << pair.name;
+        const std::uint32_t a = face.v[k], b = face.v[(k + 1) % 3];
+        flow[{std::min(a, b), std::max(a, b)}][face.chain] += a < b ? 1 : -1;
+      }
+    }
+    std::array<std::size_t, 2> open{};
+    bool same = true;
+    for (const auto& [edge, sum] : flow) {
+      for (int c = 0; c < 2; ++c) open[c] += sum[c] != 0 ? 1 : 0;
+      same = same && sum[0] == sum[1];
+    }
+    EXPECT_EQ(meshes.unbalanced(kInside), open[0]) << pair.name;
+    EXPECT_EQ(meshes.unbalanced(kOutside), open[1]) << pair.name;
+    EXPECT_EQ(meshes.same_border(), same) << pair.name;
+  }
+}
+
+/// Faces are the triangles, whatever their numbers.
+TEST(MeshPair, FacesAreTheTriangles) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const test::MeshPair pair = test::lattice_pair(seed);
+    const verify::MeshPair meshes(pair.inner, pair.outer);
+    for (const int chain : {kInside, kOutside}) {
+      const geom::Mesh& mesh = chain == kInside ? pair.inner : pair.outer;
+      const std::vector<verify::Face> faces = meshes.in_order_of_sources(chain);
+      ASSERT_EQ(faces.size(), mesh.triangles.size());
+      std::vector<char> seen(faces.size(), 0);
+      for (const verify::Face& face : faces) {
+        seen[face.source] = 1;
+        for (int k = 0; k < 3; ++k)
+          EXPECT_EQ(meshes.point_outside(meshes.point(face.v[k])),
+                    mesh.vertices[mesh.triangles[face.source][k]]);
+      }
+      EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ssize(seen));
+    }
+  }
+}
+
+using Contact = std::tuple<std::uint32_t, std::uint32_t, int, bool>;
+
+void list(const Contacts& contacts, std::uint32_t f, std::vector<Contact>& into) {
+  for (const Contacts::Cut& c : contacts.cuts(f)) into.emplace_back(c.face, c.by, -1, c.coplanar);
+  for (const Contacts::Along& a : contacts.alongs(f))
+    into.emplace_back(a.face, a.on, a.edge, a.whole);
+}
+
+/// Pairs that are left out have no contact, all others are looked at.
+TEST(MeshPair, ContactsWithinAChainAreThoseOfAllPairs) {
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    const test::MeshPair pair = seed % 3 == 0   ? test::bent_pair(seed)
+                                : seed % 3 == 1 ? test::lattice_pair(seed)
+                                                : test::open_pair(seed);
+    const verify::MeshPair meshes(pair.inner, pair.outer);
+    if (meshes.faces().size() > 400) continue;
+    for (const int chain : {kInside, kOutside}) {
+      const Contacts found = verify::contacts_within(meshes, chain, {1'000'000, 1'000'000});
+      verify::FoundContacts all;
+      verify::Classifier classify(meshes, all, all);
+      for (std::uint32_t f = meshes.begin(chain); f < meshes.end(chain); ++f)
+        for (std::uint32_t g = f + 1; g < meshes.end(chain); ++g)
+          if (meshes.face(f).axis >= 0 && meshes.face(g).axis >= 0) classify(f, g);
+      const Contacts wanted(meshes.begin(chain), meshes.end(chain), all.cuts, all.alongs);
+      std::vector<Contact> a, b;
+      for (std::uint32_t f = meshes.begin(chain); f < meshes.end(chain); ++f) {
+        list(found, f, a);
+        list(wanted, f, b);
+      }
+      EXPECT_EQ(a, b) << pair.name;
+      contacts += a.size();
+    }
+  }
+  EXPECT_GT(contacts, 1000U);
+}
+
+}  // namespace
