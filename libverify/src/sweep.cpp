@@ -303,7 +303,7 @@ class Search {
       if (length * bound_.speed > gap) return Next::HalveTime;
       return Next::Undecided;
     }
-    if (refute(cell, start, begin_) || refute(cell, finish, end_)) return Next::Refuted;
+    if (refute(cell, start, begin_, near) || refute(cell, finish, end_, near)) return Next::Refuted;
     if (cell.curved()) {
       std::uint32_t any = cell.body;
       const bool bulge_alone = holder(start, still, any, near) && holder(finish, still, any, near);
@@ -340,11 +340,16 @@ class Search {
     for (const Vec3& p : places) {
       ++task_.samples;
       double nearest = std::numeric_limits<double>::infinity();
-      if (!bodies_.empty()) nearest = bodies_[cell.body].distance_from_above(p);
+      // Distances above the margin, or what another body has, are not asked for.
+      const auto look_at = [&](const SweptBody& body) {
+        const double most = std::min(nearest, margin_);
+        if (body.distance_to_box(p) <= most && !body.is_beyond(p, most))
+          nearest = std::min(nearest, body.distance_from_above(p));
+      };
+      if (!bodies_.empty()) look_at(bodies_[cell.body]);
       for (const std::uint32_t i : near) {
         if (nearest <= task_.farthest.distance) break;
-        if (bodies_[i].distance_to_box(p) < nearest)
-          nearest = std::min(nearest, bodies_[i].distance_from_above(p));
+        look_at(bodies_[i]);
       }
       // Bodies that are not near are farther away than the margin; the claim is then refuted.
       if (nearest > task_.farthest.distance && nearest <= margin_) {
@@ -355,8 +360,11 @@ class Search {
   }
 
   /// Whether a place is certainly farther from all bodies than the margin.
-  bool refute(const SweptCell& cell, std::span<const Vec3> places, double s) {
+  bool refute(const SweptCell& cell, std::span<const Vec3> places, double s,
+              const std::vector<std::uint32_t>& near) {
     for (const Vec3& p : places) {
+      std::uint32_t held_by = cell.body;
+      if (holder({&p, 1}, margin_, held_by, near)) continue;
       double nearest = std::numeric_limits<double>::infinity();
       bool outside = true;
       for (const SweptBody& body : bodies_) {

@@ -99,6 +99,13 @@ bool SweptBody::holds(const Vec3& p, double distance) const {
   return distance > 0 && distance_from_above(p) <= distance;
 }
 
+bool SweptBody::is_beyond(const Vec3& p, double distance) const {
+  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
+  return std::any_of(facets_.begin(), facets_.end(), [&](const Facet& f) {
+    return f.normal.dot(p) - f.offset - f.slack * size > distance;
+  });
+}
+
 Vec3 SweptBody::nearest(const Vec3& p) const {
   const double size = std::max(size_, p.cwiseAbs().maxCoeff());
   double least = std::numeric_limits<double>::infinity();

@@ -16,6 +16,8 @@ class SweptBody {
   /// Whether the point is certainly within `distance` of the body; with a negative distance,
   /// whether it is certainly that deep inside. Points near the limit may get "no".
   [[nodiscard]] bool holds(const geom::Vec3& p, double distance) const;
+  /// Whether a facet's plane shows that the point is farther than that from the body.
+  [[nodiscard]] bool is_beyond(const geom::Vec3& p, double distance) const;
   /// Not less than the distance of the point from the body.
   [[nodiscard]] double distance_from_above(const geom::Vec3& p) const;
   /// Not more than it.
