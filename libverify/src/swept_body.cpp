@@ -80,6 +80,28 @@ SweptBody::SweptBody(const geom::Mesh& hull) : vertices_(hull.vertices) {
     set_plane(f);
     facets_.push_back(f);
   }
+  for (std::size_t i = 0; i < facets_.size(); i += 2) {
+    const Facet &a = facets_[i], &b = facets_[std::min(i + 1, facets_.size() - 1)];
+    planes_.push_back(Planes{Pair{a.normal.x(), b.normal.x()}, Pair{a.normal.y(), b.normal.y()},
+                             Pair{a.normal.z(), b.normal.z()}, Pair{a.offset, b.offset},
+                             Pair{a.slack, b.slack}});
+  }
+}
+
+SweptBody::Place SweptBody::place(const Vec3& p) const {
+  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
+  return Place{Pair{p.x(), p.x()}, Pair{p.y(), p.y()}, Pair{p.z(), p.z()}, Pair{size, size}};
+}
+
+SweptBody::Pair SweptBody::height(const Planes& planes, const Place& at) {
+  return planes.x * at.x + (planes.y * at.y + planes.z * at.z) - planes.offset;
+}
+
+bool SweptBody::is_inside(const Place& at) const {
+  return std::all_of(planes_.begin(), planes_.end(), [&](const Planes& planes) {
+    const auto below = height(planes, at) + planes.slack * at.size <= Pair{};
+    return (below[0] & below[1]) != 0;
+  });
 }
 
 double SweptBody::rounding(const Vec3& p) const {
@@ -87,22 +109,26 @@ double SweptBody::rounding(const Vec3& p) const {
 }
 
 bool SweptBody::holds(const Vec3& p, double distance) const {
-  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
-  const double deep = std::min(distance, 0.0);
-  bool inside = true;
-  for (const Facet& f : facets_) {
-    const double height = f.normal.dot(p) - f.offset, slack = f.slack * size;
-    if (height - slack > distance) return false;
-    inside = inside && height + slack <= deep;
+  const Place at = place(p);
+  const double least = std::min(distance, 0.0);
+  const Pair most{distance, distance}, deep{least, least};
+  auto inside = most == most;
+  for (const Planes& planes : planes_) {
+    const Pair h = height(planes, at), slack = planes.slack * at.size;
+    const auto beyond = h - slack > most;
+    if ((beyond[0] | beyond[1]) != 0) return false;
+    inside &= h + slack <= deep;
   }
-  if (inside) return true;
+  if ((inside[0] & inside[1]) != 0) return true;
   return distance > 0 && distance_from_above(p) <= distance;
 }
 
 bool SweptBody::is_beyond(const Vec3& p, double distance) const {
-  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
-  return std::any_of(facets_.begin(), facets_.end(), [&](const Facet& f) {
-    return f.normal.dot(p) - f.offset - f.slack * size > distance;
+  const Place at = place(p);
+  const Pair most{distance, distance};
+  return std::any_of(planes_.begin(), planes_.end(), [&](const Planes& planes) {
+    const auto beyond = height(planes, at) - planes.slack * at.size > most;
+    return (beyond[0] | beyond[1]) != 0;
   });
 }
 
@@ -123,10 +149,7 @@ Vec3 SweptBody::nearest(const Vec3& p) const {
 }
 
 double SweptBody::distance_from_above(const Vec3& p) const {
-  const double size = std::max(size_, p.cwiseAbs().maxCoeff());
-  if (std::all_of(facets_.begin(), facets_.end(),
-                  [&](const Facet& f) { return f.normal.dot(p) - f.offset + f.slack * size <= 0; }))
-    return 0;
+  if (is_inside(place(p))) return 0;
   return (p - nearest(p)).norm() + rounding(p);
 }
 

@@ -2,8 +2,10 @@
 
 #include <kaboum/geom/mesh.h>
 
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace kaboum::verify {
 
@@ -37,12 +39,26 @@ class SweptBody {
     /// the plane is known.
     double slack = std::numeric_limits<double>::infinity();
   };
+  using Pair = double __attribute__((vector_size(16)));
+  /// The planes of two facets; an odd number's last facet twice.
+  struct Planes {
+    Pair x, y, z, offset, slack;
+  };
+  /// What is the same for all planes of a body.
+  struct Place {
+    Pair x, y, z, size;
+  };
   static void set_plane(Facet& f);
+  [[nodiscard]] Place place(const geom::Vec3& p) const;
+  static Pair height(const Planes& planes, const Place& at);
+  /// All planes are above the point by more than rounding.
+  [[nodiscard]] bool is_inside(const Place& at) const;
   [[nodiscard]] double rounding(const geom::Vec3& p) const;
   /// The point of the facets that seems nearest; certainly one of the body, but for rounding.
   [[nodiscard]] geom::Vec3 nearest(const geom::Vec3& p) const;
 
   std::vector<Facet> facets_;
+  std::vector<Planes> planes_;
   std::vector<geom::Vec3> vertices_;
   geom::Box3 box_;
   double size_ = 0;  // largest coordinate
