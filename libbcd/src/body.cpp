@@ -23,13 +23,13 @@ void join(const Body& a, const Body& b, std::vector<Vec3>& points) {
   points.insert(points.end(), b.hull.begin(), b.hull.end());
 }
 
-/// Distance of some points between the bodies.
-double between(const Body& a, const Body& b, const SolidField& solid) {
-  constexpr std::size_t kSamples = 12;
+/// Distance of some points between the bodies: the largest, or one beyond `limit`.
+double between(const Body& a, const Body& b, const SolidField& solid, double limit) {
+  constexpr std::size_t kSamples = 48, kStride = 11;
   double worst = 0;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kSamples && worst <= limit; ++i) {
     const Vec3& p = a.hull[i * a.hull.size() / kSamples];
-    const Vec3& q = b.hull[(i * 5 % kSamples) * b.hull.size() / kSamples];
+    const Vec3& q = b.hull[(i * kStride % kSamples) * b.hull.size() / kSamples];
     const Vec3 middle = 0.5 * (p + q);
     worst = std::max(worst, solid.distance_above(worst, middle, solid.field(middle)));
   }
@@ -96,10 +96,18 @@ bool touch(const Body& a, const Body& b, const SolidField& solid) {
       .all();
 }
 
-UnionEstimate estimate_union(const Body& a, const Body& b, const SolidField& solid, double limit) {
+double distance_from_below(const Body& a, const Body& b, const SolidField& solid, double limit) {
   solid.work().add(kUnionWork);
-  const double least = between(a, b, solid);
-  if (least > limit) return {least, 0, false};
+  const double own = std::max(a.concavity.worst, b.concavity.worst);
+  return own > limit ? own : std::max(own, between(a, b, solid, limit));
+}
+
+UnionEstimate estimate_union(const Body& a, const Body& b, const SolidField& solid, double limit) {
+  const double least = distance_from_below(a, b, solid, limit);
+  return least > limit ? UnionEstimate{least, 0, false} : estimate_hull(a, b, solid, limit);
+}
+
+UnionEstimate estimate_hull(const Body& a, const Body& b, const SolidField& solid, double limit) {
   static thread_local std::vector<Vec3> points;
   join(a, b, points);
   const Concavity h = estimate_concavity(points, solid, hull_builder(), true, limit);

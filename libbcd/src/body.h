@@ -30,7 +30,12 @@ struct UnionEstimate {
   double added;  ///< side of a cube of the volume added [length]
   bool whole;    ///< else `worst` is a lower bound, and nothing more is known
 };
-/// Unions farther than `limit` from the solid are not looked at any closer.
+/// A bound below of its distance, by the bodies' own and some points between them; nothing beyond
+/// `limit` is told apart.
+double distance_from_below(const Body& a, const Body& b, const SolidField& solid, double limit);
+/// What is known when the hull is built; not looked at any closer beyond `limit`.
+UnionEstimate estimate_hull(const Body& a, const Body& b, const SolidField& solid, double limit);
+/// The same, but hulls that the bound tells to be beyond `limit` are not built.
 UnionEstimate estimate_union(const Body& a, const Body& b, const SolidField& solid, double limit);
 
 /// The leaves of the tree that a body consists of.

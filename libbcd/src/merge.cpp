@@ -15,11 +15,15 @@ constexpr double kMergeWork = 0.8;  ///< share of the work allowed, after which 
 /// Bodies that do not touch are only merged when there are no more: all pairs are looked at.
 constexpr std::size_t kAllPairs = 400;
 
-/// Two bodies and what their hull would be.
+/// So many hulls are built at once: a fixed number, so that the work is the same on any number of
+/// threads.
+constexpr std::size_t kAtOnce = 8;
+
+/// Two bodies, and what their hull costs, or a bound below.
 struct Pair {
   std::uint32_t a, b;
-  UnionEstimate hull{};
   double cost = 0;
+  bool known = false;  ///< whether that is the cost
 };
 
 /// Cheapest first; ties by index, so that the order is always the same.
@@ -58,6 +62,10 @@ class Merger {
         });
         if (queue_.empty()) break;
       }
+      if (!queue_.top().known) {
+        estimate_next();
+        continue;
+      }
       const Pair p = queue_.top();
       queue_.pop();
       if (alive_[p.a] == 0 || alive_[p.b] == 0) continue;
@@ -65,7 +73,7 @@ class Merger {
       const auto self = static_cast<std::uint32_t>(bodies_.size()) - 1;
       for (std::uint32_t a = 0; a < self; ++a)
         if (alive_[a] != 0 && (all_pairs || near(a, self))) fresh_.push_back({a, self});
-      estimate_fresh();
+      bound_fresh();
     }
   }
 
@@ -86,31 +94,59 @@ class Merger {
     for (std::uint32_t a = 0; a < bodies_.size(); ++a)
       for (std::uint32_t b = a + 1; b < bodies_.size(); ++b)
         if (wanted(a, b)) fresh_.push_back({a, b});
-    estimate_fresh();
+    bound_fresh();
   }
 
-  /// Puts fresh pairs into the queue that are near enough to the solid.
-  void estimate_fresh() {
+  void take(Pair& p, const UnionEstimate& hull) {
+    p.cost = hull.worst + volume_weight_ * hull.added;
+    p.known = true;
+    if (hull.worst <= epsilon_) queue_.push(p);
+  }
+
+  /// Puts fresh pairs into the queue that are not known to be too far from the solid. A hull is no
+  /// nearer than what is in it.
+  void bound_fresh() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < fresh_.size(); ++i) {
       Pair& p = fresh_[i];
       const UnionEstimate* known = memo_.find(id_[p.a], id_[p.b]);
       if (known != nullptr && (known->whole || known->worst > epsilon_)) {
-        p.hull = *known;
+        take(p, *known);
       } else {
         open.push_back(i);
       }
     }
     parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
       Pair& p = fresh_[open[i]];
-      p.hull = estimate_union(bodies_[p.a], bodies_[p.b], solid_, epsilon_);
+      p.cost = distance_from_below(bodies_[p.a], bodies_[p.b], solid_, epsilon_);
     });
-    for (const std::size_t i : open) memo_.add(id_[fresh_[i].a], id_[fresh_[i].b], fresh_[i].hull);
-    for (Pair& p : fresh_) {
-      p.cost = p.hull.worst + volume_weight_ * p.hull.added;
-      if (p.hull.worst <= epsilon_) queue_.push(p);
+    for (const std::size_t i : open) {
+      const Pair& p = fresh_[i];
+      if (p.cost <= epsilon_) {
+        queue_.push(p);
+      } else {
+        memo_.add(id_[p.a], id_[p.b], {p.cost, 0, false});
+      }
     }
     fresh_.clear();
+  }
+
+  /// Finds the costs of the pairs that have the least bounds.
+  void estimate_next() {
+    std::vector<Pair> next;
+    while (next.size() < kAtOnce && !queue_.empty() && !queue_.top().known) {
+      const Pair p = queue_.top();
+      queue_.pop();
+      if (alive_[p.a] != 0 && alive_[p.b] != 0) next.push_back(p);
+    }
+    std::vector<UnionEstimate> hulls(next.size());
+    parallel_for(std::size_t{0}, next.size(), [&](std::size_t i) {
+      hulls[i] = estimate_hull(bodies_[next[i].a], bodies_[next[i].b], solid_, epsilon_);
+    });
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      memo_.add(id_[next[i].a], id_[next[i].b], hulls[i]);
+      take(next[i], hulls[i]);
+    }
   }
 
   void join(const Pair& p) {

@@ -60,10 +60,10 @@ class SolidField {
   /// Appends the triangles whose boxes meet the box. @return false when there are more than `most`.
   bool triangles_near(const Box3& box, std::size_t most, std::vector<std::uint32_t>& out) const;
 
-  /// Signed distance to the surface, negative inside, interpolated on a grid whose nodes are
-  /// computed when they are first needed. Good to about the grid's spacing, beyond the grid (some
-  /// spacings round the mesh) an upper bound of as much; guides the search, never a claim. Same
-  /// value whatever was asked before, from any thread.
+  /// Signed distance to the surface, negative inside and no deeper than four spacings, interpolated
+  /// on a grid whose nodes are computed when they are first needed. Good to about the grid's
+  /// spacing, beyond the grid (some spacings round the mesh) an upper bound of as much; guides the
+  /// search, never a claim. Same value whatever was asked before, from any thread.
   [[nodiscard]] double field(const Vec3& p) const;
   /// Distance to the solid or its triangles, up to rounding, if it exceeds `least`; else something
   /// ≤ `least`. `guess` is the field there, which is trusted to be no less.

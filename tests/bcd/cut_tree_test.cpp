@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "body.h"
 #include "cut_chooser.h"
 #include "cut_tree.h"
 #include "solids.h"
@@ -100,6 +103,38 @@ TEST_F(CutTreeTest, ThePlaneFoundIsThatOfTheLeaves) {
   ASSERT_TRUE(coarse && fine);
   EXPECT_NEAR(coarse->worst, fine->worst, 1e-3 * far);
   EXPECT_LT(coarse->worst, 1.01 * far);
+}
+
+/// A mesh of two boxes.
+Mesh boxes(const Vec3& a, const Vec3& b, const Vec3& size) {
+  Mesh out;
+  for (const auto& [low, high] : {std::pair(Vec3(0, 0, 0), size), std::pair(a, b)}) {
+    Mesh one = kaboum::test::box(high - low, 1);
+    const geom::Box3 box = geom::bounding_box(one);
+    const auto offset = static_cast<std::uint32_t>(out.vertices.size());
+    for (const Vec3& p : one.vertices) out.vertices.push_back(p - box.min + low);
+    for (const Triangle& t : one.triangles)
+      out.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+  return out;
+}
+
+TEST(CutTree, UnionsAreNoNearerThanTheirBoundBelow) {
+  const Mesh mesh = boxes({0, 0, 1.5}, {1, 1, 2}, {1, 1, 1});
+  const SolidField solid(mesh, 20000, 0);
+  CutTree tree(solid, {});
+  ASSERT_TRUE(tree.cut_worst());
+  ASSERT_EQ(tree.leaf_count(), 2U);
+  const Body a = body_of(tree, 1), b = body_of(tree, 2);
+  const double bound = distance_from_below(a, b, solid, 1);
+  const UnionEstimate hull = estimate_hull(a, b, solid, 1);
+  EXPECT_TRUE(hull.whole);
+  EXPECT_NEAR(hull.worst, 0.25, 0.02);
+  EXPECT_GT(bound, 0.1);
+  EXPECT_LE(bound, 0.25 + 1e-9);
+  // No hull is built where the bound suffices.
+  EXPECT_FALSE(estimate_union(a, b, solid, 0.1).whole);
+  EXPECT_TRUE(estimate_union(a, b, solid, 0.3).whole);
 }
 
 }  // namespace
