@@ -185,4 +185,34 @@ TEST(MeshPair, ContactsWithinAChainAreThoseOfAllPairs) {
   EXPECT_GT(contacts, 1000U);
 }
 
+/// Round which the triangles go twice, all of them upwards: they cut each other.
+TEST(MeshPair, ContactsRoundAVertexThatIsGoneRoundTwice) {
+  geom::Mesh mesh{{{4, 0, 0},
+                   {-2, 3, 0},
+                   {-2, -3, 0},
+                   {3, 0, 0},
+                   {-1, 2, 0},
+                   {-1, -2, 0},
+                   {0, 0, 1},
+                   {0, 0, -1}},
+                  {}};
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    mesh.triangles.push_back({i, (i + 1) % 6, 6});
+    mesh.triangles.push_back({(i + 1) % 6, i, 7});
+  }
+  const verify::MeshPair meshes(mesh, mesh);
+  const Contacts found = verify::contacts_within(meshes, kInside, {1'000'000, 1'000'000});
+  EXPECT_EQ(found.cut_count(), 4U);
+}
+
+/// A fan, and a triangle besides that hangs on its vertex and cuts it.
+TEST(MeshPair, ContactsRoundAVertexOfMoreThanAFan) {
+  const geom::Mesh mesh{
+      {{4, 0, 0}, {0, 4, 0}, {-4, 0, 0}, {0, -4, 0}, {0, 0, 1}, {-3, -1, 2}, {-1, -3, -2}},
+      {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {5, 6, 4}}};
+  const verify::MeshPair meshes(mesh, mesh);
+  const Contacts found = verify::contacts_within(meshes, kInside, {1'000'000, 1'000'000});
+  EXPECT_EQ(found.cut_count(), 2U);
+}
+
 }  // namespace
