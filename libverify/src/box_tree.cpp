@@ -10,12 +10,10 @@ namespace kaboum::verify {
 namespace {
 constexpr std::uint32_t kLeaf = 4;
 
-/// Where the highest bit in which places differ changes; the middle where none does.
+/// Where the highest bit in which places differ changes. @pre the first and the last one do
 std::uint32_t cut_of(std::span<const std::uint64_t> places, std::uint32_t first,
                      std::uint32_t last) {
-  const std::uint64_t differ = places[first] ^ places[last - 1];
-  if (differ == 0) return first + (last - first) / 2;
-  const std::uint64_t bit = std::bit_floor(differ);
+  const std::uint64_t bit = std::bit_floor(places[first] ^ places[last - 1]);
   const auto begin = places.begin() + first, end = places.begin() + last;
   return static_cast<std::uint32_t>(
       std::partition_point(begin, end, [&](std::uint64_t p) { return (p & bit) == 0; }) -
@@ -56,7 +54,8 @@ Bounds BoxTree::build(std::span<const std::uint64_t> places, std::uint32_t first
   if (last - first <= kLeaf) {
     for (std::uint32_t i = first + 1; i < last; ++i) box.include(boxes_[i]);
   } else {
-    const std::uint32_t middle = cut_of(places, first, last);
+    const std::uint32_t middle =
+        places[first] == places[last - 1] ? halve(first, last) : cut_of(places, first, last);
     box = build(places, first, middle);
     nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
     nodes_[index].count = 0;
@@ -64,6 +63,33 @@ Bounds BoxTree::build(std::span<const std::uint64_t> places, std::uint32_t first
   }
   nodes_[index].box = box;
   return box;
+}
+
+std::uint32_t BoxTree::halve(std::uint32_t first, std::uint32_t last) {
+  struct Entry {
+    Bounds box;
+    std::uint32_t item;
+  };
+  std::vector<Entry> run;
+  run.reserve(last - first);
+  Bounds all = boxes_[first];
+  for (std::uint32_t i = first; i < last; ++i) {
+    run.push_back({boxes_[i], items_[i]});
+    all.include(boxes_[i]);
+  }
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (all.high[k] - all.low[k] > all.high[axis] - all.low[axis]) axis = k;
+  const std::uint32_t half = (last - first) / 2;
+  std::nth_element(run.begin(), run.begin() + half, run.end(), [&](const Entry& a, const Entry& b) {
+    const double x = middle_of(a.box)[axis], y = middle_of(b.box)[axis];
+    return x != y ? x < y : a.item < b.item;
+  });
+  for (std::uint32_t i = first; i < last; ++i) {
+    boxes_[i] = run[i - first].box;
+    items_[i] = run[i - first].item;
+  }
+  return first + half;
 }
 
 std::vector<std::uint32_t> subtrees(const BoxTree& tree, std::size_t wanted) {

@@ -52,7 +52,8 @@ inline void halve(const Bounds& box, std::vector<Bounds>& into) {
 /// Binary tree of boxes over items: nodes in depth-first order, left child next to its parent.
 class BoxTree {
  public:
-  /// 63 bits of a place on the curve, and 32 halvings where places are equal.
+  /// 63 bits of a place on the curve, and 32 halvings where places are equal: what is small beside
+  /// the extent of all has one place.
   static constexpr std::size_t kMostLevels = 96;
 
   struct Node {
@@ -98,6 +99,9 @@ class BoxTree {
 
  private:
   Bounds build(std::span<const std::uint64_t> places, std::uint32_t first, std::uint32_t last);
+
+  /// Halves items that have one place on the curve, along the longest axis of their box.
+  std::uint32_t halve(std::uint32_t first, std::uint32_t last);
 
   std::vector<Node> nodes_;
   std::vector<Bounds> boxes_;  // in the tree's order

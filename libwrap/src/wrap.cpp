@@ -72,20 +72,21 @@ void require_fine(const geom::Box3& box, const WrapOptions& o) {
     throw Error(ErrorCode::InvalidInput, too_coarse(box, o));
 }
 
-/// Refuses at once what carving would refuse after minutes. Where no facet can rest, the triangles
-/// that carving ends with have circumradii of at most half the seal, so areas of at most 1.3 times
-/// its square; above and below the input's largest triangle they cover its area; and they have
-/// about half as many corners.
+/// Refuses at once what carving would refuse after minutes, or take minutes for. Where no facet
+/// rests, the triangles that carving ends with have circumradii of at most half the seal, so areas
+/// of at most 1.3 times its square; above and below the input's largest triangle they cover its
+/// area; and they have about half as many corners. Where facets can rest, points are along edges
+/// only: a quarter of these, and mostly far less.
 void require_few_points(const geom::Mesh& input, const CarvingOptions& o) {
-  if (o.rest() >= o.offset) return;
   double largest = 0;
   for (const auto& [a, b, c] : input.triangles)
     largest = std::max(largest, (input.vertices[b] - input.vertices[a])
                                         .cross(input.vertices[c] - input.vertices[a])
                                         .norm() /
                                     2);
-  constexpr double kShare = 0.5;  // 0.77, with room for the few larger ones
-  if (kShare * (largest / o.radius / o.radius) > static_cast<double>(o.max_points))
+  // 0.77, with room for the few larger ones
+  const double share = o.rest() < o.offset ? 0.5 : 0.125;
+  if (share * (largest / o.radius / o.radius) > static_cast<double>(o.max_points))
     throw_too_fine(o.max_points);
 }
 

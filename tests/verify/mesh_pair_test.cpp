@@ -98,6 +98,32 @@ Neighbour neighbour_of(const verify::MeshPair& meshes, std::uint32_t f, int k) {
   return result;
 }
 
+/// One box far away gives all others one place on the curve; a query still visits few of them.
+TEST(BoxTree, WhatIsSmallBesideTheExtentIsHalvedInSpace) {
+  std::vector<Bounds> boxes;
+  std::vector<std::uint32_t> items;
+  for (std::uint32_t i = 0; i < 4096; ++i) {
+    const std::uint32_t at = i * 1237 % 4096;  // in no order of space
+    const auto x = static_cast<double>(at % 16), y = static_cast<double>(at / 16 % 16),
+               z = static_cast<double>(at / 256);
+    boxes.push_back({{x, y, z}, {x + 0.5, y + 0.5, z + 0.5}});
+    items.push_back(i);
+  }
+  boxes.push_back({{1e9, 0, 0}, {1e9 + 1, 1, 1}});
+  items.push_back(4096);
+  const BoxTree tree(boxes, items);
+  const Bounds asked{{3.1, 4.1, 5.1}, {3.2, 4.2, 5.2}};
+  std::size_t looked = 0, met = 0;
+  tree.query(
+      [&](const Bounds& box) {
+        ++looked;
+        return box.meets(asked);
+      },
+      [&](std::uint32_t) { ++met; });
+  EXPECT_EQ(met, 1U);
+  EXPECT_LT(looked, 120U);
+}
+
 TEST(MeshPair, NeighboursAndBalance) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const test::MeshPair pair = seed % 2 == 0 ? test::lattice_pair(seed) : test::open_pair(seed);
