@@ -30,12 +30,12 @@ struct UnionEstimate {
   double added;  ///< side of a cube of the volume added [length]
   bool whole;    ///< else `worst` is a lower bound, and nothing more is known
 };
-/// A bound below of its distance, by the bodies' own and some points between them; nothing beyond
-/// `limit` is told apart.
+/// Lower bound of the distance of a union's hull from the solid [length]: the bodies' own, and that
+/// of some points between them. Beyond `limit` any value above it.
 double distance_from_below(const Body& a, const Body& b, const SolidField& solid, double limit);
-/// What is known when the hull is built; not looked at any closer beyond `limit`.
+/// Distance and volume of a union's hull, which is built; beyond `limit` a lower bound.
 UnionEstimate estimate_hull(const Body& a, const Body& b, const SolidField& solid, double limit);
-/// The same, but hulls that the bound tells to be beyond `limit` are not built.
+/// The same, without the hull where distance_from_below is beyond `limit`.
 UnionEstimate estimate_union(const Body& a, const Body& b, const SolidField& solid, double limit);
 
 /// The leaves of the tree that a body consists of.

@@ -1,5 +1,5 @@
-// Whether points are near a triangle, four at once. Source of the weights: [ericson2005] §5.1.5; of
-// the bound: docs/algorithms/distances.md.
+// A decision for several points and a triangle, by vectors of four. Source of the weights:
+// [ericson2005] §5.1.5; of the bound: docs/algorithms/distances.md.
 #include <kaboum/base/processor.h>
 #include <kaboum/geom/points_near.h>
 #include <kaboum/geom/rounding.h>
@@ -19,8 +19,8 @@ struct FourVectors {
   out = -(a.x() * b.of[0] + a.y() * b.of[1] + a.z() * b.of[2]);
 }
 
-/// What closest_weights gives for four points at once, whose weights are the quotients: c is what
-/// the weights are divided by.
+/// Weights of the points of a triangle that are nearest to four points: s / of and t / of, as
+/// closest_weights has them of one.
 struct FourWeights {
   Double4 s, t, of;
 

@@ -409,7 +409,7 @@ class Preparation {
       std::vector<std::uint32_t> all(part_.size());
       std::iota(all.begin(), all.end(), 0U);
       std::vector<std::uint32_t> beside = some_of(all, {});
-      // What bounds a pocket has w < 0 on one side: of a whole, only loose triangles do.
+      // A pocket's border has w < 0 on one side: in a whole, only loose triangles do.
       if (report_.loose)
         std::erase_if(beside, [&](std::uint32_t t) {
           return !std::binary_search(report_.loose->begin(), report_.loose->end(), t);

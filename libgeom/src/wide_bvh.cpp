@@ -41,7 +41,7 @@ struct Below {
 
 }  // namespace
 
-/// How many nodes `add` makes.
+/// Number of the nodes that `add` makes of a subtree.
 std::size_t WideBvh::wide_nodes(const Bvh& bvh, std::uint32_t index) {
   if (bvh.nodes()[index].leaf()) return 0;
   std::size_t n = 1;

@@ -110,6 +110,7 @@ END
 expect 2 '3 values are expected, one for each of waist,shoulder,elbow, not 2' "$P" arm.urdf --configuration 0,0
 expect 2 'excludes' "$P" arm.urdf --configuration 0,0,0 --judge stated.srdf
 expect 2 'requires' "$P" arm.urdf --preview a.png
+expect 2 'ends with .png, not a.jpg' "$P" arm.urdf --configuration 0,0,0 --preview a.jpg
 # An arm that folds into the link it hangs from: a contact away from the joint is one, and is shown.
 shape() { # X Y Z SX SY SZ
   echo "<collision><origin xyz=\"$1 $2 $3\"/><geometry><box size=\"$4 $5 $6\"/></geometry></collision>"

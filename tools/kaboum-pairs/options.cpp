@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "common/arguments.h"
 #include "common/request_options.h"
 
 namespace kaboum::tools {
@@ -63,6 +64,7 @@ void describe(CLI::App& app, PairsOptions& o) {
   app.add_option("--preview", o.preview,
                  "Write a picture (PNG) of that configuration: links that touch are orange")
       ->type_name("FILE")
+      ->check(png_name())
       ->needs(one);
   add_request_options(app, robot::shape_options(), o.choice, o.stated);
   add_xacro_arguments(app, o.xacro_arguments);
