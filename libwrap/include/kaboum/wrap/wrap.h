@@ -48,8 +48,8 @@ struct Wrap {
 /// @throws Error{InvalidInput} when the input has no triangles, numbers that are not finite, or
 ///   coordinates too large for `seal` and the precision, or a size beyond 1e±40.
 ///   Error{InvalidArgument} on lengths that are not positive, or a clearance too large for the
-///   offset; Error{LimitReached} when more than max_points are needed,
-///   or would be likely.
+///   offset; Error{LimitReached} when more than max_points are needed, or
+///   an estimate says so.
 Wrap wrap(const geom::Mesh& input, const WrapOptions& options);
 
 }  // namespace kaboum::wrap
