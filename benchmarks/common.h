@@ -24,9 +24,9 @@ inline double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Every triangle cut into four near the middles of its edges: off them by 2 % of the edge's
+/// Every triangle cut into four near the middles of its edges: off them by a share of the edge's
 /// length, lest the four be coplanar, which is easier to simplify than a scan of that size.
-inline geom::Mesh subdivided(const geom::Mesh& mesh) {
+inline geom::Mesh subdivided(const geom::Mesh& mesh, double share = 0.02) {
   geom::Mesh out;
   out.vertices = mesh.vertices;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
@@ -38,7 +38,7 @@ inline geom::Mesh subdivided(const geom::Mesh& mesh) {
       const std::uint32_t hash = (std::min(a, b) * 2654435761U) ^ (std::max(a, b) * 40503U);
       geom::Vec3 off;
       for (int k = 0; k < 3; ++k) off[k] = ((hash >> (8 * k)) & 255U) / 127.5 - 1;
-      out.vertices.emplace_back(0.5 * (p + q) + 0.02 * (q - p).norm() * off);
+      out.vertices.emplace_back(0.5 * (p + q) + share * (q - p).norm() * off);
     }
     return it->second;
   };
