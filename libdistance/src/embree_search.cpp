@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <kaboum/base/error.h>
 #include <kaboum/distance/search.h>
+#include <kaboum/geom/four_triangles.h>
 #include <kaboum/geom/spatial_order.h>
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 namespace kaboum::distance {
 namespace {
 
+using geom::Float4;
+using geom::larger;
 using geom::Vec3;
 
 /// The float32 number nearest to x, the largest finite one beyond their range: a conversion out of
@@ -129,20 +132,19 @@ class EmbreeSearch final : public geom::TriangleSearch {
     return {first, std::min(first + kGroup, corners_.size())};
   }
 
-  /// Boxes of a primitive's triangles, by coordinate, so that one loop tests them all; those beyond
-  /// the last triangle are empty.
+  /// Boxes of a primitive's triangles, by coordinate, so that they are all tested at once; those
+  /// beyond the last triangle are empty.
   struct Boxes {
-    std::array<std::array<float, kGroup>, 3> lower, upper;
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    std::array<Float4, 3> lower{kAllFar, kAllFar, kAllFar}, upper{-kAllFar, -kAllFar, -kAllFar};
+
+   private:
+    static constexpr Float4 kAllFar{kFar, kFar, kFar, kFar};
   };
 
   void box_triangles() {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     boxes_.resize((corners_.size() + kGroup - 1) / kGroup);
     for (std::size_t g = 0; g < boxes_.size(); ++g) {
-      for (int axis = 0; axis < 3; ++axis) {
-        boxes_[g].lower[axis].fill(kInfinity);
-        boxes_[g].upper[axis].fill(-kInfinity);
-      }
       const auto [first, last] = group(static_cast<unsigned>(g));
       for (std::size_t place = first; place < last; ++place) {
         const auto& [a, b, c] = corners_[place];
@@ -162,45 +164,39 @@ class EmbreeSearch final : public geom::TriangleSearch {
     const auto& self = *static_cast<const EmbreeSearch*>(arguments->geometryUserPtr);
     const Boxes& boxes = self.boxes_[arguments->primID];
     const auto low = [&](int axis) {
-      return *std::min_element(boxes.lower[axis].begin(), boxes.lower[axis].end());
+      const Float4& x = boxes.lower[axis];
+      return std::min({x[0], x[1], x[2], x[3]});
     };
     const auto high = [&](int axis) {
-      return *std::max_element(boxes.upper[axis].begin(), boxes.upper[axis].end());
+      const Float4& x = boxes.upper[axis];
+      return std::max({x[0], x[1], x[2], x[3]});
     };
     *arguments->bounds_o = {low(0), low(1), low(2), 0, high(0), high(1), high(2), 0};
   }
 
   /// Squared distances of the query point to the boxes of a primitive's triangles.
-  static std::array<float, kGroup> squared_distances(const RTCPointQuery& query,
-                                                     const Boxes& boxes) {
-    const std::array<float, 3> p{query.x, query.y, query.z};
-    std::array<float, kGroup> sum{};
-    for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t i = 0; i < kGroup; ++i) {
-        const float below_box = boxes.lower[axis][i] - p[axis];
-        const float above_box = p[axis] - boxes.upper[axis][i];
-        const float side = below_box > above_box ? below_box : above_box;
-        const float d = side > 0 ? side : 0;
-        sum[i] += d * d;
-      }
-    }
-    return sum;
+  static Float4 squared_distances(const RTCPointQuery& query, const Boxes& boxes) {
+    const auto away = [&](int axis, float p) {
+      return larger(larger(boxes.lower[axis] - p, p - boxes.upper[axis]), Float4{});
+    };
+    const Float4 x = away(0, query.x), y = away(1, query.y), z = away(2, query.z);
+    return x * x + y * y + z * z;
   }
 
   static bool meet(RTCPointQueryFunctionArguments* arguments) {
     auto& visit = *static_cast<Visit*>(arguments->userPtr);
     const EmbreeSearch& self = *visit.search;
-    const auto [first, last] = self.group(arguments->primID);
-    const auto squared = squared_distances(*arguments->query, self.boxes_[arguments->primID]);
+    RTCPointQuery& query = *arguments->query;
+    const Float4 squared = squared_distances(query, self.boxes_[arguments->primID]);
     bool nearer = false;
-    for (std::size_t place = first; place < last; ++place) {
-      const float radius = arguments->query->radius;
-      if (squared[place - first] > radius * radius) continue;
+    for (unsigned i = 0; i < kGroup; ++i) {
+      if (squared[i] > query.radius * query.radius || squared[i] == Boxes::kFar) continue;
+      const std::size_t place = std::size_t{arguments->primID} * kGroup + i;
       const auto& [a, b, c] = self.corners_[place];
       const bool closer =
           visit.consider(self.order_[place], geom::point_triangle_distance(visit.point, a, b, c));
       if (!closer) continue;
-      arguments->query->radius = std::min(radius, visit.radius());
+      query.radius = std::min(query.radius, visit.radius());
       nearer = true;
     }
     return nearer;

@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <kaboum/geom/spatial_order.h>
+
+#include "upper_distances.h"
 
 namespace kaboum::geom {
 namespace {
@@ -17,6 +21,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A rounded centroid is this far from the exact one at most, times the largest |coordinate|:
 /// docs/algorithms/distances.md.
 constexpr double kCentroidError = 1.5e-15;
+/// Squared sine below which a triangle is a needle: rounded weights of its points lose too much.
+constexpr double kNeedle = 1e-8;
 
 /// A run of A's triangles in spatial order, with their box.
 struct Cluster {
@@ -31,10 +37,24 @@ struct TrianglePart {
   ConvexPolygon polygon;
   double upper = kInfinity;
   std::uint32_t nearest = kNone;   ///< to the centroid
-  std::uint32_t at_worst = kNone;  ///< to the corner farthest from that
+  std::uint32_t at_worst = kNone;  ///< to the corner farthest from that, or as `nearest`
+  std::uint32_t place = 0;         ///< of the triangle in spatial order
+  int depth = 0;                   ///< cuts that it comes of
 };
 
-/// What one round finds out about a cluster or piece.
+/// A cluster or piece that is open.
+struct Open {
+  double upper;
+  std::uint32_t place;  ///< of its first triangle in spatial order
+  std::uint32_t index;  ///< among the clusters or pieces
+  bool cluster;
+
+  [[nodiscard]] bool before(const Open& other) const {
+    return std::tie(place, cluster, index) < std::tie(other.place, other.cluster, other.index);
+  }
+};
+
+/// What is found out about some clusters or pieces.
 struct Finding {
   double lower = 0;     // some point of A, next to `at`, is at least this far from B
   double measured = 0;  // the largest lower bound at any point, which rounding may have moved off A
@@ -48,6 +68,15 @@ struct Finding {
     if (distance - moved <= lower) return;
     lower = distance - moved;
     at = point;
+  }
+
+  void add(const Finding& other) {
+    measured = std::max(measured, other.measured);
+    decided = std::max(decided, other.decided);
+    queries += other.queries;
+    if (other.lower <= lower) return;
+    lower = other.lower;
+    at = other.at;
   }
 };
 
@@ -63,18 +92,20 @@ class BranchAndBound {
     diagonal_ = box.diagonal();
   }
 
+  /// The open ones with the largest upper bounds come first: they would have to be looked at in any
+  /// order, unless the lower bound rises, which these are the most likely to bring about.
   DirectedDistance run() {
-    std::vector<TrianglePart> open = bound_clusters();
-    for (int round = 1; !open.empty(); ++round) {
-      keep_undecided(open);  // the lower bound may have risen
-      if (round > kMaxRounds || open.size() > options_.max_pieces) {
-        // What is known of the rest is a bound all the same.
-        for (const TrianglePart& p : open) decided_ = std::max(decided_, p.upper + moved_);
+    clusters_ = bound_clusters();
+    for (std::uint32_t i = 0; i < clusters_.size(); ++i)
+      open_.push_back({clusters_[i].upper, clusters_[i].first, i, true});
+    for (;;) {
+      drop_decided();
+      if (open_.empty()) break;
+      if (open_.size() > options_.max_pieces) {
+        give_up();
         break;
       }
-      open = cut_all(open, round);
-      moved_ = round * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_;
-      evaluate(open);
+      look_at(farthest());
     }
     result_.max_upper = std::max(decided_, result_.max_lower);
     result_.within_gap = result_.max_upper <= allowed() * (1 + 1e-15);
@@ -82,10 +113,14 @@ class BranchAndBound {
   }
 
  private:
-  static constexpr int kMaxRounds = 200;
+  static constexpr int kMostCuts = 200;
   // Sizes of clusters, halving eightfold.
   static constexpr std::uint32_t kLargestCluster = 4096;
   static constexpr std::uint32_t kSmallestCluster = 8;
+  // Of the open ones this share, but no fewer than that, is looked at at once.
+  static constexpr std::size_t kShare = 4, kLeast = 64;
+  // That many one after the other, which are neighbours.
+  static constexpr std::size_t kBlock = 16;
 
   /// The largest upper bound that meets the wish.
   [[nodiscard]] double allowed() const { return options_.wished(result_.max_lower, diagonal_); }
@@ -139,8 +174,8 @@ class BranchAndBound {
     return all;
   }
 
-  /// Decides whole clusters of triangles where it can, level by level; returns the triangles left.
-  std::vector<TrianglePart> bound_clusters() {
+  /// Decides whole clusters of triangles where it can, level by level; returns the small ones left.
+  std::vector<Cluster> bound_clusters() {
     const auto n = static_cast<std::uint32_t>(a_.size());
     const auto& boxes = boxes_;
     std::vector<Cluster> level;
@@ -171,7 +206,7 @@ class BranchAndBound {
       }
       level = std::move(next);
     }
-    return bound_triangles(level);
+    return level;
   }
 
   /// Bounds a cluster by its box's corners, as a piece by its own, or by the distance of one of its
@@ -205,111 +240,187 @@ class BranchAndBound {
     return true;
   }
 
-  /// The triangles of clusters that cannot be decided as wholes, as pieces; many are decided by the
-  /// triangle of B that is next to the cluster.
-  std::vector<TrianglePart> bound_triangles(const std::vector<Cluster>& clusters) {
+  // -- what is open
+  // --------------------------------------------------------------------------------
+
+  /// How far rounding may have moved the corners of a piece of so many cuts from A.
+  [[nodiscard]] double moved_by(int depth) const {
+    return depth * PrismCut::kCuts * ConvexPolygon::kCutError * magnitude_;
+  }
+
+  void drop_decided() {
+    const double enough = limit();
+    std::erase_if(open_, [&](const Open& o) {
+      if (o.upper > enough) return false;
+      decided_ = std::max(decided_, o.upper + (o.cluster ? 0 : moved_by(pieces_[o.index].depth)));
+      if (!o.cluster) unused_.push_back(o.index);
+      return true;
+    });
+  }
+
+  /// What is known of the open ones is a bound all the same.
+  void give_up() {
+    for (const Open& o : open_)
+      decided_ = std::max(decided_, o.upper + (o.cluster ? 0 : moved_by(pieces_[o.index].depth)));
+  }
+
+  /// Takes those with the largest upper bounds away, neighbours one after the other.
+  std::vector<Open> farthest() {
+    const std::size_t count =
+        std::min(open_.size(), std::max(kLeast, rose_ ? open_.size() / kShare : open_.size()));
+    const auto begin = open_.begin(), end = begin + static_cast<std::ptrdiff_t>(count);
+    std::nth_element(begin, end - 1, open_.end(), [&](const Open& a, const Open& b) {
+      return a.upper != b.upper ? a.upper > b.upper : a.before(b);
+    });
+    std::vector<Open> chosen(begin, end);
+    open_.erase(begin, end);
+    std::sort(chosen.begin(), chosen.end(),
+              [](const Open& a, const Open& b) { return a.before(b); });
+    return chosen;
+  }
+
+  /// Bounds the triangles of clusters, and the parts of pieces, and keeps what is not decided.
+  void look_at(const std::vector<Open>& chosen) {
+    for (const Open& o : chosen)
+      if (!o.cluster) moved_ = std::max(moved_, moved_by(pieces_[o.index].depth + 1));
     struct Outcome {
       Finding finding;
       std::vector<TrianglePart> pieces;
     };
-    std::vector<Outcome> outcomes(clusters.size());
+    std::vector<Outcome> outcomes((chosen.size() + kBlock - 1) / kBlock);
     const double enough = limit();
-    parallel_for(std::size_t{0}, clusters.size(),
-                 [&](std::size_t i) {
-                   outcomes[i].finding = bound_each(clusters[i], enough, outcomes[i].pieces);
-                 },
-                 {.grain = 16});
-    std::vector<TrianglePart> open;
+    const double before = result_.max_lower;
+    parallel_for(std::size_t{0}, outcomes.size(), [&](std::size_t block) {
+      auto& [finding, pieces] = outcomes[block];
+      std::uint32_t recent = kNone;
+      const std::size_t end = std::min(chosen.size(), (block + 1) * kBlock);
+      for (std::size_t i = block * kBlock; i < end; ++i) {
+        const auto look = [&](TrianglePart& piece) {
+          finding.add(bound(piece, enough, recent));
+          if (piece.upper <= enough)
+            finding.decided = std::max(finding.decided, piece.upper + moved_by(piece.depth));
+          else
+            pieces.push_back(piece);
+        };
+        if (chosen[i].cluster)
+          each_triangle(clusters_[chosen[i].index], look);
+        else
+          each_part(pieces_[chosen[i].index], enough, look);
+      }
+    });
+    for (const Open& o : chosen)
+      if (!o.cluster) unused_.push_back(o.index);
     for (const Outcome& o : outcomes) {
       take(o.finding);
-      open.insert(open.end(), o.pieces.begin(), o.pieces.end());
+      for (const TrianglePart& piece : o.pieces) keep(piece);
     }
-    return open;
+    rose_ = result_.max_lower > before;
   }
 
-  Finding bound_each(const Cluster& cluster, double enough,
-                     std::vector<TrianglePart>& pieces) const {
-    Finding finding;
-    std::uint32_t hint = kNone;
+  void keep(const TrianglePart& piece) {
+    if (piece.depth == kMostCuts) {
+      decided_ = std::max(decided_, piece.upper + moved_by(piece.depth));
+      return;
+    }
+    auto index = static_cast<std::uint32_t>(pieces_.size());
+    if (unused_.empty()) {
+      pieces_.push_back(piece);
+    } else {
+      index = unused_.back();
+      unused_.pop_back();
+      pieces_[index] = piece;
+    }
+    open_.push_back({piece.upper, piece.place, index, false});
+  }
+
+  template <class Look>
+  void each_triangle(const Cluster& cluster, const Look& look) const {
     for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
       const auto& [a, b, c] = a_[i];
-      TrianglePart piece{{a, b, c}, kInfinity, cluster.hint, hint};
-      const Finding own = bound(piece, enough);
-      finding.queries += own.queries;
-      finding.measured = std::max(finding.measured, own.measured);
-      if (own.lower > finding.lower) {
-        finding.lower = own.lower;
-        finding.at = own.at;
-      }
-      if (own.queries > 0) hint = piece.nearest;
-      if (piece.upper <= enough)
-        finding.decided = std::max(finding.decided, piece.upper);
-      else
-        pieces.push_back(piece);
+      TrianglePart piece{{a, b, c}, kInfinity, cluster.hint, cluster.hint, i};
+      look(piece);
     }
-    return finding;
+  }
+
+  template <class Look>
+  void each_part(const TrianglePart& whole, double enough, const Look& look) const {
+    const PrismCut cuts = parts_of(whole, enough);
+    for (int i = 0; i < cuts.count; ++i) {
+      TrianglePart piece{cuts.piece[i],  whole.upper, whole.nearest,
+                         whole.at_worst, whole.place, whole.depth + 1};
+      look(piece);
+    }
   }
 
   // -- pieces ------------------------------------------------------------------------------------
 
-  /// Largest distance of the corners from triangle t, and the corner where it is.
-  std::pair<double, int> worst_corner(const ConvexPolygon& polygon, std::uint32_t t) const {
-    double worst = 0;
-    int where = 0;
-    for (int i = 0; i < polygon.size; ++i) {
-      const double d = upper_to(polygon.corner[i], t);
-      if (d > worst) {
-        worst = d;
-        where = i;
-      }
+  /// Distances of the corners from triangle t. @return the number of the largest one
+  int corner_distances(const ConvexPolygon& polygon, std::uint32_t t,
+                       std::array<double, ConvexPolygon::kCapacity>& out) const {
+    const auto& [a, b, c] = b_.corners(t);
+    const Vec3 u = b - a, v = c - a;
+    if (u.cross(v).squaredNorm() > kNeedle * u.squaredNorm() * v.squaredNorm()) {
+      upper_distances({polygon.corner.data(), static_cast<std::size_t>(polygon.size)}, a, b, c,
+                      out.data());
+    } else {
+      for (int i = 0; i < polygon.size; ++i)
+        out[i] = point_triangle_upper(polygon.corner[i], a, b, c);
     }
-    return {worst, where};
+    return static_cast<int>(std::max_element(out.begin(), out.begin() + polygon.size) -
+                            out.begin());
   }
 
-  /// The same distance; some larger value once it is known to exceed `enough`: infinity.
-  double largest_to(const ConvexPolygon& polygon, std::uint32_t t, double enough) const {
-    double largest = 0;
-    for (int i = 0; i < polygon.size; ++i) {
-      largest = std::max(largest, upper_to(polygon.corner[i], t));
-      if (largest > enough) return kInfinity;
-    }
-    return largest;
+  /// Largest distance of the corners from triangle t, and the corner where it is.
+  std::pair<double, int> worst_corner(const ConvexPolygon& polygon, std::uint32_t t) const {
+    std::array<double, ConvexPolygon::kCapacity> distance;
+    const int where = corner_distances(polygon, t, distance);
+    return {distance[where], where};
   }
 
   /// Lowers piece.upper until it is `enough` or nothing more is known.
-  Finding bound(TrianglePart& piece, double enough) const {
+  /// @param recent  the triangle of B that was nearest to something a little while ago
+  Finding bound(TrianglePart& piece, double enough, std::uint32_t& recent) const {
     Finding finding;
-    // What was near the piece that this one was cut from may settle it without a query.
-    for (const std::uint32_t t : {piece.nearest, piece.at_worst}) {
-      if (t == kNone) continue;
-      if (piece.upper = std::min(piece.upper, largest_to(piece.polygon, t, enough));
-          piece.upper <= enough)
-        return finding;
-    }
+    // What was near the piece that this one was cut from, or near another one, may settle it
+    // without a query.
+    const auto settles = [&](std::uint32_t t) {
+      if (t == kNone) return false;
+      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, t).first);
+      return piece.upper <= enough;
+    };
+    if (settles(piece.nearest)) return finding;
+    if (piece.at_worst != piece.nearest && settles(piece.at_worst)) return finding;
+    if (recent != piece.nearest && recent != piece.at_worst && settles(recent)) return finding;
+    const double moved = moved_by(piece.depth);
     const Vec3 center = piece.polygon.centroid();
     const auto at_center = b_.nearest(center, piece.nearest);
     finding.queries = 1;
-    consider(finding, at_center.lower, center, moved_ + kCentroidError * magnitude_);
+    consider(finding, at_center.lower, center, moved + kCentroidError * magnitude_);
     double radius = 0;
     for (int i = 0; i < piece.polygon.size; ++i)
       radius = std::max(radius, (piece.polygon.corner[i] - center).norm());
     piece.upper = std::min(piece.upper, (at_center.upper + radius) * (1 + 1e-14));
-    piece.nearest = piece.at_worst = at_center.triangle;
+    piece.nearest = piece.at_worst = recent = at_center.triangle;
     const auto [worst, where] = worst_corner(piece.polygon, at_center.triangle);
     piece.upper = std::min(piece.upper, worst);
     if (piece.upper <= enough) return finding;
     if (inside_ != nullptr && decide_inside(piece, center, radius, at_center.lower, enough))
       return finding;
-    if (much_larger(piece, enough)) return finding;  // it will be halved, whatever its corners say
-    // The corner that is far from this triangle may be near another one.
-    const Vec3& corner = piece.polygon.corner[where];
-    const auto at_corner = b_.nearest(corner, at_center.triangle);
-    ++finding.queries;
-    consider(finding, at_corner.lower, corner, moved_);
-    piece.at_worst = at_corner.triangle;
-    if (at_corner.triangle != at_center.triangle)
-      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, at_corner.triangle).first);
+    // Where it will not be cut by a bisector, its corners say little that its parts will not.
+    if (by_bisector(piece.depth) && !much_larger(piece, enough))
+      look_at_corner(piece, where, finding);
     return finding;
+  }
+
+  /// The corner that is far from the triangle next to the centroid may be near another one.
+  void look_at_corner(TrianglePart& piece, int where, Finding& finding) const {
+    const Vec3& corner = piece.polygon.corner[where];
+    const auto at_corner = b_.nearest(corner, piece.nearest);
+    ++finding.queries;
+    consider(finding, at_corner.lower, corner, moved_by(piece.depth));
+    piece.at_worst = at_corner.triangle;
+    if (piece.at_worst != piece.nearest)
+      piece.upper = std::min(piece.upper, worst_corner(piece.polygon, piece.at_worst).first);
   }
 
   /// Whether the piece lies in the solid, or so close to it that nothing is left to do.
@@ -327,25 +438,11 @@ class BranchAndBound {
     return true;
   }
 
-  /// Bounds all pieces and keeps those that are not decided.
-  void evaluate(std::vector<TrianglePart>& pieces) {
-    std::vector<Finding> findings(pieces.size());
-    const double enough = limit();
-    parallel_for(std::size_t{0}, pieces.size(),
-                 [&](std::size_t i) { findings[i] = bound(pieces[i], enough); }, {.grain = 64});
-    for (const Finding& f : findings) take(f);
-    keep_undecided(pieces);
-  }
-
-  /// Whether an upper bound is good enough; then it counts.
+  /// Whether a cluster's upper bound is good enough; then it counts.
   bool decide(double upper) {
     if (upper > limit()) return false;
-    decided_ = std::max(decided_, upper + moved_);
+    decided_ = std::max(decided_, upper);
     return true;
-  }
-
-  void keep_undecided(std::vector<TrianglePart>& pieces) {
-    std::erase_if(pieces, [&](const TrianglePart& p) { return decide(p.upper); });
   }
 
   /// Cuts where the planes of the two triangles that matter are equally far: on a ridge of the
@@ -376,22 +473,43 @@ class BranchAndBound {
   }
   static constexpr double kMuchLarger = 9, kNearby = 16;  // squared
 
-  std::vector<TrianglePart> cut_all(const std::vector<TrianglePart>& pieces, int round) const {
-    std::vector<TrianglePart> out;
-    out.reserve(3 * pieces.size());
-    const double enough = limit();
-    for (const TrianglePart& p : pieces) {
-      PrismCut cuts;
-      if (much_larger(p, enough)) {
-        halve(p.polygon, cuts.piece[0], cuts.piece[1]);
-        cuts.count = 2;
-      } else if (round % 4 == 0 || round % 2 == 1 || !cut_by_bisector(p, cuts)) {
-        const auto& [a, b, c] = b_.corners(p.nearest);
-        cuts = cut_by_prism(p.polygon, a, b, c, round % 4 == 0);
-      }
-      for (int i = 0; i < cuts.count; ++i)
-        out.push_back({cuts.piece[i], p.upper, p.nearest, p.at_worst});
+  /// Whether pieces of so many cuts are cut by bisectors; those of others along prisms, or, now and
+  /// then, in halves.
+  static bool by_bisector(int depth) { return depth % 4 == 1; }
+  static bool in_halves(int depth) { return depth % 4 == 3; }
+
+  [[nodiscard]] PrismCut parts_of(const TrianglePart& p, double enough) const {
+    PrismCut cuts;
+    if (much_larger(p, enough)) {
+      halve(p.polygon, cuts.piece[0], cuts.piece[1]);
+      cuts.count = 2;
+      return cuts;
     }
+    if (by_bisector(p.depth) && cut_by_bisector(p, cuts)) return cuts;
+    const auto& [a, b, c] = widened(b_.corners(p.nearest), p.polygon, enough);
+    return cut_by_prism(p.polygon, a, b, c, in_halves(p.depth));
+  }
+
+  /// A triangle with its sides moved outwards, as far as what is over it then is mostly near enough
+  /// to it: cut along its prism, more of the polygon is settled.
+  static std::array<Vec3, 3> widened(const std::array<Vec3, 3>& t, const ConvexPolygon& polygon,
+                                     double enough) {
+    constexpr double kPart = 0.3, kWorthWhile = 0.05;
+    const auto& [a, b, c] = t;
+    const Vec3 n = (b - a).cross(c - a);
+    const double area = n.norm(), ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm();
+    if (!(area > 1e-3 * ab * ca)) return t;
+    double height = 0;
+    for (int i = 0; i < polygon.size; ++i)
+      height = std::max(height, std::abs(n.dot(polygon.corner[i] - a)) / area);
+    if (!(height < enough)) return t;
+    // About the middle of the inscribed circle, whose radius is area / around.
+    const double around = ab + bc + ca;
+    const double by = kPart * std::sqrt(enough * enough - height * height) * around / area;
+    if (by < kWorthWhile) return t;
+    const Vec3 middle = (bc * a + ca * b + ab * c) / around;
+    std::array<Vec3, 3> out = t;
+    for (Vec3& p : out) p += by * (p - middle);
     return out;
   }
 
@@ -401,9 +519,14 @@ class BranchAndBound {
   const Interior* inside_;
   double magnitude_ = 0;
   double diagonal_ = 0;
-  double moved_ = 0;     // how far cuts have moved corners of the pieces from A
+  double moved_ = 0;     // how far cuts have moved corners of the pieces from A at most
   double measured_ = 0;  // largest lower bound of a distance at points that may be that far from A
   double decided_ = 0;   // largest upper bound among the pieces that need no further cut
+  std::vector<Cluster> clusters_;
+  std::vector<TrianglePart> pieces_;
+  std::vector<std::uint32_t> unused_;  // places among the pieces
+  std::vector<Open> open_;
+  bool rose_ = true;                      // the lower bound, when some were last looked at
   std::vector<std::vector<Box3>> boxes_;  // of clusters, smallest first
   DirectedDistance result_;
 };

@@ -5,6 +5,9 @@
 #include <kaboum/geom/rounding.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "upper_distances.h"
 
 namespace kaboum::geom {
 namespace {
@@ -48,33 +51,42 @@ struct FourWeights {
   }
 };
 
-/// @param first  of four points.
+/// How far points of a triangle, found by rounded weights, are from four points.
+struct FourDistances {
+  Double4 squared{};
+  Double4 size{};  ///< largest |coordinate| of the triangle's corners, from the points
+
+  [[gnu::always_inline]] FourDistances(const Vec3* const (&point)[4], const Vec3& a, const Vec3& ab,
+                                       const Vec3& ac) {
+    FourVectors x{};
+    for (int k = 0; k < 3; ++k)
+      x.of[k] = a[k] - Double4{(*point[0])[k], (*point[1])[k], (*point[2])[k], (*point[3])[k]};
+    const FourWeights w(x, ab, ac);
+    const Double4 zero{}, one = zero + 1;
+    Double4 s = w.of > 0 ? w.s / w.of : zero, t = w.of > 0 ? w.t / w.of : zero;
+    s = s > 0 ? s : zero;
+    s = s < 1 ? s : one;
+    t = t > 0 ? t : zero;
+    t = t < 1 - s ? t : 1 - s;
+    const auto add = [&](const Double4& from, double u, double v) {
+      const Double4 q = from + s * u + t * v;
+      squared += q * q;
+      for (const Double4& corner : {from, from + u, from + v}) {
+        const Double4 length = corner < 0 ? -corner : corner;
+        size = size < length ? length : size;
+      }
+    };
+    add(x.of[0], ab.x(), ac.x());
+    add(x.of[1], ab.y(), ac.y());
+    add(x.of[2], ab.z(), ac.z());
+  }
+};
+
 [[gnu::always_inline]] inline bool four_within(const Vec3* const (&point)[4], const Vec3& a,
                                                const Vec3& ab, const Vec3& ac, double radius) {
-  FourVectors x{};
-  for (int k = 0; k < 3; ++k)
-    x.of[k] = a[k] - Double4{(*point[0])[k], (*point[1])[k], (*point[2])[k], (*point[3])[k]};
-  const FourWeights w(x, ab, ac);
-  const Double4 zero{}, one = zero + 1;
-  Double4 s = w.of > 0 ? w.s / w.of : zero, t = w.of > 0 ? w.t / w.of : zero;
-  s = s > 0 ? s : zero;
-  s = s < 1 ? s : one;
-  t = t > 0 ? t : zero;
-  t = t < 1 - s ? t : 1 - s;
-  Double4 size{}, squared{};
-  const auto add = [&](const Double4& from, double u, double v) {
-    const Double4 q = from + s * u + t * v;
-    squared += q * q;
-    for (const Double4& corner : {from, from + u, from + v}) {
-      const Double4 length = corner < 0 ? -corner : corner;
-      size = size < length ? length : size;
-    }
-  };
-  add(x.of[0], ab.x(), ac.x());
-  add(x.of[1], ab.y(), ac.y());
-  add(x.of[2], ab.z(), ac.z());
-  const Double4 left = radius - kDistanceRounding * size;
-  const auto within = (left > 0) & (squared * (1 + 4 * kDistanceRounding) <= left * left);
+  const FourDistances d(point, a, ab, ac);
+  const Double4 left = radius - kDistanceRounding * d.size;
+  const auto within = (left > 0) & (d.squared * (1 + 4 * kDistanceRounding) <= left * left);
   return (within[0] & within[1] & within[2] & within[3]) != 0;
 }
 
@@ -89,7 +101,24 @@ struct FourWeights {
   return true;
 }
 
+[[gnu::always_inline]] inline void each_upper(std::span<const Vec3> points, const Vec3& a,
+                                              const Vec3& b, const Vec3& c, double* out) {
+  const Vec3 ab = b - a, ac = c - a;
+  for (std::size_t i = 0; i < points.size(); i += 4) {
+    const auto at = [&](std::size_t k) { return &points[std::min(i + k, points.size() - 1)]; };
+    const Vec3* const four[4] = {at(0), at(1), at(2), at(3)};
+    const FourDistances d(four, a, ab, ac);
+    for (std::size_t k = 0; k < 4 && i + k < points.size(); ++k)
+      out[i + k] =
+          std::sqrt(d.squared[k]) * (1 + kDistanceRounding) + kDistanceRounding * d.size[k];
+  }
+}
+
 #ifdef KABOUM_AVX2
+[[gnu::target("avx2")]] void each_upper_avx2(std::span<const Vec3> points, const Vec3& a,
+                                             const Vec3& b, const Vec3& c, double* out) {
+  each_upper(points, a, b, c, out);
+}
 [[gnu::target("avx2")]] bool each_within_avx2(std::span<const Vec3> points, const Vec3& a,
                                               const Vec3& b, const Vec3& c, double radius) {
   return each_within(points, a, b, c, radius);
@@ -97,6 +126,14 @@ struct FourWeights {
 #endif
 
 }  // namespace
+
+void upper_distances(std::span<const Vec3> points, const Vec3& a, const Vec3& b, const Vec3& c,
+                     double* out) {
+#ifdef KABOUM_AVX2
+  if (has_avx2()) return each_upper_avx2(points, a, b, c, out);
+#endif
+  each_upper(points, a, b, c, out);
+}
 
 bool all_within(std::span<const Vec3> points, const Vec3& a, const Vec3& b, const Vec3& c,
                 double radius) {

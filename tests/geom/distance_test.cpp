@@ -10,6 +10,7 @@
 
 #include "support/families.h"
 #include "support/fan.h"
+#include "upper_distances.h"
 
 namespace {
 
@@ -85,6 +86,15 @@ TEST(PointTriangle, SeveralPointsAreWithinAsEachIs) {
       points.emplace_back(far + (i % 5 == 0 ? 100 : 1) * point());
       if (i % 7 == 0) points.back() = a + 0.3 * (b - a) + 0.2 * (c - a) + 1e-9 * point();
       farthest = std::max(farthest, slow_distance(points.back(), a, b, c));
+    }
+    std::vector<double> uppers(points.size());
+    kaboum::geom::upper_distances(points, a, b, c, uppers.data());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Real slow = slow_distance(points[k], a, b, c);
+      ASSERT_GE(Real(uppers[k]), slow) << i;
+      if (!sliver && i % 17 != 0) {
+        ASSERT_LE(Real(uppers[k]), slow * (1 + 1e-9) + 1e-10) << i;
+      }
     }
     const auto nearest = static_cast<double>(farthest);
     for (const double share : {-1e-9, -1e-13, -1e-14, -1e-15, -1e-16, 0.0, 1e-15, 1e-14, 1e-13}) {
@@ -306,6 +316,41 @@ TEST(DirectedDistance, ClustersNeverHideAVertex) {
   }
 }
 
+/// A floor with a hundred dents: the deepest one is found, whatever lies open beside it.
+TEST(DirectedDistance, FindsTheDeepestOfManyDents) {
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int run = 0; run < 20; ++run) {
+    Mesh floor{{{-1, -1, 0}, {11, -1, 0}, {11, 11, 0}, {-1, 11, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    Mesh dents;
+    double deepest = 0;
+    for (int i = 0; i < 100; ++i) {
+      const double x = i % 10, y = i / 10;
+      const double depth = 0.1 + 0.2 * unit(random);
+      deepest = std::max(deepest, depth);
+      const auto first = static_cast<std::uint32_t>(dents.vertices.size());
+      for (const Vec3& v : {Vec3(x, y, 0), Vec3(x + 1, y, 0), Vec3(x + 1, y + 1, 0),
+                            Vec3(x, y + 1, 0), Vec3(x + 0.5, y + 0.5, -depth)})
+        dents.vertices.push_back(v);
+      for (std::uint32_t k = 0; k < 4; ++k)
+        dents.triangles.push_back({first + k, first + (k + 1) % 4, first + 4});
+    }
+    const auto d = directed_distance(dents, DistanceQuery(floor), {1e-6, 0});
+    EXPECT_LE(d.max_lower, deepest) << run;
+    EXPECT_GE(d.max_upper, deepest) << run;
+    EXPECT_LE(d.max_upper, deepest * (1 + 2e-6)) << run;
+    // From the floor it is nearer to a dent's walls than its tip is deep.
+    const auto back = directed_distance(floor, DistanceQuery(dents), {1e-3, 0});
+    EXPECT_TRUE(back.within_gap) << run;
+    double sampled = 0;
+    const DistanceQuery query(dents);
+    for (int i = 0; i < 2000; ++i)
+      sampled =
+          std::max(sampled, query.nearest({12 * unit(random) - 1, 12 * unit(random) - 1, 0}).lower);
+    EXPECT_GE(back.max_upper, sampled) << run;
+  }
+}
+
 TEST(DirectedDistance, DoesNotDependOnTheNumberOfThreads) {
   const auto families = kaboum::test::closed_families();
   const Mesh& a = families.front().mesh;
@@ -317,6 +362,7 @@ TEST(DirectedDistance, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(many.max_lower, single.max_lower);
   EXPECT_EQ(many.max_upper, single.max_upper);
   EXPECT_EQ(many.queries, single.queries);
+  EXPECT_EQ(many.at, single.at);
 }
 
 }  // namespace
