@@ -2,6 +2,7 @@
 // uncut. docs/algorithms/exact-inclusion.md.
 #include "arrangement.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "parallel.h"
@@ -73,6 +74,12 @@ class Sector {
   int turn_;
 };
 
+/// Whether some of a face's contacts show that `on` holds it.
+bool holds(std::span<const Contacts::Along> alongs, std::uint32_t on) {
+  return std::any_of(alongs.begin(), alongs.end(),
+                     [&](const Contacts::Along& along) { return along.on == on && along.held; });
+}
+
 /// Whether one can walk from f over its edge k to its neighbour without crossing the chains of
 /// `mask`.
 bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, const Neighbour& next,
@@ -92,13 +99,19 @@ bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, const Neig
       if (by.place_of(u) >= 0 && by.place_of(v) >= 0) touching.push_back(g);
     }
   }
+  // They run through the edge oppositely. So they are beside each other if they are coplanar.
+  const bool unfolded =
+      face.axis == meshes.face(other).axis && face.upward == meshes.face(other).upward;
   for (int chain = 0; chain < 2; ++chain) {
     if ((mask & mask_of(chain)) == 0) continue;
     const Contacts& contacts = arrangement.contacts(face.chain, chain);
-    for (const auto& [owner, edge] : {std::pair{f, k}, std::pair{other, other_edge}}) {
-      for (const Contacts::Along& along : contacts.alongs(owner)) {
-        if (along.edge != edge) continue;
+    const std::array alongs{contacts.alongs(f), contacts.alongs(other)};
+    for (int i = 0; i < 2; ++i) {
+      for (const Contacts::Along& along : alongs[i]) {
+        if (along.edge != (i == 0 ? k : other_edge)) continue;
         if (!along.whole) return false;
+        // What holds both faces bounds the sector between them, which is flat.
+        if (unfolded && along.held && holds(alongs[1 - i], along.on)) continue;
         touching.push_back(along.on);
       }
     }

@@ -15,8 +15,8 @@ struct Bounds {
 
   void include(const Bounds& other) {
     for (int k = 0; k < 3; ++k) {
-      if (other.low[k] < low[k]) low[k] = other.low[k];
-      if (other.high[k] > high[k]) high[k] = other.high[k];
+      low[k] = other.low[k] < low[k] ? other.low[k] : low[k];
+      high[k] = other.high[k] > high[k] ? other.high[k] : high[k];
     }
   }
   [[nodiscard]] bool meets(const Bounds& other) const {

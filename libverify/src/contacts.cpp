@@ -10,7 +10,6 @@
 #include "classifier.h"
 #include "graph_vertex.h"
 #include "parallel.h"
-#include "parallel_sort.h"
 
 namespace kaboum::verify {
 namespace {
@@ -62,24 +61,36 @@ class Counter {
 
 }  // namespace
 
+namespace {
+
+/// Entries by their faces, each face's by `less`. @return where each face's begin.
+template <class Entry, class Less>
+std::vector<std::uint32_t> sort_by_face(std::uint32_t begin, std::uint32_t end,
+                                        std::vector<Entry>& entries, const Less& less) {
+  std::vector<std::uint32_t> first(end - begin + 1, 0);
+  for (const Entry& entry : entries) ++first[entry.face - begin + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  std::vector<Entry> sorted(entries.size());
+  for (const Entry& entry : entries) sorted[next[entry.face - begin]++] = entry;
+  verify::parallel_for(begin, end, [&](std::uint32_t f) {
+    const auto from = sorted.begin() + first[f - begin], to = sorted.begin() + first[f - begin + 1];
+    if (to - from > 1) std::sort(from, to, less);
+  });
+  entries = std::move(sorted);
+  return first;
+}
+
+}  // namespace
+
 Contacts::Contacts(std::uint32_t begin, std::uint32_t end, std::vector<Cut> cuts,
                    std::vector<Along> alongs)
     : begin_(begin), cuts_(std::move(cuts)), alongs_(std::move(alongs)) {
-  verify::sort_in_parallel(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
-    return a.face != b.face ? a.face < b.face : a.by < b.by;
-  });
-  verify::sort_in_parallel(alongs_.begin(), alongs_.end(), [](const Along& a, const Along& b) {
-    if (a.face != b.face) return a.face < b.face;
+  first_cut_ =
+      sort_by_face(begin, end, cuts_, [](const Cut& a, const Cut& b) { return a.by < b.by; });
+  first_along_ = sort_by_face(begin, end, alongs_, [](const Along& a, const Along& b) {
     return a.on != b.on ? a.on < b.on : a.edge < b.edge;
   });
-  const auto index = [&](const auto& entries) {
-    std::vector<std::uint32_t> first(end - begin + 1, 0);
-    for (const auto& entry : entries) ++first[entry.face - begin + 1];
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    return first;
-  };
-  first_cut_ = index(cuts_);
-  first_along_ = index(alongs_);
 }
 
 Crossing crossing(const Face& f, const std::array<Sign, 3>& sides) {
@@ -114,7 +125,8 @@ MutualContacts contacts_between(const MeshPair& meshes, const ContactLimits& lim
   std::vector<FoundContacts> first(roots.size()), second(roots.size());
   Counter counter(limits);
   verify::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
-    Classifier classify(meshes, first[i], second[i]);
+    KnownSides known;
+    Classifier classify(meshes, first[i], second[i], &known);
     Counter::Task task(counter);
     meeting_pairs(inside, roots[i], outside, [&](std::uint32_t f, std::uint32_t g) {
       classify(f, g);
@@ -171,7 +183,8 @@ Contacts contacts_within(const MeshPair& meshes, int chain, const ContactLimits&
   std::vector<FoundContacts> found(roots.size());
   Counter counter(limits);
   verify::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
-    Classifier classify(meshes, found[i], found[i]);
+    KnownSides known;
+    Classifier classify(meshes, found[i], found[i], &known);
     Counter::Task task(counter);
     meeting_pairs_within(tree, roots[i], [&](std::uint32_t f, std::uint32_t g) {
       if (!parts_of_graph(meshes.face(f), meshes.face(g))) classify(std::min(f, g), std::max(f, g));

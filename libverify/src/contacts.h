@@ -26,6 +26,7 @@ class Contacts {
     std::uint32_t on;
     std::uint8_t edge;  ///< from corner `edge` to the next
     bool whole;
+    bool held = false;  ///< the face lies in `on`, in its plane
   };
 
   Contacts() = default;

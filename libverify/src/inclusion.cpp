@@ -210,23 +210,35 @@ class Decision {
   /// there is much of that.
   void prepare_settled(int chain) {
     decided_.clear();
-    std::size_t coplanar = 0;
+    std::array<std::size_t, 2> coplanar{};  // pairs that are oriented alike, and oppositely
     const std::uint32_t begin = meshes_.begin(chain), end = meshes_.end(chain);
     const Contacts& contacts = arrangement_.contacts(chain, 1 - chain);
     for (std::uint32_t f = begin; f < end; ++f) {
       for (const Contacts::Cut& cut : contacts.cuts(f))
-        coplanar += static_cast<std::size_t>(cut.coplanar);
+        if (cut.coplanar) ++coplanar[alike(f, cut.by) ? 0 : 1];
     }
-    if (coplanar == 0 || coplanar < options_.settle_from) return;
+    const std::size_t all = coplanar[0] + coplanar[1];
+    if (all == 0 || all < options_.settle_from) return;
     const int other = 1 - chain;
     const Side side = test_side(chain);
-    const std::vector<int> same = own_values(other, side), reversed = own_values(other, -side);
-    decided_.resize(same.size());
-    for (std::size_t i = 0; i < same.size(); ++i) {
-      decided_[i] =
-          static_cast<std::uint8_t>((same[i] != kCut && passes(chain, same[i]) ? 1 : 0) |
-                                    (reversed[i] != kCut && passes(chain, reversed[i]) ? 2 : 0));
+    decided_.resize(meshes_.count(other), 0);
+    for (const int turned : {0, 1}) {
+      if (coplanar[turned] == 0) continue;  // nobody would ask for it
+      const std::vector<int> values = own_values(other, turned == 0 ? side : -side);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (values[i] != kCut && passes(chain, values[i]))
+          decided_[i] |= static_cast<std::uint8_t>(turned == 0 ? 1 : 2);
     }
+  }
+
+  /// Whether two coplanar faces look the same way.
+  [[nodiscard]] bool alike(std::uint32_t f, std::uint32_t g) const {
+    const Face &face = meshes_.face(f), &by = meshes_.face(g);
+    const bool upward = by.axis == face.axis
+                            ? by.upward
+                            : orient2d(face.axis, meshes_.corner(g, 0), meshes_.corner(g, 1),
+                                       meshes_.corner(g, 2)) == Sign::Positive;
+    return upward == face.upward;
   }
 
   /// The same; where that is too much work, all cells are cut.
@@ -247,9 +259,7 @@ class Decision {
     const int other = 1 - face.chain;
     for (const Contacts::Cut& cut : arrangement_.contacts(face.chain, other).cuts(f)) {
       if (!cut.coplanar) continue;
-      const bool upward = orient2d(face.axis, meshes_.corner(cut.by, 0), meshes_.corner(cut.by, 1),
-                                   meshes_.corner(cut.by, 2)) == Sign::Positive;
-      const std::uint8_t wanted = upward == face.upward ? 1 : 2;
+      const std::uint8_t wanted = alike(f, cut.by) ? 1 : 2;
       if ((decided_[cut.by - meshes_.begin(other)] & wanted) != 0) result.push_back(cut.by);
     }
     return result;

@@ -131,7 +131,7 @@ class Collector {
     for (int e = 0; e < 3; ++e) {
       const std::uint32_t a = std::min(g.v[e], g.v[(e + 1) % 3]),
                           b = std::max(g.v[e], g.v[(e + 1) % 3]);
-      if (!edges_.emplace(a, b).second || between_settled(gi, a, b)) continue;
+      if (runs_outside(a, b) || between_settled(gi, a, b) || !edges_.emplace(a, b).second) continue;
       Segment s;
       s.p = barycentric(a);
       s.q = barycentric(b);
@@ -142,6 +142,21 @@ class Collector {
       }
       segments_.push_back(std::move(s));
     }
+  }
+
+  /// Whether both ends are beyond, or on, one edge of the face: clip would leave nothing.
+  [[nodiscard]] bool runs_outside(std::uint32_t a, std::uint32_t b) const {
+    const Sign in = face_.upward ? Sign::Positive : Sign::Negative;
+    for (int k = 0; k < 3; ++k) {
+      const int from = (k + 1) % 3, to = (k + 2) % 3;
+      const auto is_in = [&](std::uint32_t v) {
+        if (v == face_.v[k]) return true;
+        if (v == face_.v[from] || v == face_.v[to]) return false;
+        return orient2d(face_.axis, corner(from), corner(to), meshes_.point(v)) == in;
+      };
+      if (!is_in(a) && !is_in(b)) return true;
+    }
+    return false;
   }
 
   /// Whether the only faces of g's chain along its edge are decided ones.

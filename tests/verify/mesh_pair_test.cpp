@@ -10,7 +10,9 @@
 #include <tuple>
 #include <vector>
 
+#include "arrangement.h"
 #include "box_tree.h"
+#include "cell_sample.h"
 #include "classifier.h"
 #include "contacts.h"
 #include "pairs.h"
@@ -174,12 +176,14 @@ TEST(MeshPair, FacesAreTheTriangles) {
   }
 }
 
-using Contact = std::tuple<std::uint32_t, std::uint32_t, int, bool>;
+/// A face, another one, the edge along it or −1, whether it is coplanar or whole, whether held.
+using Contact = std::tuple<std::uint32_t, std::uint32_t, int, bool, bool>;
 
 void list(const Contacts& contacts, std::uint32_t f, std::vector<Contact>& into) {
-  for (const Contacts::Cut& c : contacts.cuts(f)) into.emplace_back(c.face, c.by, -1, c.coplanar);
+  for (const Contacts::Cut& c : contacts.cuts(f))
+    into.emplace_back(c.face, c.by, -1, c.coplanar, false);
   for (const Contacts::Along& a : contacts.alongs(f))
-    into.emplace_back(a.face, a.on, a.edge, a.whole);
+    into.emplace_back(a.face, a.on, a.edge, a.whole, a.held);
 }
 
 /// Pairs that are left out have no contact, all others are looked at.
@@ -209,6 +213,140 @@ TEST(MeshPair, ContactsWithinAChainAreThoseOfAllPairs) {
     }
   }
   EXPECT_GT(contacts, 1000U);
+}
+
+/// Where two faces are, by points of one and exact signs for each: no order along lines, nothing
+/// rounded.
+class PlainContact {
+ public:
+  PlainContact(const verify::MeshPair& meshes, std::uint32_t f, std::uint32_t g)
+      : meshes_(meshes), f_(f), g_(g) {}
+
+  /// Both lie in one plane.
+  [[nodiscard]] bool coplanar() const {
+    for (int k = 0; k < 3; ++k)
+      if (meshes_.side(g_, meshes_.corner(f_, k)) != geom::Sign::Zero) return false;
+    return true;
+  }
+  /// All of f's corners are in g. @pre coplanar
+  [[nodiscard]] bool held() const {
+    const int axis = meshes_.face(g_).axis;
+    for (int k = 0; k < 3; ++k) {
+      bool left = false, right = false;
+      for (int e = 0; e < 3; ++e) {
+        const verify::Sign s = verify::orient2d(
+            axis, meshes_.corner(g_, e), meshes_.corner(g_, (e + 1) % 3), meshes_.corner(f_, k));
+        left = left || s == verify::Sign::Positive;
+        right = right || s == verify::Sign::Negative;
+      }
+      if (left && right) return false;
+    }
+    return true;
+  }
+  /// One has a segment or an area in common with the other, by points of a fine grid on f's edges
+  /// and inside: no contact that is large enough is missed.
+  [[nodiscard]] bool meet_in_grid() const {
+    constexpr int kSteps = 8;
+    int common = 0;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const geom::Vec3 p = (i * meshes_.corner(f_, 0) + j * meshes_.corner(f_, 1) +
+                              (kSteps - i - j) * meshes_.corner(f_, 2)) /
+                             kSteps;
+        if (meshes_.side(g_, p) != geom::Sign::Zero) continue;
+        const int axis = meshes_.face(g_).axis;
+        bool left = false, right = false;
+        for (int e = 0; e < 3; ++e) {
+          const verify::Sign s =
+              verify::orient2d(axis, meshes_.corner(g_, e), meshes_.corner(g_, (e + 1) % 3), p);
+          left = left || s == verify::Sign::Positive;
+          right = right || s == verify::Sign::Negative;
+        }
+        if (!left || !right) ++common;
+      }
+    return common > 1;
+  }
+
+ private:
+  const verify::MeshPair& meshes_;
+  std::uint32_t f_, g_;
+};
+
+/// Lattice pairs have coordinates that hold points of the grid exactly.
+TEST(MeshPair, NoContactIsLeftOut) {
+  std::size_t meetings = 0, held = 0;
+  for (std::uint64_t seed = 0; seed < 90; ++seed) {
+    test::MeshPair pair = seed % 2 == 0 ? test::lattice_pair(seed) : test::open_pair(seed);
+    if (seed % 3 == 0) pair.inner = test::subdivided(pair.outer);
+    const verify::MeshPair meshes(pair.inner, pair.outer);
+    if (meshes.faces().size() > 300) continue;
+    verify::KnownSides known;
+    for (std::uint32_t f = 0; f < meshes.faces().size(); ++f)
+      for (std::uint32_t g = 0; g < meshes.faces().size(); ++g) {
+        const verify::Face &x = meshes.face(f), &y = meshes.face(g);
+        if (f == g || x.axis < 0 || y.axis < 0) continue;
+        int common = 0;
+        for (const std::uint32_t v : x.v) common += y.place_of(v) >= 0 ? 1 : 0;
+        if (common == 3) continue;
+        const PlainContact plain(meshes, f, g);
+        verify::FoundContacts of_f, of_g;
+        verify::Classifier{meshes, of_f, of_g, &known}(f, g);
+        const bool none =
+            of_f.cuts.empty() && of_f.alongs.empty() && of_g.cuts.empty() && of_g.alongs.empty();
+        if (common < 2 && plain.meet_in_grid()) {
+          ++meetings;
+          EXPECT_FALSE(none) << pair.name << " " << f << " " << g;
+        }
+        const bool is_held = plain.coplanar() && plain.held();
+        held += is_held ? 1 : 0;
+        for (const Contacts::Along& a : of_f.alongs)
+          EXPECT_EQ(a.held, is_held) << pair.name << " " << f << " " << g;
+        if (is_held) {
+          EXPECT_FALSE(of_f.alongs.empty()) << pair.name << " " << f << " " << g;
+        }
+      }
+  }
+  EXPECT_GT(meetings, 10000U);
+  EXPECT_GT(held, 1000U);
+}
+
+/// All faces of a patch have the same winding number beside them: that of each one's own middle.
+TEST(MeshPair, PatchesHaveOneWindingNumber) {
+  std::size_t faces = 0, roots = 0;
+  for (std::uint64_t seed = 0; seed < 240; ++seed) {
+    test::MeshPair pair = seed % 4 == 3 ? test::bent_pair(seed) : test::lattice_pair(seed);
+    if (seed % 3 == 0) pair.inner = test::subdivided(pair.outer);
+    if (seed % 3 == 1) pair.inner = test::subdivided(test::subdivided(pair.inner));
+    if (seed % 6 == 1) std::swap(pair.inner, pair.outer);
+    const verify::MeshPair meshes(pair.inner, pair.outer);
+    if (meshes.faces().size() > 3000) continue;
+    verify::Arrangement arrangement(meshes, {10'000'000, 10'000'000});
+    arrangement.need_mutual();
+    arrangement.need_own(kInside);
+    arrangement.need_own(kOutside);
+    for (const int chain : {kInside, kOutside})
+      for (const int of : {kInside, kOutside}) {
+        if (!meshes.closed(of)) continue;
+        for (const verify::Side side : {verify::kInner, verify::kOuter}) {
+          const std::vector<std::uint32_t> patch =
+              verify::patches(arrangement, chain, verify::mask_of(of), side);
+          const std::uint32_t begin = meshes.begin(chain);
+          std::map<std::uint32_t, int> value;
+          for (std::uint32_t i = 0; i < meshes.count(chain); ++i) {
+            if (meshes.face(begin + i).axis < 0 ||
+                !arrangement.uncut(begin + i, verify::mask_of(of)))
+              continue;
+            const int own = verify::winding(meshes, verify::middle_sample(begin + i), side, of);
+            const auto [at, first] = value.emplace(patch[i], own);
+            EXPECT_EQ(at->second, own) << pair.name << " seed " << seed << " face " << i;
+            ++faces;
+            roots += first ? 1 : 0;
+          }
+        }
+      }
+  }
+  EXPECT_GT(faces, 100000U);
+  EXPECT_LT(10 * roots, 8 * faces);  // some are joined
 }
 
 /// Round which the triangles go twice, all of them upwards: they cut each other.
