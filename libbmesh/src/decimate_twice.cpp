@@ -1,4 +1,4 @@
-// Small meshes are decimated twice: the distance that the first result has bounds the second.
+// Small meshes are decimated twice: the distance that a quick result has bounds a better one.
 // docs/algorithms/bounding-mesh.md.
 
 #include "decimate_twice.h"
@@ -6,6 +6,7 @@
 #include <kaboum/geom/directed_distance.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "decimation_run.h"
@@ -34,14 +35,16 @@ class Twice {
       : input_(input), options_(options), work_(work) {}
 
   DecimateResult run() {
-    sketch_ = attempt(std::nullopt, true);
+    DecimateOptions first = options_;
+    if (quick_) first.effort = Effort::Fast;
+    sketch_ = attempt(first, std::nullopt, true);
     if (work_.spent(kNoneBegins)) return fall_back_on_sketch();
-    if (sketch_.result.stop == Stop::VertexTarget && sketch_.reached > 0) {
-      const RisingBound bound{
-          (options_.effort == Effort::Best ? kBoundFromBest : kBoundFrom) * sketch_.reached,
-          largest_distance(sketch_.result.mesh, input_.mesh())};
-      if (bound.from < bound.to) {
-        Attempt nearer = attempt(bound, false);
+    // Where a quick one leaves vertices without float32 places, more would be left within a bound.
+    if (sketch_.result.stop == Stop::VertexTarget &&
+        !(quick_ && sketch_.result.unrepresentable > 0)) {
+      const RisingBound bound = bound_of_sketch();
+      if (bound.from > 0 && bound.from < bound.to) {
+        Attempt nearer = attempt(options_, bound, false);
         if (nearer.result.stop == Stop::VertexTarget &&
             nearer.result.unrepresentable <= sketch_.result.unrepresentable)
           return std::move(nearer.result);
@@ -49,7 +52,7 @@ class Twice {
       }
     }
     // Made again with moves. Where the number can hardly be reached, the first may still be nearer.
-    Attempt again = attempt(std::nullopt, false);
+    Attempt again = attempt(options_, std::nullopt, false);
     if (!is_better(sketch_.result, again.result)) return std::move(again.result);
     sketch_.result.out_of_work = again.result.out_of_work;
     if (sketch_.result.stop != Stop::VertexTarget && again.result.stop == Stop::OutOfWork)
@@ -63,12 +66,21 @@ class Twice {
     double reached = 0;  // without contractions that move the vertices around
   };
 
-  Attempt attempt(const std::optional<RisingBound>& bound, bool sketch) {
+  Attempt attempt(const DecimateOptions& options, const std::optional<RisingBound>& bound,
+                  bool sketch) {
     Attempt out;
-    DecimationRun run(input_, options_, work_, bound, sketch);
-    out.result = run.to(options_.vertices);
+    DecimationRun run(input_, options, work_, bound, sketch);
+    out.result = run.to(options.vertices);
     out.reached = run.reached_alone();
     return out;
+  }
+
+  [[nodiscard]] RisingBound bound_of_sketch() const {
+    const double distance = largest_distance(sketch_.result.mesh, input_.mesh());
+    if (quick_) return {kBoundFrom * distance, distance, kBoundAlone};
+    const bool best = options_.effort == Effort::Best;
+    return {(best ? kBoundFromBest : kBoundFromInner) * sketch_.reached, distance,
+            std::numeric_limits<double>::infinity()};
   }
 
   /// Fewer vertices, or as many that are nearer to the input.
@@ -87,6 +99,9 @@ class Twice {
   const geom::SolidMesh& input_;
   const DecimateOptions& options_;
   Work& work_;
+  /// Inwards the second time may take more than the work allowed: then the first one is the result.
+  /// With Effort::Best results would be 3 % farther in the mean.
+  bool quick_ = options_.direction != Direction::Inner && options_.effort != Effort::Best;
   Attempt sketch_;
 };
 

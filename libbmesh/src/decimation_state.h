@@ -46,6 +46,7 @@ struct DecimationState {
   std::vector<Step>* steps;
   std::optional<double> epsilon;  ///< that steps keep
   double most_epsilon;            ///< to which that rises; 0: it does not
+  double alone;                   ///< RisingBound::alone
   bool in_clusters;               ///< contractions may move the vertices around
   Contraction contraction;
   std::optional<ErrorBoundCertificate> carried;  ///< of epsilon

@@ -136,9 +136,20 @@ void Decimator::collapse_within(std::size_t target) {
   clusters_.run(target, *state_.epsilon);
 }
 
-/// Goes on within a larger and larger error bound.
-void Decimator::raise_bound(std::size_t target) {
+void Decimator::raise_bound_by(double growth, std::size_t target) {
   double& epsilon = *state_.epsilon;
+  epsilon = std::min(growth * epsilon, state_.most_epsilon);
+  state_.carried->raise(epsilon);
+  contract_to(target);
+}
+
+/// Goes on within a larger and larger error bound: as long as there are many vertices, by
+/// contractions alone.
+void Decimator::raise_bound(std::size_t target) {
+  const double& epsilon = *state_.epsilon;
+  while (static_cast<double>(state_.vertices()) > state_.alone * static_cast<double>(target) &&
+         epsilon < state_.most_epsilon && !state_.spent(kNoneMoves))
+    raise_bound_by(kBoundGrowthAlone, target);
   double growth = kBoundGrowth;
   for (;;) {
     const auto missing = static_cast<double>(state_.vertices() - target);
@@ -146,9 +157,7 @@ void Decimator::raise_bound(std::size_t target) {
     collapse_within(target);
     if (state_.vertices() <= target || epsilon >= state_.most_epsilon || state_.spent(kNoneMoves))
       return;
-    epsilon = std::min(growth * epsilon, state_.most_epsilon);
-    state_.carried->raise(epsilon);
-    contract_to(target);
+    raise_bound_by(growth, target);
     if (state_.vertices() <= target) return;
     const bool gained =
         static_cast<double>(state_.vertices() - target) < (1 - kBoundGain) * missing;

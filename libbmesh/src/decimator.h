@@ -41,6 +41,7 @@ class Decimator {
   void collapse_in_rounds(std::size_t target);
   void collapse_within(std::size_t target);
   void raise_bound(std::size_t target);
+  void raise_bound_by(double growth, std::size_t target);
   void refine();
   void contract_to(std::size_t target, double limit = Contraction::kNoLimit);
   void start_measuring();

@@ -38,11 +38,18 @@ constexpr std::size_t kRefineAgain = 5;
 /// more than this share of the vertices.
 constexpr std::size_t kTurnPercent = 1;
 
-/// Small meshes are decimated a second time, within a bound: at first this share of the distance
-/// measured at kClusterFrom times the vertices asked for. It rises by kBoundGrowth from round to
-/// round until the number is reached. Rounds that gain less than kBoundGain of what is missing
-/// raise it by more.
-constexpr double kBoundFrom = 0.85, kBoundFromBest = 0.75;
+/// Small meshes are decimated a second time, within a bound. Inwards, where steps are dear, and
+/// with Effort::Best it begins at this share of the distance measured at kClusterFrom times the
+/// vertices asked for.
+constexpr double kBoundFromInner = 0.85, kBoundFromBest = 0.75;
+/// Else at this share of the distance that a quick first time has reached. It rises by
+/// kBoundGrowthAlone, and edges are contracted alone, down to this multiple of the vertices asked
+/// for.
+constexpr double kBoundFrom = 0.25, kBoundGrowthAlone = 1.03;
+constexpr double kBoundAlone = 1.2;
+/// Then it rises by kBoundGrowth from round to round, and they are contracted together with moves,
+/// until the number is reached. Rounds that gain less than kBoundGain of what is missing raise it
+/// by more.
 constexpr double kBoundGrowth = 1.07, kBoundMostGrowth = 1.25, kBoundGain = 0.05;
 constexpr int kBoundPasses = 1;  ///< rounds of optimisation in each
 /// Small: at most so many vertices, and a third of them asked for at most.
@@ -60,6 +67,8 @@ constexpr int kFinalPasses = 6, kFinalPassesBest = 12, kStagePasses = 3;
 /// An error bound that rises until the number of vertices asked for is reached. [length]
 struct RisingBound {
   double from, to;
+  /// Contractions alone raise it down to this multiple of the number.
+  double alone;
 };
 
 /// The vertices from which on distances are measured, given the number asked for.

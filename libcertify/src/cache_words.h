@@ -22,7 +22,7 @@ inline constexpr std::string_view kContainers = "coloured";
 /// Polytopes of links' bodies, and the bytes of their containers.
 inline constexpr std::string_view kLinks = "3, coloured";
 /// Meshes round the meshes of links.
-inline constexpr std::string_view kEnclosures = "distance 8";
+inline constexpr std::string_view kEnclosures = "distance 9";
 /// Triangles, notes and units that readers of libio give for the bytes of a file.
 inline constexpr std::string_view kReaders = "4";
 

@@ -430,8 +430,8 @@ TEST(Decimate, OptionsThatACostDoesNotUseAreRefused) {
   }
 }
 
-// Small meshes are decimated again, within less than the distance that the first time, as levels of
-// a series are made, led to; every step holds.
+// Small meshes are decimated again, within the distance that a first time led to, and nearer than
+// levels of a series, which are made once; every step holds.
 TEST(Decimate, SmallMeshesAreDecimatedWithinARisingBound) {
   const geom::Mesh sphere = test::scaled(test::icosphere(2), {1, 2, 0.5});
   const auto p = geom::prepare(sphere);

@@ -121,7 +121,7 @@ TEST_F(CacheWords, OfEnclosures) {
   std::string text;
   append(text, made.enclosure.artefact());
   EXPECT_EQ(std::string(cache_words::kEnclosures) + ": " + hash(text),
-            "distance 8: 8a707f5d8c68cc1a");
+            "distance 9: 8a707f5d8c68cc1a");
 }
 
 TEST_F(CacheWords, OfReaders) {
