@@ -115,6 +115,16 @@ UnionEstimate estimate_hull(const Body& a, const Body& b, const SolidField& soli
   return {h.worst, std::cbrt(added), h.worst <= limit};
 }
 
+std::optional<SolidField::Witness> far_point(const Body& body, const SolidField& solid,
+                                             double limit) {
+  geom::HullBuilder& builder = hull_builder();
+  if (body.concavity.flat || !builder.build(body.hull)) return std::nullopt;
+  const double weight = body.concavity.weight;
+  auto far = far_point(body.hull, solid, builder, limit / weight);
+  if (far) far->distance *= weight;
+  return far;
+}
+
 std::vector<int> leaves_of(const CutTree& tree, const Body& body) {
   std::vector<int> out;
   for (const int node : body.leaves) tree.leaves_below(node, out);

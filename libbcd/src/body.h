@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "cut_tree.h"
@@ -37,6 +38,10 @@ double distance_from_below(const Body& a, const Body& b, const SolidField& solid
 UnionEstimate estimate_hull(const Body& a, const Body& b, const SolidField& solid, double limit);
 /// The same, without the hull where distance_from_below is beyond `limit`.
 UnionEstimate estimate_union(const Body& a, const Body& b, const SolidField& solid, double limit);
+
+/// A point of the body's surface whose distance, weighted, is beyond `limit`, if one is found.
+std::optional<SolidField::Witness> far_point(const Body& body, const SolidField& solid,
+                                             double limit);
 
 /// The leaves of the tree that a body consists of.
 std::vector<int> leaves_of(const CutTree& tree, const Body& body);

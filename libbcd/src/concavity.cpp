@@ -19,14 +19,15 @@ namespace {
 
 // About what each step takes. [ns]
 constexpr std::uint64_t kPointWork = 250, kSampleWork = 80, kMeasureWork = 300;
-/// Samples per diagonal of a hull, but no nearer to each other than kGridSpacings of the field's
-/// grid, and no more than kMostParts along an edge.
-constexpr double kDensity = 14, kGridSpacings = 1.5;
+/// No more samples along an edge.
 constexpr int kMostParts = 16;
 /// Points in one plane are moved to both sides of it by this share of the solid's diagonal.
 constexpr double kPlateThickness = 1e-6;
 /// Points are perturbed by this share of their extent.
 constexpr double kPerturbation = 1e-9;
+/// Of far_point: samples are this many spacings apart, and those are measured where the field is
+/// this share of the limit, for it is flat across narrow ridges.
+constexpr double kFarSpacings = 1, kSuspect = 0.4;
 /// So many facets are passed by in the time of a sample.
 constexpr std::size_t kFacetsPerSample = 4;
 
@@ -86,10 +87,10 @@ class Sampler {
  public:
   /// Of so many points the hull was built.
   Sampler(std::span<const Vec3> points, std::size_t built_of, const geom::HullBuilder& hull,
-          const SolidField& solid, double limit, Concavity& out)
+          const SolidField& solid, double limit, Concavity& out, const Density& density = kDense)
       : points_(points), built_of_(built_of), hull_(hull), solid_(solid), limit_(limit), out_(out) {
     for (const std::uint32_t v : hull.vertices()) box_.extend(points[v]);
-    unit_ = std::max(kGridSpacings * solid.spacing(), box_.diagonal() / kDensity);
+    unit_ = std::max(density.spacings * solid.spacing(), box_.diagonal() / density.per_diagonal);
     open_.clear();
   }
   Sampler(const Sampler&) = delete;
@@ -116,6 +117,17 @@ class Sampler {
     std::size_t likely = 0;
     look_at(witness, sides, likely);
     measure_largest();
+  }
+
+  /// ∫ d⁴ of each facet by itself.
+  void run_facets(std::vector<FacetShare>& out) {
+    what_ = What::Fourth;
+    const Vec3 center = box_.center();
+    for (const Triangle& t : hull_.triangles()) {
+      out_.fourth = 0;
+      sample_facet(t, center);
+      if (out_.fourth > 0) out.push_back({t, out_.fourth});
+    }
   }
 
   /// The volume, and ∫ d⁴ until it exceeds what is allowed for that volume.
@@ -309,6 +321,60 @@ class Sampler {
 
 }  // namespace
 
+std::optional<SolidField::Witness> far_point(std::span<const Vec3> points, const SolidField& solid,
+                                             const geom::HullBuilder& builder, double limit) {
+  const double unit = kFarSpacings * solid.spacing();
+  std::optional<SolidField::Witness> out;
+  std::uint64_t samples = 0, measured = 0;
+  const auto look_at = [&](const Vec3& p) {
+    ++samples;
+    const double field = solid.field(p);
+    if (field < kSuspect * limit) return false;
+    ++measured;
+    const double d = solid.distance_above(limit, p, std::numeric_limits<double>::max());
+    if (d > limit) out = {p, d};
+    return d > limit;
+  };
+  const auto look_at_facet = [&](const Triangle& t) {
+    const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+    const Vec3* e[3] = {&a, &b, &c};
+    int k = 0;
+    double l = -1;
+    for (int i = 0; i < 3; ++i) {
+      const double x = (*e[(i + 1) % 3] - *e[i]).squaredNorm();
+      if (x > l) {
+        l = x;
+        k = i;
+      }
+    }
+    // Rows parallel to the longest side.
+    const Vec3 &p0 = *e[k], &p1 = *e[(k + 1) % 3], &top = *e[(k + 2) % 3];
+    const double longest = std::sqrt(l);
+    for (int j = 0; j < 3; ++j) {
+      if (t[j] > t[(j + 1) % 3]) continue;
+      const Vec3 &p = points[t[j]], &q = points[t[(j + 1) % 3]];
+      const int parts = std::max(1, static_cast<int>(std::ceil((q - p).norm() / unit)));
+      for (int i = 1; i < 2 * parts; i += 2)
+        if (look_at(p + (0.5 * i / parts) * (q - p))) return true;
+    }
+    if (longest < unit) return look_at((a + b + c) / 3);
+    const double height = (p1 - p0).cross(top - p0).norm() / longest;
+    const int rows = std::max(1, static_cast<int>(std::ceil(height / unit)));
+    for (int r = 0; r < rows; ++r) {
+      const double u = (r + 0.5) / rows;
+      const Vec3 q0 = p0 + u * (top - p0), q1 = p1 + u * (top - p1);
+      const int m = std::max(1, static_cast<int>(std::ceil((1 - u) * longest / unit)));
+      for (int i = 0; i < m; ++i)
+        if (look_at(q0 + ((i + 0.5) / m) * (q1 - q0))) return true;
+    }
+    return false;
+  };
+  for (const Triangle& t : builder.triangles())
+    if (look_at_facet(t)) break;
+  solid.work().add(kSampleWork * samples + kMeasureWork * measured);
+  return out;
+}
+
 bool spans_beyond(std::span<const Vec3> points, const SolidField& solid, double limit) {
   static const std::array<Vec3, 7> kDirections{Vec3(1, 0, 0), Vec3(0, 1, 0),  Vec3(0, 0, 1),
                                                Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1),
@@ -335,7 +401,8 @@ namespace {
 /// Builds the hull, thickened where it is flat, and has `sample` sample it.
 template <class Sample>
 Concavity with_hull(std::span<const Vec3> points, const SolidField& solid,
-                    geom::HullBuilder& builder, bool perturbed, double limit, Sample&& sample) {
+                    geom::HullBuilder& builder, bool perturbed, double limit,
+                    const Density& density, Sample&& sample) {
   Concavity out;
   if (perturbed && !points.empty()) points = perturb(points);
   const std::size_t count = points.size();
@@ -349,7 +416,7 @@ Concavity with_hull(std::span<const Vec3> points, const SolidField& solid,
       return out;
     }
   }
-  Sampler sampler(points, count, builder, solid, limit, out);
+  Sampler sampler(points, count, builder, solid, limit, out, density);
   sample(sampler);
   return out;
 }
@@ -359,7 +426,7 @@ Concavity with_hull(std::span<const Vec3> points, const SolidField& solid,
 Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& solid,
                              geom::HullBuilder& builder, bool perturbed, double limit) {
   const double weight = solid.weight(points);
-  Concavity out = with_hull(points, solid, builder, perturbed, limit / weight,
+  Concavity out = with_hull(points, solid, builder, perturbed, limit / weight, kDense,
                             [](Sampler& sampler) { sampler.run(); });
   out.weight = weight;
   out.worst *= weight;
@@ -381,9 +448,20 @@ void add_witness(std::span<const Vec3> hull, const SolidField& solid,
 
 Concavity estimate_fourth(std::span<const Vec3> points, const SolidField& solid,
                           geom::HullBuilder& builder,
-                          const std::function<double(double volume)>& limit_of) {
-  return with_hull(points, solid, builder, true, std::numeric_limits<double>::infinity(),
+                          const std::function<double(double volume)>& limit_of,
+                          const Density& density) {
+  return with_hull(points, solid, builder, true, std::numeric_limits<double>::infinity(), density,
                    [&](Sampler& sampler) { sampler.run_fourth(limit_of); });
+}
+
+std::vector<FacetShare> facet_shares(std::span<const Vec3> points, const SolidField& solid,
+                                     geom::HullBuilder& builder) {
+  std::vector<FacetShare> out;
+  const bool flat = with_hull(points, solid, builder, true, std::numeric_limits<double>::infinity(),
+                              kDense, [&](Sampler& sampler) { sampler.run_facets(out); })
+                        .flat;
+  if (flat) out.clear();  // corners are of thickened points
+  return out;
 }
 
 }  // namespace kaboum::bcd

@@ -12,6 +12,7 @@
 #include "decomposer.h"
 #include "options.h"
 #include "pre_step.h"
+#include "symmetry.h"
 
 namespace kaboum::bcd {
 namespace {
@@ -88,24 +89,37 @@ CoverCandidate search(const Mesh& closed, const CoverOptions& options, Allowance
   return result;
 }
 
+/// Whether fewer bodies within epsilon are proved to be too few.
+bool are_fewest(const Mesh& closed, const CoverOptions& options, const CoverCandidate& result) {
+  if (result.stop != Stop::Done || result.bodies.size() > tuning(options.effort).counted)
+    return false;
+  const std::size_t fewer = result.bodies.size() - 1;
+  if (fewer < 2) return true;  // one body has been tried
+  const SolidField solid(closed, kBoundGrid, 0, false);
+  return too_few_bodies(closed, solid, *options.epsilon, fewer) == fewer;
+}
+
 /// Few faces leave few cuts, and much hangs on the first: quick searches, with the planes of
-/// symmetry and without them, sometimes find fewer bodies than the thorough one.
+/// symmetry, if there are any, and without them, sometimes find fewer bodies than the thorough one.
 CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& options,
                                    Allowance& allowance) {
   CoverCandidate best = search(closed, options, allowance);
   if (!options.epsilon || options.max_total_vertices || options.effort == Effort::Fast ||
-      closed.triangles.size() > kQuickTriangles ||
-      (best.stop == Stop::Done && best.bodies.size() <= 2))
-    return best;                  // one body has been tried
+      closed.triangles.size() > kQuickTriangles || are_fewest(closed, options, best))
+    return best;
   CoverOptions silent = options;  // the progress has been told
   silent.progress = nullptr;
   for (const bool mirrors : {false, true}) {
     if (!allowance.plenty()) break;
+    if (mirrors && mirror_planes(SolidField(closed, kMeasuringGrid, 0, false)).empty()) break;
     Decomposer decomposer(closed, silent, allowance.left(), quick_tuning(mirrors));
     CoverCandidate other = run(decomposer, allowance);
     if (other.stop == Stop::Done &&
-        (best.stop != Stop::Done || other.bodies.size() < best.bodies.size()))
+        (best.stop != Stop::Done || other.bodies.size() < best.bodies.size())) {
+      // What the thorough search did not come to, it might still find.
+      other.statistics.out_of_work |= best.statistics.out_of_work;
       best = std::move(other);
+    }
   }
   return best;
 }

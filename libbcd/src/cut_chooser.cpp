@@ -29,6 +29,8 @@ constexpr double kHopelessScore = 2;
 constexpr std::size_t kAtOnce = 8;
 /// A score of which nothing is known. Limits are widened by what rounding may lose in a score.
 constexpr double kUnscored = std::numeric_limits<double>::infinity(), kRoundedUp = 1 + 0x1p-40;
+/// A cut is given up where this share of what it leaves of the hull's facets is too much.
+constexpr double kUncut = 0.9;
 /// Cuts into halves of a volume have a score lower by the first share; in full
 /// where the smaller one has one part of the second number.
 constexpr double kBalanced = 0.6, kFullyBalanced = 4;
@@ -72,16 +74,16 @@ double CutChooser::score(const CutNode& node, const Plane& plane, double limit) 
   const double most = kRoundedUp * limit / penalty;
   // ∫ d⁴ of a half that is too much by itself, whatever the other one is.
   const double too_much = most / (1 - kBalanced - options_.halving_bonus);
-  const Concavity lower =
-      estimate_fourth(s.lower, solid_, s.builder, [&](double) { return too_much; });
+  const Concavity lower = estimate_fourth(
+      s.lower, solid_, s.builder, [&](double) { return too_much; }, options_.density);
   if (lower.fourth > std::min(too_much, kHopelessScore * node.concavity.fourth))
     return penalty * lower.fourth;
   const auto preferred = [&](double upper) {
     return preference(std::min(lower.volume, upper), lower.volume + upper);
   };
-  const Concavity upper = estimate_fourth(s.upper, solid_, s.builder, [&](double volume) {
-    return most / preferred(volume) - lower.fourth;
-  });
+  const Concavity upper = estimate_fourth(
+      s.upper, solid_, s.builder,
+      [&](double volume) { return most / preferred(volume) - lower.fourth; }, options_.density);
   return penalty * (lower.fourth + upper.fourth) * preferred(upper.volume);
 }
 
@@ -195,22 +197,50 @@ CutChooser::Candidate CutChooser::best_in_two(const CutNode& node,
   return list[static_cast<std::size_t>(std::min_element(deep.begin(), deep.end()) - deep.begin())];
 }
 
-/// The last ones first, which faces of the solid suggest: they are the best more often than not.
-void CutChooser::evaluate(const CutNode& node, std::vector<Candidate>& list, double limit) const {
+double CutChooser::uncut(const CutNode& node, const std::vector<FacetShare>& facets,
+                         const Plane& plane) {
+  double sum = 0;
+  for (const FacetShare& facet : facets) {
+    const auto& [a, b, c] = facet.corners;
+    const double x = plane.height(node.hull[a]), y = plane.height(node.hull[b]),
+                 z = plane.height(node.hull[c]);
+    if ((x <= 0 && y <= 0 && z <= 0) || (x >= 0 && y >= 0 && z >= 0)) sum += facet.fourth;
+  }
+  return sum;
+}
+
+/// Those first that leave least of the hull's facets, and of these the last ones, which faces of
+/// the solid suggest: they are the best more often than not.
+void CutChooser::evaluate(const CutNode& node, const std::vector<FacetShare>& facets,
+                          std::vector<Candidate>& list, double limit) const {
   // Those that are looked into further have to be told apart.
   const bool all = options_.look_ahead > 1;
-  for (std::size_t end = list.size(); end > 0;) {
-    const std::size_t begin = all || end < kAtOnce ? 0 : end - kAtOnce;
+  struct Bound {
+    double least;
+    std::size_t index;
+  };
+  std::vector<Bound> order(list.size());
+  const double share = kUncut * (1 - kBalanced - options_.halving_bonus);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::size_t index = list.size() - 1 - i;
+    order[i] = {share * uncut(node, facets, list[index].plane), index};
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Bound& a, const Bound& b) { return a.least < b.least; });
+  for (std::size_t begin = 0; begin < order.size() && (all || order[begin].least <= limit);) {
+    const std::size_t end = all ? order.size() : std::min(order.size(), begin + kAtOnce);
     parallel_for(begin, end, [&](std::size_t i) {
-      list[i].score = score(node, list[i].plane, all ? kUnscored : limit);
+      Candidate& c = list[order[i].index];
+      c.score = score(node, c.plane, all ? kUnscored : limit);
     });
-    for (; end > begin; --end) limit = std::min(limit, list[end - 1].score);
+    for (; begin < end; ++begin) limit = std::min(limit, list[order[begin].index].score);
   }
 }
 
 std::optional<Plane> CutChooser::choose(const CutNode& node) const {
   std::vector<Candidate> list = candidates(node);
-  evaluate(node, list, kUnscored);
+  const std::vector<FacetShare> facets = facet_shares(node.hull, solid_, cut_scratch().builder);
+  evaluate(node, facets, list, kUnscored);
   const auto best_of = [](const std::vector<Candidate>& l) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < l.size(); ++i)
@@ -229,7 +259,7 @@ std::optional<Plane> CutChooser::choose(const CutNode& node) const {
       if (best.plane.d + s > low && best.plane.d + s < high)
         near.push_back({{best.plane.n, best.plane.d + s}});
     if (near.empty()) continue;
-    evaluate(node, near, best.score);
+    evaluate(node, facets, near, best.score);
     const Candidate c = best_of(near);
     if (c.score < best.score) best = c;
   }

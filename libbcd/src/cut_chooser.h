@@ -12,8 +12,9 @@ namespace kaboum::bcd {
 struct SearchOptions {
   int offsets = 7;  ///< per direction
   int reflex_planes = 10;
-  int refinements = 2;  ///< halvings of the best plane's offset
-  bool mirrors = true;  ///< try the solid's planes of symmetry
+  int refinements = 2;       ///< halvings of the best plane's offset
+  bool mirrors = true;       ///< try the solid's planes of symmetry
+  Density density = kDense;  ///< of the samples that cuts are scored by
   /// Of this many of the best cuts, the one is taken after which the next cuts
   /// bring most; ≤ 1: the best by itself.
   int look_ahead = 1;
@@ -44,6 +45,10 @@ class CutChooser {
   /// @param limit  above it, any larger number is given.
   [[nodiscard]] double score(const CutNode& node, const Plane& plane,
                              double limit = std::numeric_limits<double>::infinity()) const;
+  /// What a plane leaves whole of the facets of a node's hull, as ∫ d⁴: they are facets of the
+  /// halves' hulls, but for coplanar ones and how densely they are sampled.
+  [[nodiscard]] static double uncut(const CutNode& node, const std::vector<FacetShare>& facets,
+                                    const Plane& plane);
   [[nodiscard]] const SearchOptions& options() const { return options_; }
 
  private:
@@ -61,8 +66,10 @@ class CutChooser {
   [[nodiscard]] double look_ahead(const CutNode& node, const Plane& plane) const;
   /// Factor ≤ 1 of a cut's score, given the smaller half's volume and both.
   [[nodiscard]] double preference(double smaller, double volume) const;
+  /// @param facets  of the node's hull
   /// @param limit  as of score
-  void evaluate(const CutNode& node, std::vector<Candidate>& list, double limit) const;
+  void evaluate(const CutNode& node, const std::vector<FacetShare>& facets,
+                std::vector<Candidate>& list, double limit) const;
   /// The best by `look_ahead` among the few that are best by themselves.
   [[nodiscard]] Candidate best_in_two(const CutNode& node, std::vector<Candidate> list) const;
 

@@ -28,16 +28,17 @@ void append(std::vector<Finished> bodies, CoverCandidate& result) {
   }
 }
 
-/// Changes in how cuts are scored where a number of bodies is given.
-Tuning for_task(Tuning how, const CoverOptions& options) {
+/// Changes in how cuts are scored where a number of bodies is given, or few faces leave few cuts.
+Tuning for_task(Tuning how, const Mesh& closed, const CoverOptions& options) {
   if (!options.epsilon) how.search.halving_bonus = kHalvingBonus;
+  if (closed.triangles.size() <= kQuickTriangles) how.search.density = kDense;
   return how;
 }
 
 }  // namespace
 
 Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work, Tuning how)
-    : state_(closed, options, work, for_task(std::move(how), options)) {}
+    : state_(closed, options, work, for_task(std::move(how), closed, options)) {}
 
 Decomposer::Decomposer(const Mesh& closed, const CoverOptions& options, double work)
     : Decomposer(closed, options, work, tuning(options.effort)) {}

@@ -65,6 +65,33 @@ std::vector<Finished> EpsilonSearch::within(double epsilon, std::size_t most) {
   return finish_until_within(std::move(best), epsilon, kUnlimited);
 }
 
+/// Puts parts in place of bodies, and of such parts, that samples show to be farther than epsilon:
+/// these need not be finished. Leaves are sampled more densely first; others were as they were
+/// merged. What cannot be split stays, and all does once there are more than `most`.
+void EpsilonSearch::split_far(std::vector<Body>& bodies, double epsilon, std::size_t most) {
+  std::vector<Body> open = std::exchange(bodies, {});
+  while (!open.empty()) {
+    Body body = std::move(open.back());
+    open.pop_back();
+    std::vector<Body> parts;
+    if (bodies.size() + open.size() < most && !state_.spent(kFinishing)) {
+      if (body.concavity.worst <= epsilon && body.leaves.size() == 1) {
+        if (const auto far = far_point(body, state_.solid(), epsilon)) {
+          body.concavity.worst = far->distance;
+          body.concavity.at = far->point;
+        }
+      }
+      if (body.concavity.worst > epsilon) parts = local_.split_body(body, kAimedShare * epsilon);
+    }
+    if (parts.size() < 2) {
+      bodies.push_back(std::move(body));
+    } else {
+      std::move(parts.begin(), parts.end(), std::back_inserter(open));
+    }
+  }
+  std::reverse(bodies.begin(), bodies.end());
+}
+
 /// Finishes bodies; those too far from the solid are split, until all are within epsilon or there
 /// are more than `most`.
 std::vector<Finished> EpsilonSearch::finish_until_within(std::vector<Body> bodies, double epsilon,
@@ -75,6 +102,7 @@ std::vector<Finished> EpsilonSearch::finish_until_within(std::vector<Body> bodie
   for (int round = 0;
        round < kSplitRounds && !bodies.empty() && bodies.size() + out.size() <= most_bodies;
        ++round) {
+    split_far(bodies, epsilon, most_bodies - out.size());
     std::vector<Finished> tried =
         finisher_.finish(bodies, state_.options().simplify_share() * aim, epsilon);
     bodies.clear();

@@ -24,6 +24,7 @@ class EpsilonSearch {
  private:
   std::vector<Finished> hull_within(double epsilon);
   void cut_until(double distance, std::size_t most_leaves, double begin, double aim);
+  void split_far(std::vector<Body>& bodies, double epsilon, std::size_t most);
   std::vector<Finished> finish_until_within(std::vector<Body> bodies, double epsilon,
                                             std::size_t most);
   bool replace(std::vector<Finished>& bodies, std::size_t target, double epsilon);

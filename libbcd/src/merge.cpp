@@ -69,7 +69,7 @@ class Merger {
       const Pair p = queue_.top();
       queue_.pop();
       if (alive_[p.a] == 0 || alive_[p.b] == 0) continue;
-      join(p);
+      if (!join(p)) continue;
       const auto self = static_cast<std::uint32_t>(bodies_.size()) - 1;
       for (std::uint32_t a = 0; a < self; ++a)
         if (alive_[a] != 0 && (all_pairs || near(a, self))) fresh_.push_back({a, self});
@@ -149,8 +149,15 @@ class Merger {
     }
   }
 
-  void join(const Pair& p) {
+  /// @return whether the hull is not too far after all, looked at more densely.
+  bool join(const Pair& p) {
     Body merged = union_of(bodies_[p.a], bodies_[p.b], solid_);
+    if (std::isfinite(epsilon_)) {
+      if (const auto far = far_point(merged, solid_, epsilon_)) {
+        memo_.add(id_[p.a], id_[p.b], {far->distance, 0, false});
+        return false;
+      }
+    }
     alive_[p.a] = alive_[p.b] = 0;
     bodies_[p.a].hull = {};
     bodies_[p.b].hull = {};
@@ -158,6 +165,7 @@ class Merger {
     id_.push_back(memo_.id_of(merged.leaves));
     bodies_.push_back(std::move(merged));
     alive_.push_back(1);
+    return true;
   }
 
   std::vector<Body> bodies_;

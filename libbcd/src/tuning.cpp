@@ -37,7 +37,11 @@ Tuning tuning(Effort effort) {
 
 Tuning quick_tuning(bool mirrors) {
   return {.grid = 60000,
-          .search = {.offsets = 5, .reflex_planes = 6, .refinements = 1, .mirrors = mirrors},
+          .search = {.offsets = 5,
+                     .reflex_planes = 6,
+                     .refinements = 1,
+                     .mirrors = mirrors,
+                     .density = kSparse},
           .multiples = {1.5},
           .thresholds = {0.8},
           .volume_weights = {kVolumeWeight},

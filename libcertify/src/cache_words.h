@@ -10,7 +10,7 @@ namespace kaboum::certify::cache_words {
 /// What libverify decides, for all that is kept with a claim.
 inline constexpr std::string_view kDecisions = "decisions 4";
 /// Bodies of sets.
-inline constexpr std::string_view kSets = "planes 33";
+inline constexpr std::string_view kSets = "planes 34";
 /// Sets of spheres, beside it.
 inline constexpr std::string_view kBalls = "parallel bodies 3";
 /// Inner sets of spheres, beside it.

@@ -71,6 +71,30 @@ TEST_F(CutTreeTest, ScoresAboveALimitAreOnlyKnownToBe) {
   }
 }
 
+TEST_F(CutTreeTest, HalvesAreNoNearerThanTheFacetsThatAreNotCut) {
+  CutChooser chooser(solid_, {}, tree_.shift());
+  chooser.prepare();
+  const CutNode node = make_node(whole(solid_), solid_);
+  geom::HullBuilder builder;
+  const std::vector<FacetShare> facets = facet_shares(node.hull, solid_, builder);
+  double all = 0;
+  for (const FacetShare& facet : facets) all += facet.fourth;
+  ASSERT_GT(all, 0);
+  EXPECT_EQ(CutChooser::uncut(node, facets, {Vec3::UnitX(), 2}), all);
+  std::size_t some = 0;
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(1, 1, 0).normalized()}) {
+    for (int i = -3; i <= 3; ++i) {
+      const Plane plane{n, 0.3 * i};
+      const double kept = CutChooser::uncut(node, facets, plane);
+      EXPECT_LE(kept, all);
+      some += kept > 0 && kept < all ? 1 : 0;
+      // The least that a cut in the middle is preferred by.
+      EXPECT_GE(chooser.score(node, plane), 0.9 * 0.4 * kept);
+    }
+  }
+  EXPECT_GT(some, 0U);
+}
+
 TEST_F(CutTreeTest, SplitSortsNodesAndLeavesAlike) {
   const Plane plane{Vec3(1, 2, 0.5).normalized(), 0.1};
   std::vector<int> lower, upper;

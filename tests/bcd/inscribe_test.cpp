@@ -106,6 +106,38 @@ TEST(Concavity, ItsFourthPowerAloneIsTheSameUpToALimit) {
   }
 }
 
+// A slot in a long bar, between the samples of an estimate: some place of it is found, and is where
+// it is said to be.
+TEST(Concavity, PlacesBetweenSamplesAreFarWhereLookedAtDensely) {
+  geom::HullBuilder builder;
+  std::size_t missed = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double at = 3 + 0.13 * i, half = 0.2;
+    const Mesh bar = test::prism({{0, 0},
+                                  {10, 0},
+                                  {10, 1},
+                                  {at + half, 1},
+                                  {at + half, 0.3},
+                                  {at - half, 0.3},
+                                  {at - half, 1},
+                                  {0, 1}},
+                                 1);
+    const SolidField solid(bar, 20000, 0);
+    const double limit = 0.8 * half;
+    missed += estimate_concavity(bar.vertices, solid, builder).worst < limit ? 1 : 0;
+    ASSERT_TRUE(builder.build(bar.vertices));
+    EXPECT_FALSE(far_point(bar.vertices, solid, builder, 1.05 * half));
+    const auto far = far_point(bar.vertices, solid, builder, limit);
+    ASSERT_TRUE(far) << at;
+    EXPECT_GT(far->distance, limit);
+    EXPECT_NEAR(solid.surface().nearest(far->point).lower, far->distance, 1e-6);
+    EXPECT_FALSE(solid.contains(far->point));
+    EXPECT_TRUE((far->point.array() >= solid.box().min.array() - 1e-9).all());
+    EXPECT_TRUE((far->point.array() <= solid.box().max.array() + 1e-9).all());
+  }
+  EXPECT_GT(missed, 0U);
+}
+
 TEST(Concavity, OfConvexSolidsIsNothing) {
   const Mesh cube = kaboum::test::box({1, 1, 1}, 1);
   const SolidField solid(cube, 20000, 0);

@@ -80,7 +80,7 @@ TEST_F(CacheWords, OfSets) {
                      inner = set_of(bar(), SetRequest::Direction::Inner);
   EXPECT_EQ(std::string(cache_words::kSets) + ": " + hash_of(outer.artefact()) + " " +
                 hash_of(inner.artefact()),
-            "planes 33: aeff5a557cd83f1a 7f71fb4b408bf883");
+            "planes 34: aeff5a557cd83f1a 7f71fb4b408bf883");
   EXPECT_EQ(std::string(cache_words::kContainers) + ": " + hash(without_version(outer.bytes())),
             "coloured: 2b2f69dff98fbbe8");
 }
