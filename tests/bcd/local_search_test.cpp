@@ -55,7 +55,8 @@ TEST_F(LocalSearchTest, AUnionIsAsFarAsItsEstimate) {
     const UnionEstimate e = estimate_union(bodies[0], bodies[i], state_.solid(), kUnbounded);
     EXPECT_TRUE(e.whole);
     const Body both = union_of(bodies[0], bodies[i], state_.solid());
-    // Facets in one plane are triangulated otherwise, and so are samples elsewhere.
+    // Facets in one plane are triangulated otherwise, so samples, 1.5 spacings apart, are
+    // elsewhere.
     EXPECT_NEAR(e.worst, both.concavity.worst, 0.25 * state_.solid().spacing());
     distances.push_back(e.worst);
   }
