@@ -45,9 +45,7 @@ class Twice {
       const RisingBound bound = bound_of_sketch();
       if (bound.from > 0 && bound.from < bound.to) {
         Attempt nearer = attempt(options_, bound, false);
-        if (nearer.result.stop == Stop::VertexTarget &&
-            nearer.result.unrepresentable <= sketch_.result.unrepresentable)
-          return std::move(nearer.result);
+        if (is_good(nearer)) return lowered(std::move(nearer), bound.from);
         if (work_.spent(kNoneMoves)) return fall_back_on_sketch();
       }
     }
@@ -64,6 +62,7 @@ class Twice {
   struct Attempt {
     DecimateResult result;
     double reached = 0;  // without contractions that move the vertices around
+    double bound = 0;    // as far as it has risen
   };
 
   Attempt attempt(const DecimateOptions& options, const std::optional<RisingBound>& bound,
@@ -72,7 +71,27 @@ class Twice {
     DecimationRun run(input_, options, work_, bound, sketch);
     out.result = run.to(options.vertices);
     out.reached = run.reached_alone();
+    out.bound = run.bound();
     return out;
+  }
+
+  [[nodiscard]] bool is_good(const Attempt& a) const {
+    return a.result.stop == Stop::VertexTarget &&
+           a.result.unrepresentable <= sketch_.result.unrepresentable;
+  }
+
+  /// A result within a bound that began at `from`. Where it did not rise, the number is reached
+  /// within less, too: then it begins lower, a few times.
+  DecimateResult lowered(Attempt best, double from) {
+    for (int i = 0; i < kBoundTimes && quick_ && best.bound <= from && !work_.spent(kNoneMoves);
+         ++i) {
+      const RisingBound bound{kBoundLowered * from, from, kBoundAlone};
+      Attempt nearer = attempt(options_, bound, false);
+      if (!is_good(nearer)) break;
+      best = std::move(nearer);
+      from = bound.from;
+    }
+    return std::move(best.result);
   }
 
   [[nodiscard]] RisingBound bound_of_sketch() const {

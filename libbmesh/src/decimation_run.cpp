@@ -40,6 +40,8 @@ DecimateResult DecimationRun::to(std::optional<std::size_t> target) {
 
 double DecimationRun::reached_alone() const { return decimator_ ? decimator_->reached_alone() : 0; }
 
+double DecimationRun::bound() const { return decimator_ ? decimator_->bound() : 0; }
+
 void DecimationRun::nest_in(const geom::Mesh& level) {
   if (decimator_) decimator_->nest_in(level);  // what is flat nests anyway
 }

@@ -22,6 +22,7 @@ class DecimationRun {
 
   /// As of Decimator.
   [[nodiscard]] double reached_alone() const;
+  [[nodiscard]] double bound() const;
   void nest_in(const geom::Mesh& level);
 
  private:

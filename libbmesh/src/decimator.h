@@ -24,6 +24,9 @@ class Decimator {
   /// is none.
   [[nodiscard]] double reached_alone() const { return reached_alone_; }
 
+  /// The error bound, as far as it has risen; 0 where there is none.
+  [[nodiscard]] double bound() const { return state_.epsilon.value_or(0); }
+
   /// Runs on from where the last call has stopped.
   DecimateResult run(std::optional<std::size_t> target);
 

@@ -44,9 +44,11 @@ constexpr std::size_t kTurnPercent = 1;
 constexpr double kBoundFromInner = 0.85, kBoundFromBest = 0.75;
 /// Else at this share of the distance that a quick first time has reached. It rises by
 /// kBoundGrowthAlone, and edges are contracted alone, down to this multiple of the vertices asked
-/// for.
-constexpr double kBoundFrom = 0.25, kBoundGrowthAlone = 1.03;
+/// for. Where the number is reached before it rises, it begins again at kBoundLowered of that,
+/// up to kBoundTimes.
+constexpr double kBoundFrom = 0.4, kBoundGrowthAlone = 1.04, kBoundLowered = 0.65;
 constexpr double kBoundAlone = 1.2;
+constexpr int kBoundTimes = 3;
 /// Then it rises by kBoundGrowth from round to round, and they are contracted together with moves,
 /// until the number is reached. Rounds that gain less than kBoundGain of what is missing raise it
 /// by more.
