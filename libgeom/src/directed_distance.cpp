@@ -21,7 +21,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A rounded centroid is this far from the exact one at most, times the largest |coordinate|:
 /// docs/algorithms/distances.md.
 constexpr double kCentroidError = 1.5e-15;
-/// Squared sine below which a triangle is a needle: rounded weights of its points lose too much.
+/// A triangle is a needle where the squared sine of its smallest angle is below this: rounded
+/// weights of its points lose too much.
 constexpr double kNeedle = 1e-8;
 
 /// A run of A's triangles in spatial order, with their box.
@@ -240,8 +241,7 @@ class BranchAndBound {
     return true;
   }
 
-  // -- what is open
-  // --------------------------------------------------------------------------------
+  // -- what is open ------------------------------------------------------------------------------
 
   /// How far rounding may have moved the corners of a piece of so many cuts from A.
   [[nodiscard]] double moved_by(int depth) const {
@@ -359,7 +359,8 @@ class BranchAndBound {
                        std::array<double, ConvexPolygon::kCapacity>& out) const {
     const auto& [a, b, c] = b_.corners(t);
     const Vec3 u = b - a, v = c - a;
-    if (u.cross(v).squaredNorm() > kNeedle * u.squaredNorm() * v.squaredNorm()) {
+    const double uu = u.squaredNorm(), vv = v.squaredNorm(), ww = (c - b).squaredNorm();
+    if (u.cross(v).squaredNorm() > kNeedle * std::max({uu * vv, vv * ww, ww * uu})) {
       upper_distances({polygon.corner.data(), static_cast<std::size_t>(polygon.size)}, a, b, c,
                       out.data());
     } else {
@@ -406,8 +407,9 @@ class BranchAndBound {
     if (piece.upper <= enough) return finding;
     if (inside_ != nullptr && decide_inside(piece, center, radius, at_center.lower, enough))
       return finding;
-    // Where it will not be cut by a bisector, its corners say little that its parts will not.
-    if (by_bisector(piece.depth) && !much_larger(piece, enough))
+    // Corners of A's own triangles have not been moved by cuts; the others say little that parts
+    // will not where no cut by a bisector follows.
+    if (piece.depth == 0 || (by_bisector(piece.depth) && !much_larger(piece, enough)))
       look_at_corner(piece, where, finding);
     return finding;
   }

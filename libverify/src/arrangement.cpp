@@ -110,7 +110,8 @@ bool walkable(const Arrangement& arrangement, std::uint32_t f, int k, const Neig
       for (const Contacts::Along& along : alongs[i]) {
         if (along.edge != (i == 0 ? k : other_edge)) continue;
         if (!along.whole) return false;
-        // What holds both faces bounds the sector between them, which is flat.
+        // What holds both faces bounds the sector between them, which is flat. (Where it does not
+        // hold the other one, that one's contact adds it anyway.)
         if (unfolded && along.held && holds(alongs[1 - i], along.on)) continue;
         touching.push_back(along.on);
       }

@@ -234,6 +234,25 @@ TEST(DirectedDistance, BracketsSamplesAndItselfIsZero) {
 
 // The maximum of the distance from a big triangle to two small ones at its ends lies in its middle,
 // where no vertex is.
+// The farthest point is a vertex of A far from the origin, where cuts would move it by more than
+// the distance.
+TEST(DirectedDistance, IsExactAtVerticesFarFromTheOrigin) {
+  for (const double far : {0.0, 1e6, 1e8, 1e9}) {
+    const Vec3 o = Vec3::Constant(far);
+    const Mesh b{{o, o + Vec3(1, 0, 0), o + Vec3(1, 1, 0), o + Vec3(0, 1, 0)},
+                 {{0, 1, 2}, {0, 2, 3}}};
+    Mesh a = b;
+    const double height = 0x1p-20;
+    a.vertices[1][2] += height;
+    const double raised = a.vertices[1][2] - far;  // as rounded
+    const auto d = directed_distance(a, DistanceQuery(b));
+    EXPECT_TRUE(d.within_gap) << far;
+    EXPECT_LE(d.max_lower, raised);
+    EXPECT_GE(d.max_upper, raised);
+    EXPECT_LE(d.max_upper - d.max_lower, 1e-3 * height + 3e-14 * far) << far;
+  }
+}
+
 TEST(DirectedDistance, FindsMaximaInsideFaces) {
   const Mesh a{{{0, 0, 0}, {10, 0, 0}, {5, 0.001, 0}}, {{0, 1, 2}}};
   const Mesh b{{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {10, 0, 0}, {10, 1, 0}, {10, 0, 1}},
