@@ -291,16 +291,17 @@ class BranchAndBound {
     const double enough = limit();
     const double before = result_.max_lower;
     parallel_for(std::size_t{0}, outcomes.size(), [&](std::size_t block) {
-      auto& [finding, pieces] = outcomes[block];
+      Outcome& outcome = outcomes[block];
       std::uint32_t recent = kNone;
       const std::size_t end = std::min(chosen.size(), (block + 1) * kBlock);
       for (std::size_t i = block * kBlock; i < end; ++i) {
         const auto look = [&](TrianglePart& piece) {
+          Finding& finding = outcome.finding;
           finding.add(bound(piece, enough, recent));
           if (piece.upper <= enough)
             finding.decided = std::max(finding.decided, piece.upper + moved_by(piece.depth));
           else
-            pieces.push_back(piece);
+            outcome.pieces.push_back(piece);
         };
         if (chosen[i].cluster)
           each_triangle(clusters_[chosen[i].index], look);
