@@ -96,7 +96,11 @@ class Twice {
 
   [[nodiscard]] RisingBound bound_of_sketch() const {
     const double distance = largest_distance(sketch_.result.mesh, input_.mesh());
-    if (quick_) return {kBoundFrom * distance, distance, kBoundAlone};
+    if (quick_) {
+      const std::size_t most = kBoundFew * options_.vertices.value_or(0);
+      const bool few = most < input_.mesh().vertices.size();
+      return {(few ? kBoundFromFew : kBoundFrom) * distance, distance, kBoundAlone};
+    }
     const bool best = options_.effort == Effort::Best;
     return {(best ? kBoundFromBest : kBoundFromInner) * sketch_.reached, distance,
             std::numeric_limits<double>::infinity()};

@@ -42,11 +42,14 @@ constexpr std::size_t kTurnPercent = 1;
 /// with Effort::Best it begins at this share of the distance measured at kClusterFrom times the
 /// vertices asked for.
 constexpr double kBoundFromInner = 0.85, kBoundFromBest = 0.75;
-/// Else at this share of the distance that a quick first time has reached. It rises by
+/// Else at this share of the distance that a quick first time has reached, at the smaller one where
+/// more than kBoundFew times as many vertices are there as are asked for. It rises by
 /// kBoundGrowthAlone, and edges are contracted alone, down to this multiple of the vertices asked
 /// for. Where the number is reached before it rises, it begins again at kBoundLowered of that,
 /// up to kBoundTimes.
-constexpr double kBoundFrom = 0.4, kBoundGrowthAlone = 1.04, kBoundLowered = 0.65;
+constexpr double kBoundFrom = 0.4, kBoundFromFew = 0.25;
+constexpr std::size_t kBoundFew = 6;
+constexpr double kBoundGrowthAlone = 1.04, kBoundLowered = 0.65;
 constexpr double kBoundAlone = 1.2;
 constexpr int kBoundTimes = 3;
 /// Then it rises by kBoundGrowth from round to round, and they are contracted together with moves,
