@@ -40,8 +40,8 @@ def run(command, timeout, folder):
 def table(rows):
     """Rows as Markdown, a program's exponents between neighbouring sizes."""
     lines = ["| program | triangles | CPU | per million | exponent | memory | per million |", "|---|---:|---:|---:|---:|---:|---:|"]
-    before = {}
-    for row in sorted(rows, key=lambda r: (list(PROGRAMS).index(r["program"]), r["triangles"])):
+    before, programs = {}, list(dict.fromkeys(row["program"] for row in rows))
+    for row in sorted(rows, key=lambda r: (programs.index(r["program"]), r["triangles"])):
         millions, last = row["triangles"] / 1e6, before.get(row["program"])
         exponent = "" if last is None else f"{math.log(row['seconds'] / last['seconds']) / math.log(row['triangles'] / last['triangles']):.2f}"
         said = "" if row["exit_code"] == 0 else f" (exit code {row['exit_code']})"
@@ -61,9 +61,6 @@ def commands(options, mesh, folder):
         "verify": [programs / "bound-verify", "mesh", "--outer", "--prepare", mesh, result, *one],
         "distance": [programs / "hausdorff-eval", mesh, result, *one],
     }
-
-
-PROGRAMS = ("prepare", "decimate", "verify", "distance")
 
 
 def main():

@@ -3,7 +3,6 @@
 // the edge, so that a mesh without crossings has none after many times either).
 //
 //   subdivide MESH -o RESULT.ply|.stl|.off [--times N] [--off SHARE]
-#include <kaboum/base/error.h>
 #include <kaboum/io/mesh_io.h>
 
 #include <exception>

@@ -25,8 +25,8 @@ constexpr int kMostParts = 16;
 constexpr double kPlateThickness = 1e-6;
 /// Points are perturbed by this share of their extent.
 constexpr double kPerturbation = 1e-9;
-/// Of far_point: samples are this many spacings apart, and those are measured where the field is
-/// this share of the limit, for it is flat across narrow ridges.
+/// Distance of far_point's samples, in spacings of the grid, and the share of the limit from which
+/// on the field's value is measured, for it is flat across narrow ridges.
 constexpr double kFarSpacings = 1, kSuspect = 0.4;
 /// So many facets are passed by in the time of a sample.
 constexpr std::size_t kFacetsPerSample = 4;
@@ -80,6 +80,13 @@ using OpenPoint = std::pair<double, Vec3>;
 std::vector<OpenPoint>& open_points() {
   static thread_local std::vector<OpenPoint> points;
   return points;
+}
+
+/// A triangle's corners in their order, the longest side between the first two.
+std::array<Vec3, 3> from_longest_side(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  if (ab >= bc && ab >= ca) return {a, b, c};
+  return bc >= ca ? std::array{b, c, a} : std::array{c, a, b};
 }
 
 /// Samples one hull. The work is told when it ends, however it does.
@@ -236,17 +243,7 @@ class Sampler {
 
   /// Along the median to the longest side's ends.
   void sample_sliver(const Vec3& a, const Vec3& b, const Vec3& c, double area, int m) {
-    const Vec3* e[3] = {&a, &b, &c};
-    int k = 0;
-    double l = -1;
-    for (int i = 0; i < 3; ++i) {
-      const double x = (*e[(i + 1) % 3] - *e[i]).squaredNorm();
-      if (x > l) {
-        l = x;
-        k = i;
-      }
-    }
-    const Vec3 &p0 = *e[k], &p1 = *e[(k + 1) % 3], &top = *e[(k + 2) % 3];
+    const auto [p0, p1, top] = from_longest_side(a, b, c);
     const double share = area / m;
     for (int i = 0; i < m; ++i) {
       const Vec3 base = p0 + ((i + 0.5) / m) * (p1 - p0);
@@ -337,19 +334,9 @@ std::optional<SolidField::Witness> far_point(std::span<const Vec3> points, const
   };
   const auto look_at_facet = [&](const Triangle& t) {
     const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-    const Vec3* e[3] = {&a, &b, &c};
-    int k = 0;
-    double l = -1;
-    for (int i = 0; i < 3; ++i) {
-      const double x = (*e[(i + 1) % 3] - *e[i]).squaredNorm();
-      if (x > l) {
-        l = x;
-        k = i;
-      }
-    }
     // Rows parallel to the longest side.
-    const Vec3 &p0 = *e[k], &p1 = *e[(k + 1) % 3], &top = *e[(k + 2) % 3];
-    const double longest = std::sqrt(l);
+    const auto [p0, p1, top] = from_longest_side(a, b, c);
+    const double longest = (p1 - p0).norm();
     for (int j = 0; j < 3; ++j) {
       if (t[j] > t[(j + 1) % 3]) continue;
       const Vec3 &p = points[t[j]], &q = points[t[(j + 1) % 3]];

@@ -30,7 +30,7 @@ Concavity estimate_concavity(std::span<const Vec3> points, const SolidField& sol
                              geom::HullBuilder& builder, bool perturbed = false,
                              double limit = std::numeric_limits<double>::infinity());
 
-/// How densely a hull is sampled.
+/// Density of a hull's samples.
 struct Density {
   double per_diagonal;  ///< samples along the hull's diagonal, at most,
   double spacings;      ///< but no nearer to each other than so many spacings of the field's grid

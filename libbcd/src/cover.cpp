@@ -116,7 +116,7 @@ CoverCandidate with_quick_searches(const Mesh& closed, const CoverOptions& optio
     CoverCandidate other = run(decomposer, allowance);
     if (other.stop == Stop::Done &&
         (best.stop != Stop::Done || other.bodies.size() < best.bodies.size())) {
-      // What the thorough search did not come to, it might still find.
+      // The thorough search, with more work, might have found fewer.
       other.statistics.out_of_work |= best.statistics.out_of_work;
       best = std::move(other);
     }

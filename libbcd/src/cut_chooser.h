@@ -45,8 +45,8 @@ class CutChooser {
   /// @param limit  above it, any larger number is given.
   [[nodiscard]] double score(const CutNode& node, const Plane& plane,
                              double limit = std::numeric_limits<double>::infinity()) const;
-  /// What a plane leaves whole of the facets of a node's hull, as ∫ d⁴: they are facets of the
-  /// halves' hulls, but for coplanar ones and how densely they are sampled.
+  /// ∫ d⁴ of the facets of a node's hull that a plane does not cut: they are facets of the halves'
+  /// hulls, but for coplanar ones and how densely they are sampled.
   [[nodiscard]] static double uncut(const CutNode& node, const std::vector<FacetShare>& facets,
                                     const Plane& plane);
   [[nodiscard]] const SearchOptions& options() const { return options_; }

@@ -5,9 +5,9 @@ compare.py BIN WORK MESH... [--efforts normal,fast]
 
 NAME.coacd-0.05.obj is beside NAME.obj: CoACD's bodies, one object each (decompose.py makes such files). A mesh that is open is
 closed first, as bcd-decompose would (mesh-prepare). Distances are solid to solid, certified and by hausdorff-eval for both: how
-far the farthest point of the union is from the mesh's solid, as percent of the diagonal. Ours is asked for --epsilon of theirs (the
-lower end of its interval), and for --max-bodies of theirs. CPU seconds are of one thread, nothing cached. Rows are in the order of
-the worse figure; the last line has geometric means. Writes WORK/coacd.json as well.
+far the farthest point of the union is from the mesh's solid, in the mesh's unit. Ours is asked for --epsilon of theirs (the
+lower end of its interval), and for --max-bodies of theirs. CPU seconds are of one thread, nothing cached. Those with most bodies
+beside CoACD's come first; the last line has geometric means. Writes WORK/coacd.json as well.
 """
 import argparse
 import json
@@ -30,7 +30,7 @@ def farthest(programs, bodies, mesh, report):
     report.unlink(missing_ok=True)
     run(programs / "hausdorff-eval", bodies, mesh, "--a-as", "mesh", "--b-as", "mesh", "--solid", "--gap", "0.02", "--threads", "1", "--report", report)
     measured = json.loads(report.read_text(encoding="utf-8"))
-    return measured["a_to_b"]["max_lower"], measured["a_to_b"]["max_upper"], measured["bbox_diagonal"]
+    return measured["a_to_b"]["max_lower"], measured["a_to_b"]["max_upper"]
 
 
 def decomposed(options, mesh, effort, name, *wish):
@@ -52,7 +52,7 @@ def row(options, source, effort):
     if code != 0:
         raise SystemExit(f"compare.py: {source}: mesh-prepare ended with exit code {code}")
     count = sum(line.startswith(("o ", "g ")) for line in theirs.read_text(encoding="utf-8").splitlines())
-    lower, upper, _ = farthest(options.programs, theirs, mesh, options.work / f"{name}-theirs.json")
+    lower, upper = farthest(options.programs, theirs, mesh, options.work / f"{name}-theirs.json")
     bodies, reach, seconds = decomposed(options, mesh, effort, f"{name}-{effort}-at-distance", "--epsilon", lower)
     as_many, at_bodies, seconds_at_bodies = decomposed(options, mesh, effort, f"{name}-{effort}-at-bodies", "--max-bodies", count)
     return {"model": name, "effort": effort, "coacd": {"bodies": count, "farthest": [lower, upper]},
